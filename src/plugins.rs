@@ -4,7 +4,7 @@ use std::env;
 use std::path::PathBuf;
 
 use saoms_core::plugin::Search;
-use saoms_lang::project::{ClassPath, Classes, Problem};
+use saoms_lang::project::{ClassPath, Classes, PluginFault};
 use saoms_lang::registry::Registry;
 
 use crate::Exit;
@@ -57,8 +57,8 @@ pub(crate) fn registry(arguments: &PluginArguments) -> Result<Registry, Exit> {
 ///
 /// # Errors
 /// One of them cannot be used.
-pub(crate) fn usable(problems: &[Problem]) -> Result<(), Exit> {
-    for Problem { is_error, text } in problems {
+pub(crate) fn usable(problems: &[PluginFault]) -> Result<(), Exit> {
+    for PluginFault { is_error, text } in problems {
         eprint(&format!("{}: {text}\n", if *is_error { "error" } else { "warning" }));
     }
     if problems.iter().any(|one| one.is_error) { Err(Exit::WrongInput) } else { Ok(()) }

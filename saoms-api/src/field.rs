@@ -1,6 +1,6 @@
 use crate::Value;
 use crate::host::cdr::{DecodeError, Reader, Writer};
-use crate::host::declaration::Text;
+use crate::host::declaration::ConstText;
 
 /// A type that a message, a service argument, a reply or an entry of a knowledge can hold: `bool`, `i8` to `i64`, `u8`
 /// to `u64`, `f32`, `f64`, `String`, `Vec`s, `Option`s, other messages, and enumerations (`#[derive(Field)]` on an enum
@@ -13,7 +13,7 @@ use crate::host::declaration::Text;
 pub trait Field: Sized + 'static {
     /// The type as a fragment of the schema, in JSON with the names of ROS 2 interfaces: `"uint32"`,
     /// `{"sequence":"int32"}`.
-    const TYPE: Text;
+    const TYPE: ConstText;
     /// The least number of bytes that a value takes, at least 1. A sequence that claims more elements than the bytes
     /// left can hold is refused before anything is allocated.
     const LEAST_SIZE: usize;
@@ -64,7 +64,7 @@ pub trait Field: Sized + 'static {
 macro_rules! numbers {
     ($($type:ty => $name:literal, $value:literal, $as_value:expr, $of_value:pat => $found:expr);* $(;)?) => {
         $(impl Field for $type {
-            const TYPE: Text = Text::Plain(concat!("\"", $name, "\""));
+            const TYPE: ConstText = ConstText::Plain(concat!("\"", $name, "\""));
             const LEAST_SIZE: usize = size_of::<$type>();
             const VALUE: &'static str = $value;
 
@@ -124,7 +124,7 @@ numbers! {
 }
 
 impl Field for bool {
-    const TYPE: Text = Text::Plain("\"bool\"");
+    const TYPE: ConstText = ConstText::Plain("\"bool\"");
     const LEAST_SIZE: usize = 1;
     const VALUE: &'static str = "bool";
 
@@ -154,7 +154,7 @@ impl Field for bool {
 }
 
 impl Field for String {
-    const TYPE: Text = Text::Plain("\"string\"");
+    const TYPE: ConstText = ConstText::Plain("\"string\"");
     const LEAST_SIZE: usize = 4;
 
     fn write(&self, writer: &mut Writer) {
@@ -167,7 +167,8 @@ impl Field for String {
 }
 
 impl<T: Field> Field for Vec<T> {
-    const TYPE: Text = Text::Joined(&[Text::Plain("{\"sequence\":"), T::TYPE, Text::Plain("}")]);
+    const TYPE: ConstText =
+        ConstText::Joined(&[ConstText::Plain("{\"sequence\":"), T::TYPE, ConstText::Plain("}")]);
     const LEAST_SIZE: usize = 4;
 
     fn write(&self, writer: &mut Writer) {
@@ -183,7 +184,8 @@ impl<T: Field> Field for Vec<T> {
 
 /// Encoded as a sequence of at most one element, which is how ROS 2 interfaces say it: `T[<=1]`.
 impl<T: Field> Field for Option<T> {
-    const TYPE: Text = Text::Joined(&[Text::Plain("{\"optional\":"), T::TYPE, Text::Plain("}")]);
+    const TYPE: ConstText =
+        ConstText::Joined(&[ConstText::Plain("{\"optional\":"), T::TYPE, ConstText::Plain("}")]);
     const LEAST_SIZE: usize = 4;
     const VALUE: &'static str = T::VALUE;
 
@@ -220,7 +222,7 @@ impl<T: Field> Field for Option<T> {
 
 /// The reply of an operation that has nothing to say.
 impl Field for () {
-    const TYPE: Text = Text::Plain("null");
+    const TYPE: ConstText = ConstText::Plain("null");
     const LEAST_SIZE: usize = 1;
 
     fn write(&self, writer: &mut Writer) {

@@ -112,7 +112,7 @@ pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::boundary::{API, class_table, loop_class_table, rule_table};
     pub use crate::host::contain::install_hook;
-    pub use crate::host::declaration::Text;
+    pub use crate::host::declaration::ConstText;
     pub use crate::message::Key;
     pub use crate::property::{
         Preset, PropertyShape, Values, all_names, are_distinct, bounds_fit, chosen, complex, contains,

@@ -191,12 +191,12 @@ impl<'a> Entry<'a> {
         text.text(quote!(<#of as ::saoms_api::Field>::TYPE));
         text.text(quote! {
             if <#of as ::saoms_api::Field>::VALUE.is_empty() {
-                ::saoms_api::host::declaration::Text::EMPTY
+                ::saoms_api::host::declaration::ConstText::EMPTY
             } else {
-                ::saoms_api::host::declaration::Text::Joined(&[
-                    ::saoms_api::host::declaration::Text::Plain(",\"value\":\""),
-                    ::saoms_api::host::declaration::Text::Plain(<#of as ::saoms_api::Field>::VALUE),
-                    ::saoms_api::host::declaration::Text::Plain("\""),
+                ::saoms_api::host::declaration::ConstText::Joined(&[
+                    ::saoms_api::host::declaration::ConstText::Plain(",\"value\":\""),
+                    ::saoms_api::host::declaration::ConstText::Plain(<#of as ::saoms_api::Field>::VALUE),
+                    ::saoms_api::host::declaration::ConstText::Plain("\""),
                 ])
             }
         });
@@ -280,7 +280,7 @@ fn implementation(ident: &Ident, entries: &[Entry<'_>]) -> TokenStream {
             #[automatically_derived]
             impl ::saoms_api::Entries for #ident {
                 const DECLARED: &'static [::saoms_api::host::EntryDeclaration] = &ALL;
-                const TEXT: ::saoms_api::host::declaration::Text = #text;
+                const TEXT: ::saoms_api::host::declaration::ConstText = #text;
 
                 fn get(&self, entry: u32) -> ::core::option::Option<::saoms_api::Value> {
                     match entry {

@@ -33,7 +33,7 @@ pub(crate) fn field(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream>
     Ok(quote! {
         #[automatically_derived]
         impl ::saoms_api::Field for #ident {
-            const TYPE: ::saoms_api::host::declaration::Text = #text;
+            const TYPE: ::saoms_api::host::declaration::ConstText = #text;
             const LEAST_SIZE: usize = <#representation as ::saoms_api::Field>::LEAST_SIZE;
             const VALUE: &'static str = "word";
 

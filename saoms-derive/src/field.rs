@@ -175,7 +175,7 @@ fn structure(
     quote! {
         #[automatically_derived]
         impl ::saoms_api::Field for #ident {
-            const TYPE: ::saoms_api::host::declaration::Text = #text;
+            const TYPE: ::saoms_api::host::declaration::ConstText = #text;
             const LEAST_SIZE: usize = #least;
             #value
 

@@ -26,7 +26,7 @@ impl Json {
         }
     }
 
-    /// An expression of type `saoms_api::host::declaration::Text`.
+    /// An expression of type `saoms_api::host::declaration::ConstText`.
     pub(crate) fn text(&mut self, text: TokenStream) {
         self.flush();
         self.parts.push(text);
@@ -34,12 +34,12 @@ impl Json {
 
     /// An expression of type `&'static str` that holds JSON.
     pub(crate) fn json(&mut self, text: TokenStream) {
-        self.text(quote!(::saoms_api::host::declaration::Text::Plain(#text)));
+        self.text(quote!(::saoms_api::host::declaration::ConstText::Plain(#text)));
     }
 
     /// An expression of type `&'static str` that is to become a JSON string.
     pub(crate) fn quoted(&mut self, text: TokenStream) {
-        self.text(quote!(::saoms_api::host::declaration::Text::Quoted(#text)));
+        self.text(quote!(::saoms_api::host::declaration::ConstText::Quoted(#text)));
     }
 
     /// `[a,b,c]`, where `element` writes each item.
@@ -61,17 +61,17 @@ impl Json {
     fn flush(&mut self) {
         if !self.plain.is_empty() {
             let plain = std::mem::take(&mut self.plain);
-            self.parts.push(quote!(::saoms_api::host::declaration::Text::Plain(#plain)));
+            self.parts.push(quote!(::saoms_api::host::declaration::ConstText::Plain(#plain)));
         }
     }
 
-    /// An expression of type `saoms_api::host::declaration::Text`, for constants.
+    /// An expression of type `saoms_api::host::declaration::ConstText`, for constants.
     pub(crate) fn into_text(mut self) -> TokenStream {
         self.flush();
         let parts = self.parts;
         quote!({
-            const PARTS: &[::saoms_api::host::declaration::Text] = &[#(#parts),*];
-            ::saoms_api::host::declaration::Text::Joined(PARTS)
+            const PARTS: &[::saoms_api::host::declaration::ConstText] = &[#(#parts),*];
+            ::saoms_api::host::declaration::ConstText::Joined(PARTS)
         })
     }
 }
@@ -79,7 +79,7 @@ impl Json {
 /// An expression of type `&'static str` for a constant: all of the text, which is an expression of type `Text`.
 pub(crate) fn flat(text: &TokenStream) -> TokenStream {
     quote!({
-        const TEXT: ::saoms_api::host::declaration::Text = #text;
+        const TEXT: ::saoms_api::host::declaration::ConstText = #text;
         const BYTES: [u8; TEXT.length()] = TEXT.bytes();
         ::saoms_api::host::declaration::text(&BYTES)
     })

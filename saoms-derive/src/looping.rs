@@ -131,11 +131,11 @@ impl Declared {
         text.string(&name.value());
         text.member("doc", doc);
         text.text(quote! {{
-            const PARTS: &[::saoms_api::host::declaration::Text] = &::saoms_api::generated::member(
+            const PARTS: &[::saoms_api::host::declaration::ConstText] = &::saoms_api::generated::member(
                 ",\"knowledge\":",
                 <#ident as ::saoms_api::LoopClass>::KNOWLEDGE,
             );
-            ::saoms_api::host::declaration::Text::Joined(PARTS)
+            ::saoms_api::host::declaration::ConstText::Joined(PARTS)
         }});
         parts::properties(&mut text, properties);
         for (member, names) in [("senses", &self.senses), ("effects", &self.effects)] {

@@ -97,12 +97,12 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
         #[automatically_derived]
         impl ::saoms_api::PropertyField for #ident {
             const TYPE: ::saoms_api::host::declaration::PropertyShape = {
-                use ::saoms_api::host::declaration::{PropertyKind, PropertyShape, Rule, Text};
-                const PARTS: &[Text] = &[
-                    Text::Plain(",\"properties\":"),
-                    Text::Plain(<#ident as ::saoms_api::Properties>::DECLARATION),
+                use ::saoms_api::host::declaration::{PropertyKind, PropertyShape, Rule, ConstText};
+                const PARTS: &[ConstText] = &[
+                    ConstText::Plain(",\"properties\":"),
+                    ConstText::Plain(<#ident as ::saoms_api::Properties>::DECLARATION),
                 ];
-                PropertyShape::scalar(Rule::of(PropertyKind::Complex)).with_details(Text::Joined(PARTS))
+                PropertyShape::scalar(Rule::of(PropertyKind::Complex)).with_details(ConstText::Joined(PARTS))
             };
 
             fn from_value(
@@ -128,7 +128,7 @@ fn declaration(members: &[Member<'_>]) -> TokenStream {
             }
             Member::Flat(_, of) => {
                 let inner = quote_spanned!(of.span()=> <#of as ::saoms_api::Properties>::DECLARATION);
-                text.text(quote!(::saoms_api::host::declaration::Text::Joined(
+                text.text(quote!(::saoms_api::host::declaration::ConstText::Joined(
                     &::saoms_api::generated::continued(#inner)
                 )));
             }
@@ -137,8 +137,8 @@ fn declaration(members: &[Member<'_>]) -> TokenStream {
     let items = json::flat(&text.into_text());
     json::flat(&quote!({
         const ITEMS: &str = #items;
-        const PARTS: &[::saoms_api::host::declaration::Text] = &::saoms_api::generated::list(ITEMS);
-        ::saoms_api::host::declaration::Text::Joined(PARTS)
+        const PARTS: &[::saoms_api::host::declaration::ConstText] = &::saoms_api::generated::list(ITEMS);
+        ::saoms_api::host::declaration::ConstText::Joined(PARTS)
     }))
 }
 
@@ -377,17 +377,17 @@ impl<'a> Property<'a> {
         ] {
             text.text(quote! {{
                 const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
-                const PARTS: &[::saoms_api::host::declaration::Text] =
+                const PARTS: &[::saoms_api::host::declaration::ConstText] =
                     &::saoms_api::host::declaration::PropertyShape::bound(RULE.kind, #label, RULE.#bound);
-                ::saoms_api::host::declaration::Text::Joined(PARTS)
+                ::saoms_api::host::declaration::ConstText::Joined(PARTS)
             }});
         }
         let flag = |member: &str, condition: TokenStream| {
             quote! {
                 if #condition {
-                    ::saoms_api::host::declaration::Text::Plain(#member)
+                    ::saoms_api::host::declaration::ConstText::Plain(#member)
                 } else {
-                    ::saoms_api::host::declaration::Text::EMPTY
+                    ::saoms_api::host::declaration::ConstText::EMPTY
                 }
             }
         };

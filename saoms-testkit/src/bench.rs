@@ -8,7 +8,7 @@ use saoms_api::host::{
 };
 use saoms_api::{CallError, Cause, Class, Context, Failure, Header, Message, ReportValue, Topic, Work};
 use saoms_core::plugin::Plugin;
-use saoms_lang::registry::{LoopClass, Registry};
+use saoms_lang::registry::{RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
@@ -97,7 +97,7 @@ impl Bench {
         Ok(Bench { component, stage, waiting: Vec::new(), step: 0, started: false })
     }
 
-    pub(crate) fn of_loop(class: &Arc<LoopClass>, component: Box<dyn DynComponent>) -> Bench {
+    pub(crate) fn of_loop(class: &Arc<RegisteredLoop>, component: Box<dyn DynComponent>) -> Bench {
         let stage = Stage::of_loops(vec![Arc::clone(class)]);
         Bench { component, stage, waiting: Vec::new(), step: 0, started: false }
     }

@@ -9,7 +9,7 @@ use saoms_api::host::{
     NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
 };
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
-use saoms_lang::registry::{Class, LoopClass, Registry, TopicDeclaration as Declared};
+use saoms_lang::registry::{ClassTopic, RegisteredClass, RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
 
 use crate::Bench;
@@ -33,8 +33,8 @@ pub(crate) struct Taken {
 
 pub(crate) struct Stage {
     /// `None` if the stage runs only a loop.
-    class: Option<Arc<Class>>,
-    loops: Vec<Arc<LoopClass>>,
+    class: Option<Arc<RegisteredClass>>,
+    loops: Vec<Arc<RegisteredLoop>>,
     loop_names: Vec<String>,
     acting: Option<u32>,
     pub(crate) period: Duration,
@@ -57,7 +57,7 @@ impl Stage {
     /// The stage of a component with these values; its loops are those of its class.
     pub(crate) fn new(
         registry: &Registry,
-        class: &Arc<Class>,
+        class: &Arc<RegisteredClass>,
         values: &[(SmolStr, PropertyValue)],
     ) -> Result<Stage, Failure> {
         let declaration = class.declaration();
@@ -76,7 +76,7 @@ impl Stage {
     }
 
     /// The stage of loops without a component around them.
-    pub(crate) fn of_loops(loops: Vec<Arc<LoopClass>>) -> Stage {
+    pub(crate) fn of_loops(loops: Vec<Arc<RegisteredLoop>>) -> Stage {
         Stage {
             class: None,
             loops,
@@ -109,7 +109,7 @@ impl Stage {
         self.happened.push((self.now, what));
     }
 
-    fn declared(&self, publishes: bool) -> impl Iterator<Item = &Declared> {
+    fn declared(&self, publishes: bool) -> impl Iterator<Item = &ClassTopic> {
         let of_class = self.class.iter().flat_map(move |class| {
             let class = class.declaration();
             if publishes { &class.publishes } else { &class.subscribes }

@@ -13,7 +13,7 @@ use saoms_lang::project::Project;
 use saoms_lang::source::{OpenTexts, Sources, identity};
 
 use saoms_api::host::contain::contained;
-use saoms_tools::editor::{Fleet, Scene, Workspace};
+use saoms_tools::editor::{Scene, SceneFleet, Workspace};
 
 use super::diagnostics::{Reported, reported};
 use super::registries::Registries;
@@ -117,7 +117,8 @@ impl Checker {
             return (Vec::new(), Sort::Composite);
         }
         let scene = Scene::new(around, self.registries.of(path, &[]));
-        let paths = |fleet: &Fleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
+        let paths =
+            |fleet: &SceneFleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
         let fleets = scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect();
         let sort = match scene.file() {
             one if one.is_beside => Sort::Values,

@@ -4,15 +4,15 @@ use lsp_types::{
     CompletionItem, CompletionItemKind, CompletionTextEdit, DocumentSymbol, Documentation, FoldingRange,
     FoldingRangeKind, InsertTextFormat, MarkupContent, MarkupKind, SymbolKind, TextEdit,
 };
-use saoms_tools::editor::{self, Completion, CompletionKind, Edit, File, Fold};
+use saoms_tools::editor::{self, File, FileEdit, Fold, Proposal, ProposalKind};
 
 use super::position::range_in;
 
-pub(super) fn text_edit(file: &File, edit: Edit) -> TextEdit {
+pub(super) fn text_edit(file: &File, edit: FileEdit) -> TextEdit {
     TextEdit::new(range_in(file, edit.range), edit.text)
 }
 
-pub(super) fn completion_item(file: &File, one: Completion, knows_snippets: bool) -> CompletionItem {
+pub(super) fn completion_item(file: &File, one: Proposal, knows_snippets: bool) -> CompletionItem {
     let sort_text = Some(one.order());
     let (new_text, is_snippet) = one.insert.text(knows_snippets);
     let new_text = new_text.to_owned();
@@ -35,23 +35,23 @@ pub(super) fn completion_item(file: &File, one: Completion, knows_snippets: bool
     }
 }
 
-fn completion_kind(kind: CompletionKind) -> CompletionItemKind {
+fn completion_kind(kind: ProposalKind) -> CompletionItemKind {
     match kind {
-        CompletionKind::Class => CompletionItemKind::CLASS,
-        CompletionKind::Constant => CompletionItemKind::CONSTANT,
-        CompletionKind::EnumMember => CompletionItemKind::ENUM_MEMBER,
-        CompletionKind::Event => CompletionItemKind::EVENT,
-        CompletionKind::Field => CompletionItemKind::FIELD,
-        CompletionKind::File => CompletionItemKind::FILE,
-        CompletionKind::Folder => CompletionItemKind::FOLDER,
-        CompletionKind::Function => CompletionItemKind::FUNCTION,
-        CompletionKind::Interface => CompletionItemKind::INTERFACE,
-        CompletionKind::Keyword => CompletionItemKind::KEYWORD,
-        CompletionKind::Module => CompletionItemKind::MODULE,
-        CompletionKind::Property => CompletionItemKind::PROPERTY,
-        CompletionKind::TypeParameter => CompletionItemKind::TYPE_PARAMETER,
-        CompletionKind::Value => CompletionItemKind::VALUE,
-        CompletionKind::Variable => CompletionItemKind::VARIABLE,
+        ProposalKind::Class => CompletionItemKind::CLASS,
+        ProposalKind::Constant => CompletionItemKind::CONSTANT,
+        ProposalKind::EnumMember => CompletionItemKind::ENUM_MEMBER,
+        ProposalKind::Event => CompletionItemKind::EVENT,
+        ProposalKind::Field => CompletionItemKind::FIELD,
+        ProposalKind::File => CompletionItemKind::FILE,
+        ProposalKind::Folder => CompletionItemKind::FOLDER,
+        ProposalKind::Function => CompletionItemKind::FUNCTION,
+        ProposalKind::Interface => CompletionItemKind::INTERFACE,
+        ProposalKind::Keyword => CompletionItemKind::KEYWORD,
+        ProposalKind::Module => CompletionItemKind::MODULE,
+        ProposalKind::Property => CompletionItemKind::PROPERTY,
+        ProposalKind::TypeParameter => CompletionItemKind::TYPE_PARAMETER,
+        ProposalKind::Value => CompletionItemKind::VALUE,
+        ProposalKind::Variable => CompletionItemKind::VARIABLE,
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
 use saoms_core::plugin::{Plugin, Search};
-use saoms_lang::project::{ClassPath, Classes, Problem};
+use saoms_lang::project::{ClassPath, Classes, PluginFault};
 use saoms_lang::registry::Registry;
 
 use crate::arguments::PluginArguments;
@@ -25,7 +25,7 @@ pub(super) struct Registries {
 struct Known {
     by_file: HashMap<(PathBuf, Vec<PathBuf>), (Libraries, Arc<Registry>)>,
     told: HashSet<String>,
-    problems: Vec<Problem>,
+    problems: Vec<PluginFault>,
 }
 
 /// The libraries that were there, each with what shows a change.
@@ -66,7 +66,7 @@ impl Registries {
         let Classes { mut registry, problems, .. } = match Registry::linked() {
             Ok(linked) => search.classes(linked),
             Err(error) => {
-                let problem = Problem { is_error: true, text: error.to_string() };
+                let problem = PluginFault { is_error: true, text: error.to_string() };
                 Classes { problems: vec![problem], ..Registry::new().into() }
             }
         };
@@ -85,7 +85,7 @@ impl Registries {
     }
 
     /// What is wrong with plugins and was not asked for before.
-    pub(super) fn new_problems(&self) -> Vec<Problem> {
+    pub(super) fn new_problems(&self) -> Vec<PluginFault> {
         std::mem::take(&mut self.known.lock().unwrap_or_else(PoisonError::into_inner).problems)
     }
 }

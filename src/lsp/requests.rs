@@ -16,8 +16,8 @@ use lsp_types::{
     SymbolInformation, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit, WorkspaceSymbolResponse,
 };
 use saoms_tools::editor::{
-    Completion, FileRange, Scene, Target, complete, definition, document_symbols, folds, formatted, hover,
-    linked_tags, links, prepare_rename, references, rename, selections, workspace_symbols,
+    DefinitionTarget, FileRange, Proposal, Scene, complete, definition, document_symbols, folds, formatted,
+    hover, linked_tags, links, prepare_rename, references, rename, selections, workspace_symbols,
 };
 use serde_json::Value;
 use serde_json::value::RawValue;
@@ -84,12 +84,12 @@ impl<W: Write> Server<W> {
         let (scene, byte) = self.place(&params.text_document_position)?;
         let knows_snippets = self.client.knows_snippets;
         let file = scene.file();
-        let matching = |one: Completion| {
+        let matching = |one: Proposal| {
             let typed = &file.text[one.range.start..byte];
             one.matching(typed)
         };
-        let mut found: Vec<Completion> = complete(&scene, byte).into_iter().filter_map(matching).collect();
-        found.sort_by_cached_key(Completion::order);
+        let mut found: Vec<Proposal> = complete(&scene, byte).into_iter().filter_map(matching).collect();
+        found.sort_by_cached_key(Proposal::order);
         let items = found.into_iter().take(MOST).map(|one| completion_item(file, one, knows_snippets));
         // Others come when more is typed, as the units behind a number do.
         let list = CompletionList { is_incomplete: true, items: items.collect() };
@@ -113,8 +113,8 @@ impl<W: Write> Server<W> {
     ) -> Result<Option<GotoDefinitionResponse>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position_params)?;
         let all = definition(&scene, byte).into_iter().filter_map(|target| match target {
-            Target::Range(place) => self.location(&scene, &place),
-            Target::File(path) => {
+            DefinitionTarget::Range(place) => self.location(&scene, &place),
+            DefinitionTarget::File(path) => {
                 let uri = Uri::from_str(&uri::uri(&path)).ok()?;
                 Some(Location { uri, range: lsp_types::Range::default() })
             }

@@ -1,4 +1,4 @@
-use crate::host::declaration::Text;
+use crate::host::declaration::ConstText;
 use crate::host::{DynEntries, DynLoop, PropertyValue, SmolStr};
 use crate::{Failure, Loop, Properties};
 
@@ -94,10 +94,10 @@ pub trait LoopClass: Loop {
 }
 
 /// For generated code: a member of a JSON object, with its label, or nothing.
-pub const fn member(label: &'static str, text: Option<&'static str>) -> [Text; 2] {
+pub const fn member(label: &'static str, text: Option<&'static str>) -> [ConstText; 2] {
     match text {
-        Some(text) => [Text::Plain(label), Text::Quoted(text)],
-        None => [Text::EMPTY, Text::EMPTY],
+        Some(text) => [ConstText::Plain(label), ConstText::Quoted(text)],
+        None => [ConstText::EMPTY, ConstText::EMPTY],
     }
 }
 

@@ -1,6 +1,6 @@
 use std::any::Any;
 
-use crate::host::declaration::Text;
+use crate::host::declaration::ConstText;
 use crate::{Failure, Value};
 
 /// Declared, typed entries: those of a component's knowledge, of a part of it, or those that a loop adds to it.
@@ -38,7 +38,7 @@ pub trait Entries: Send + Sized + 'static {
     /// The entries in order. An entry is known by its place in here.
     const DECLARED: &'static [EntryDeclaration];
     /// Their JSON objects with commas between, in the shape of [`crate::host::declaration`].
-    const TEXT: Text;
+    const TEXT: ConstText;
 
     /// The value of an entry; `None` for one that is no single value, or for none at all.
     fn get(&self, entry: u32) -> Option<Value>;

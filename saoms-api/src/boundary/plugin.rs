@@ -48,51 +48,51 @@ macro_rules! plugin {
 
         const _: () = {
             use $crate::generated::{
-                ClassTable, LoopClassTable, PluginTable, RuleTable, Text, class_table, loop_class_table, rule_table,
+                ClassTable, LoopClassTable, PluginTable, RuleTable, ConstText, class_table, loop_class_table, rule_table,
             };
 
-            const CLASSES: &[Text] = &[$(
-                Text::Plain(","), Text::Plain(<$class as $crate::Class>::DECLARATION),
+            const CLASSES: &[ConstText] = &[$(
+                ConstText::Plain(","), ConstText::Plain(<$class as $crate::Class>::DECLARATION),
             )*];
-            const LOOPS: &[Text] = &[$(
-                Text::Plain(","), Text::Plain(<$looping as $crate::LoopClass>::DECLARATION),
+            const LOOPS: &[ConstText] = &[$(
+                ConstText::Plain(","), ConstText::Plain(<$looping as $crate::LoopClass>::DECLARATION),
             )*];
-            const RULES: &[Text] = &[$(
-                Text::Plain(","),
-                Text::Plain("{\"code\":"),
-                Text::Quoted($rule.code.id),
-                Text::Plain(",\"name\":"),
-                Text::Quoted($rule.code.name),
-                Text::Plain(",\"meaning\":"),
-                Text::Quoted($rule.code.meaning),
-                Text::Plain(",\"severity\":"),
-                Text::Quoted($rule.code.severity.name()),
-                Text::Plain(",\"rule\":"),
+            const RULES: &[ConstText] = &[$(
+                ConstText::Plain(","),
+                ConstText::Plain("{\"code\":"),
+                ConstText::Quoted($rule.code.id),
+                ConstText::Plain(",\"name\":"),
+                ConstText::Quoted($rule.code.name),
+                ConstText::Plain(",\"meaning\":"),
+                ConstText::Quoted($rule.code.meaning),
+                ConstText::Plain(",\"severity\":"),
+                ConstText::Quoted($rule.code.severity.name()),
+                ConstText::Plain(",\"rule\":"),
                 match $rule.code.rule {
-                    Some(rule) => Text::Quoted(rule),
-                    None => Text::Plain("null"),
+                    Some(rule) => ConstText::Quoted(rule),
+                    None => ConstText::Plain("null"),
                 },
-                Text::Plain(if $rule.judges_parts { ",\"judgesParts\":true" } else { ",\"judgesParts\":false" }),
-                Text::Plain(if $rule.prevents_start { ",\"preventsStart\":true}" } else { ",\"preventsStart\":false}" }),
+                ConstText::Plain(if $rule.judges_parts { ",\"judgesParts\":true" } else { ",\"judgesParts\":false" }),
+                ConstText::Plain(if $rule.prevents_start { ",\"preventsStart\":true}" } else { ",\"preventsStart\":false}" }),
             )*];
-            const TEXT: Text = Text::Joined(&[
-                Text::Plain("{\"saoms\":\"plugin\",\"abi\":1,\"api\":"),
-                Text::Quoted($crate::generated::API),
-                Text::Plain(",\"package\":"),
-                Text::Quoted(env!("CARGO_PKG_NAME")),
-                Text::Plain(",\"version\":"),
-                Text::Quoted(env!("CARGO_PKG_VERSION")),
-                Text::Plain(",\"panic\":"),
-                Text::Quoted(if cfg!(panic = "abort") { "abort" } else { "unwind" }),
-                Text::Plain(",\"entry\":"),
-                Text::Quoted(concat!("saoms_plugin_", env!("CARGO_CRATE_NAME"))),
-                Text::Plain(",\"classes\":["),
-                Text::Joined(CLASSES.split_at(if CLASSES.is_empty() { 0 } else { 1 }).1),
-                Text::Plain("],\"loops\":["),
-                Text::Joined(LOOPS.split_at(if LOOPS.is_empty() { 0 } else { 1 }).1),
-                Text::Plain("],\"rules\":["),
-                Text::Joined(RULES.split_at(if RULES.is_empty() { 0 } else { 1 }).1),
-                Text::Plain("]}"),
+            const TEXT: ConstText = ConstText::Joined(&[
+                ConstText::Plain("{\"saoms\":\"plugin\",\"abi\":1,\"api\":"),
+                ConstText::Quoted($crate::generated::API),
+                ConstText::Plain(",\"package\":"),
+                ConstText::Quoted(env!("CARGO_PKG_NAME")),
+                ConstText::Plain(",\"version\":"),
+                ConstText::Quoted(env!("CARGO_PKG_VERSION")),
+                ConstText::Plain(",\"panic\":"),
+                ConstText::Quoted(if cfg!(panic = "abort") { "abort" } else { "unwind" }),
+                ConstText::Plain(",\"entry\":"),
+                ConstText::Quoted(concat!("saoms_plugin_", env!("CARGO_CRATE_NAME"))),
+                ConstText::Plain(",\"classes\":["),
+                ConstText::Joined(CLASSES.split_at(if CLASSES.is_empty() { 0 } else { 1 }).1),
+                ConstText::Plain("],\"loops\":["),
+                ConstText::Joined(LOOPS.split_at(if LOOPS.is_empty() { 0 } else { 1 }).1),
+                ConstText::Plain("],\"rules\":["),
+                ConstText::Joined(RULES.split_at(if RULES.is_empty() { 0 } else { 1 }).1),
+                ConstText::Plain("]}"),
             ]);
 
             #[used]

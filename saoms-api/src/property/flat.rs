@@ -1,6 +1,6 @@
 //! Property structs in the place of a field of another one.
 
-use crate::host::declaration::Text;
+use crate::host::declaration::ConstText;
 use crate::host::{PropertyValue, SmolStr};
 
 /// Number of names in all lists.
@@ -41,15 +41,15 @@ pub const fn are_distinct(names: &[&str]) -> bool {
 }
 
 /// The items of a JSON array, with a comma before them where there are any.
-pub const fn continued(array: &'static str) -> [Text; 2] {
+pub const fn continued(array: &'static str) -> [ConstText; 2] {
     let inside = array.split_at(array.len() - 1).0.split_at(1).1;
-    [Text::Plain(if inside.is_empty() { "" } else { "," }), Text::Plain(inside)]
+    [ConstText::Plain(if inside.is_empty() { "" } else { "," }), ConstText::Plain(inside)]
 }
 
 /// The JSON array of items of which each has a comma before it.
-pub const fn list(items: &'static str) -> [Text; 3] {
+pub const fn list(items: &'static str) -> [ConstText; 3] {
     let items = if items.is_empty() { items } else { items.split_at(1).1 };
-    [Text::Plain("["), Text::Plain(items), Text::Plain("]")]
+    [ConstText::Plain("["), ConstText::Plain(items), ConstText::Plain("]")]
 }
 
 /// The values with these names.

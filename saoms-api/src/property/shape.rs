@@ -1,4 +1,4 @@
-use crate::host::declaration::{PropertyKind, Rule, Scalar, Text};
+use crate::host::declaration::{ConstText, PropertyKind, Rule, Scalar};
 use crate::host::{PropertyValue, SmolStr};
 use crate::time::read_duration;
 
@@ -49,26 +49,30 @@ pub struct PropertyShape {
     /// True if it may be absent without a default.
     pub optional: bool,
     /// Further members of the JSON object, each with a comma before it.
-    pub details: Text,
+    pub details: ConstText,
 }
 
 impl PropertyShape {
     /// One value of a scalar type, required.
     pub const fn scalar(rule: Rule<'static>) -> PropertyShape {
-        PropertyShape { rule, many: false, optional: false, details: Text::EMPTY }
+        PropertyShape { rule, many: false, optional: false, details: ConstText::EMPTY }
     }
 
     /// The same with these details.
-    pub const fn with_details(self, details: Text) -> PropertyShape {
+    pub const fn with_details(self, details: ConstText) -> PropertyShape {
         PropertyShape { details, ..self }
     }
 
     /// `"name":bound` with a comma before it, or nothing.
-    pub const fn bound(kind: PropertyKind, label: &'static str, bound: Option<&'static str>) -> [Text; 2] {
+    pub const fn bound(
+        kind: PropertyKind,
+        label: &'static str,
+        bound: Option<&'static str>,
+    ) -> [ConstText; 2] {
         match (bound, kind) {
-            (None, _) => [Text::EMPTY, Text::EMPTY],
-            (Some(bound), PropertyKind::Duration) => [Text::Plain(label), Text::Quoted(bound)],
-            (Some(bound), _) => [Text::Plain(label), Text::Plain(bound)],
+            (None, _) => [ConstText::EMPTY, ConstText::EMPTY],
+            (Some(bound), PropertyKind::Duration) => [ConstText::Plain(label), ConstText::Quoted(bound)],
+            (Some(bound), _) => [ConstText::Plain(label), ConstText::Plain(bound)],
         }
     }
 }

@@ -4,7 +4,7 @@ use saoms_api::host::PropertyValue;
 
 use super::Members;
 use super::order::providers_first;
-use saoms_lang::assembly::{ComponentSpec, LoopSpec, Target, Wire};
+use saoms_lang::assembly::{ComponentSpec, LoopSpec, Wire, WireTarget};
 
 /// The steps that turn one fleet into another. Components are the same when their paths are.
 ///
@@ -113,7 +113,7 @@ fn differences(
     if loops(before) != loops(after) {
         differences.push(Difference::Loops);
     }
-    let same_target = |one: &Target, other: &Target| {
+    let same_target = |one: &WireTarget, other: &WireTarget| {
         let (before, after) = (current.get(one.component), wanted.get(other.component));
         let same = matches!((before, after), (Some(Some(before)), Some(Some(after)))
             if before.path == after.path && before.class.name() == after.class.name());

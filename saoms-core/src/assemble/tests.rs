@@ -5,7 +5,7 @@ use saoms_api::host::{PropertyValue, Registration};
 use saoms_api::{Class, Component, Failure, Properties};
 
 use super::{ChangePlan, Difference, members};
-use saoms_lang::assembly::{Assembly, ComponentSpec, Target, TaskSettings, Wire};
+use saoms_lang::assembly::{Assembly, ComponentSpec, TaskSettings, Wire, WireTarget};
 use saoms_lang::registry::Registry;
 
 #[derive(Properties)]
@@ -65,7 +65,7 @@ fn assembly(text: &str) -> Assembly {
                     reference: format!("r{}", spec.references.len()),
                     interface: "i".to_owned(),
                     targets: place(target)
-                        .map(|component| Target { component, service: "s".to_owned() })
+                        .map(|component| WireTarget { component, service: "s".to_owned() })
                         .into_iter()
                         .collect(),
                 }),
@@ -146,7 +146,7 @@ fn assembly_of_chain(text: &str) -> Assembly {
     let count = text.lines().count();
     for (place, line) in text.lines().enumerate() {
         let targets = (place + 1 < count)
-            .then(|| Target { component: place + 1, service: "s".to_owned() })
+            .then(|| WireTarget { component: place + 1, service: "s".to_owned() })
             .into_iter()
             .collect();
         let wire = Wire { reference: "next".to_owned(), interface: "i".to_owned(), targets };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use saoms_lang::project::{Classes, Problem};
+use saoms_lang::project::{Classes, PluginFault};
 use saoms_lang::registry::{Registry, RegistryError};
 
 use super::{Plugin, PluginError};
@@ -41,16 +41,17 @@ impl Search {
     pub fn classes(&self, mut registry: Registry) -> Classes {
         let found = self.run();
         let left_out =
-            found.left_out.iter().map(|error| Problem { is_error: false, text: error.to_string() });
-        let mut problems: Vec<Problem> = left_out.collect();
-        problems.extend(found.errors.iter().map(|error| Problem { is_error: true, text: error.to_string() }));
+            found.left_out.iter().map(|error| PluginFault { is_error: false, text: error.to_string() });
+        let mut problems: Vec<PluginFault> = left_out.collect();
+        problems
+            .extend(found.errors.iter().map(|error| PluginFault { is_error: true, text: error.to_string() }));
         for plugin in &found.plugins {
             if let Err(error) = plugin.register(&mut registry) {
                 let text = match error {
                     RegistryError::NameTaken { .. } => error.to_string(),
                     _ => format!("plugin `{}`: {error}", plugin.path().display()),
                 };
-                problems.push(Problem { is_error: true, text });
+                problems.push(PluginFault { is_error: true, text });
             }
         }
         Classes { registry, libraries: Some(Rc::new(self.clone())), problems }

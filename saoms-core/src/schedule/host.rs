@@ -14,7 +14,7 @@ use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
 use crate::report::Sections;
 use saoms_lang::assembly::{ComponentSpec, TaskSettings, Wire};
-use saoms_lang::registry::{ClassDeclaration, LoopDeclaration, TopicDeclaration as DeclaredTopic};
+use saoms_lang::registry::{ClassDeclaration, ClassTopic, LoopDeclaration};
 use saoms_lang::schema::Schema;
 
 /// The host of a component while its code runs.
@@ -113,14 +113,14 @@ impl Use {
         }
     }
 
-    fn declared(self, class: &ClassDeclaration) -> &[DeclaredTopic] {
+    fn declared(self, class: &ClassDeclaration) -> &[ClassTopic] {
         match self {
             Use::Publish => &class.publishes,
             Use::Subscribe => &class.subscribes,
         }
     }
 
-    fn declared_of_loop(self, one: &LoopDeclaration) -> &[DeclaredTopic] {
+    fn declared_of_loop(self, one: &LoopDeclaration) -> &[ClassTopic] {
         match self {
             Use::Publish => &one.publishes,
             Use::Subscribe => &one.subscribes,

@@ -10,7 +10,7 @@ use saoms_api::host::{PropertyValue, Registration, parse_duration};
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use saoms_core::report::{ComponentReport, RunReport};
 use saoms_core::schedule::{Fleet, Settings, StartError};
-use saoms_lang::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, Target, TaskSettings, Wire};
+use saoms_lang::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings, Wire, WireTarget};
 use saoms_lang::registry::Registry;
 
 use crate::actor::{Actor, Callee};
@@ -64,7 +64,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         let duration = || parse_duration(value).unwrap();
         let target = |service: &str| {
             let component = names.iter().position(|name| name == value).unwrap();
-            vec![Target { component, service: service.to_owned() }]
+            vec![WireTarget { component, service: service.to_owned() }]
         };
         match key {
             "period" => task.period = duration(),

@@ -7,7 +7,7 @@ use saoms_api::host::{PropertyValue, format_duration};
 use smol_str::SmolStr;
 
 use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};
-use crate::diagnostic::{Diagnostic, Level, SetBy, Severity, codes};
+use crate::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
 use crate::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
 use crate::syntax::NewElement;
 
@@ -39,7 +39,7 @@ pub fn expanded<'d>(
     };
     let components = assembly.components.iter().zip(&names).map(|(one, name)| {
         let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
-            let uri = |target: &super::Target| format!("{}/{}", names[target.component], target.service);
+            let uri = |target: &super::WireTarget| format!("{}/{}", names[target.component], target.service);
             let targets: Vec<String> = wire.targets.iter().map(uri).collect();
             NewElement::new("reference")
                 .with("name", wire.reference.as_str())
@@ -59,7 +59,7 @@ pub fn expanded<'d>(
 fn severities<'d>(like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<NewElement> {
     let is_of_wiring = |rule: &&SeverityRule| rule.within.is_none() && codes::is_of_wiring(&rule.code);
     let of_wiring = like.severities.iter().filter(is_of_wiring);
-    let severity = |code: &str, level: Level, reason: &str| {
+    let severity = |code: &str, level: SeverityLevel, reason: &str| {
         let node = NewElement::new("s:severity").with("code", code).with("level", level.name());
         node.with("reason", reason).declare("s", SAOMS_NAMESPACE)
     };
@@ -83,7 +83,8 @@ fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'st
     let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
     let mut told: HashSet<&'static str> = HashSet::new();
     for one in found.into_iter().filter(|one| codes::outlives_expansion(one.code)) {
-        let Some(set) = one.set.as_ref().filter(|set| set.level != Level::Set(Severity::Error)) else {
+        let Some(set) = one.set.as_ref().filter(|set| set.level != SeverityLevel::Set(Severity::Error))
+        else {
             told.insert(one.code.id);
             continue;
         };

@@ -15,9 +15,9 @@ use smol_str::SmolStr;
 
 pub use expanded::expanded;
 pub use task::{RestartPolicy, TaskProperties};
-pub use traffic::{End, Pace, Topic, Traffic};
+pub use traffic::{Pace, TopicEnd, Traffic, TrafficTopic};
 
-use crate::registry::{Class, LoopClass};
+use crate::registry::{RegisteredClass, RegisteredLoop};
 
 /// The components of a fleet in document order.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +32,7 @@ pub struct ComponentSpec {
     /// The identity: the path in the composite, such as `Robot001` or `hall/Robot001`.
     pub path: String,
     /// What it is an instance of.
-    pub class: Arc<Class>,
+    pub class: Arc<RegisteredClass>,
     /// The library that a composite names for the class: a path from the folder of the first composite, or an absolute one. `None` where
     /// none is named.
     pub library: Option<String>,
@@ -52,7 +52,7 @@ pub struct LoopSpec {
     /// What it is called within the component.
     pub name: String,
     /// What it is an instance of.
-    pub class: Arc<LoopClass>,
+    pub class: Arc<RegisteredLoop>,
     /// Its values; what is absent takes its default.
     pub values: Vec<(SmolStr, PropertyValue)>,
 }
@@ -65,12 +65,12 @@ pub struct Wire {
     /// The name of the interface.
     pub interface: String,
     /// The services it is wired to: at most one unless its class declares it as `many`.
-    pub targets: Vec<Target>,
+    pub targets: Vec<WireTarget>,
 }
 
 /// A service of a component.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Target {
+pub struct WireTarget {
     /// The provider's index in the assembly.
     pub component: usize,
     /// The service's name.

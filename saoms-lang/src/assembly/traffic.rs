@@ -6,18 +6,18 @@ use std::time::Duration;
 use saoms_api::host::TopicKind;
 
 use super::{Assembly, ComponentSpec};
-use crate::registry::TopicDeclaration;
+use crate::registry::ClassTopic;
 
 /// The topics of a fleet by the names they have after renaming, sorted.
 #[derive(Clone, Debug)]
 pub struct Traffic {
     /// The topics.
-    pub topics: Vec<Topic>,
+    pub topics: Vec<TrafficTopic>,
 }
 
 /// A topic of a fleet.
 #[derive(Clone, Debug)]
-pub struct Topic {
+pub struct TrafficTopic {
     /// Its name.
     pub name: String,
     /// State or event.
@@ -27,14 +27,14 @@ pub struct Topic {
     /// Whether nobody has to read it: all that publish it say so, and it has the name that they give it.
     pub is_optional: bool,
     /// Who publishes it, in the order of the assembly.
-    pub writers: Vec<End>,
+    pub writers: Vec<TopicEnd>,
     /// Who subscribes to it, in the order of the assembly.
-    pub readers: Vec<End>,
+    pub readers: Vec<TopicEnd>,
 }
 
 /// A component that uses a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct End {
+pub struct TopicEnd {
     /// Its index in the assembly.
     pub component: usize,
     /// How many of its parts declare the topic: itself and its loops, each of which can send one message in an execution, or more.
@@ -69,19 +69,19 @@ impl Traffic {
 /// Topics, with their places by their names.
 #[derive(Default)]
 struct Known<'a> {
-    topics: Vec<Topic>,
+    topics: Vec<TrafficTopic>,
     places: HashMap<&'a str, usize>,
 }
 
 impl<'a> Known<'a> {
     /// The topic that a component uses under the name that it gives it.
-    fn topic(&mut self, declared: &'a TopicDeclaration, spec: &'a ComponentSpec) -> &mut Topic {
+    fn topic(&mut self, declared: &'a ClassTopic, spec: &'a ComponentSpec) -> &mut TrafficTopic {
         let renames = spec.task.as_ref().map_or(&[][..], |task| &task.topic_rename);
         let renamed = renames.iter().find(|(old, _)| *old == declared.name);
         let name = renamed.map_or(&declared.name, |(_, new)| new);
         let place = *self.places.entry(name).or_insert(self.topics.len());
         if place == self.topics.len() {
-            self.topics.push(Topic {
+            self.topics.push(TrafficTopic {
                 name: name.clone(),
                 kind: declared.kind,
                 message: declared.message.clone(),
@@ -95,7 +95,7 @@ impl<'a> Known<'a> {
 }
 
 /// Adds a component to the ends of a topic.
-fn add(ends: &mut Vec<End>, component: usize, spec: &ComponentSpec) {
+fn add(ends: &mut Vec<TopicEnd>, component: usize, spec: &ComponentSpec) {
     match ends.last_mut().filter(|last| last.component == component) {
         Some(last) => last.parts += 1,
         None => {
@@ -103,14 +103,14 @@ fn add(ends: &mut Vec<End>, component: usize, spec: &ComponentSpec) {
             if ends.is_empty() {
                 ends.reserve_exact(1);
             }
-            ends.push(End { component, parts: 1, period: spec.task.as_ref().map(|task| task.period) });
+            ends.push(TopicEnd { component, parts: 1, period: spec.task.as_ref().map(|task| task.period) });
         }
     }
 }
 
-impl Topic {
+impl TrafficTopic {
     /// Who uses it: writers, then readers.
-    pub fn ends(&self) -> impl Iterator<Item = &End> {
+    pub fn ends(&self) -> impl Iterator<Item = &TopicEnd> {
         self.writers.iter().chain(&self.readers)
     }
 

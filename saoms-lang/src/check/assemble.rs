@@ -7,8 +7,8 @@ use super::fleet::classes::ClassIndex;
 use super::fleet::{Fleet, Member};
 use super::rules::traffic;
 use super::wiring::Wiring;
-use crate::assembly::{Assembly, ComponentSpec, Target, Wire};
-use crate::model::Component;
+use crate::assembly::{Assembly, ComponentSpec, Wire, WireTarget};
+use crate::model::ComponentElement;
 
 /// A fleet without errors. Components of it may have no class where that is taken as given.
 pub(crate) struct CheckedFleet<'f, 'a> {
@@ -37,7 +37,7 @@ impl CheckedFleet<'_, '_> {
     }
 
     /// The assembly; `None` if something is taken as given.
-    pub(crate) fn assemble(self, library: impl Fn(&Component) -> Option<String>) -> Option<Assembly> {
+    pub(crate) fn assemble(self, library: impl Fn(&ComponentElement) -> Option<String>) -> Option<Assembly> {
         let Self { fleet, classes, checks, wiring } = self;
         // Components that composites implement are in no assembly.
         let mut count = 0;
@@ -65,7 +65,7 @@ impl CheckedFleet<'_, '_> {
                     .filter_map(|provider| {
                         let class = fleet.class_of(provider.member, &classes)?;
                         let service = class.services[provider.service].name.clone();
-                        Some(Target { component: indices[provider.member], service })
+                        Some(WireTarget { component: indices[provider.member], service })
                     })
                     .collect(),
             });

@@ -18,7 +18,7 @@ use crate::check::unfolding::arena::Arena;
 use crate::check::values::parameters::Parameters;
 use crate::diagnostic::Diagnostics;
 use crate::model::{Contribution, Origin};
-use crate::registry::{Registry, TopicDeclaration};
+use crate::registry::{ClassTopic, Registry};
 use crate::source::{FileId, Sources};
 use crate::syntax::ElementId;
 
@@ -41,7 +41,7 @@ pub struct TopicUse {
     /// Its name, after renaming.
     pub name: String,
     /// Its declaration in the component's class or loop.
-    pub declared: Rc<TopicDeclaration>,
+    pub declared: Rc<ClassTopic>,
     /// True if it is published; it is subscribed to otherwise.
     pub is_published: bool,
 }
@@ -185,7 +185,7 @@ type Renames = Vec<(String, String)>;
 struct Lists {
     /// By the place of the class and what is renamed.
     known: HashMap<(usize, Renames), Rc<[TopicUse]>>,
-    declared: HashMap<*const TopicDeclaration, Rc<TopicDeclaration>>,
+    declared: HashMap<*const ClassTopic, Rc<ClassTopic>>,
 }
 
 impl Lists {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::model::{Component, Composite, ImplementationKind};
+use crate::model::{ComponentElement, Composite, ImplementationKind};
 
 /// The ending of their names.
 const ENDING: &str = "componentType";
@@ -24,7 +24,7 @@ pub(super) fn any_in(folder: &Path) -> bool {
 }
 
 /// The files that may describe the implementation of a component, the likeliest first, as paths in the contribution.
-pub(super) fn paths(component: &Component, composite: &Composite) -> Vec<PathBuf> {
+pub(super) fn paths(component: &ComponentElement, composite: &Composite) -> Vec<PathBuf> {
     let Some(implementation) = &component.implementation else { return Vec::new() };
     let attribute = |name| {
         let element = implementation.origin.element(&composite.document);

@@ -8,7 +8,9 @@ use super::{component_types, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
 use crate::load::description::Kind;
 use crate::load::{STANDARD_INPUT, load_component_type, load_file, read};
-use crate::model::{Component, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
+use crate::model::{
+    ComponentElement, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin,
+};
 use crate::source::{Location, Sources, identity};
 
 /// Names that are offered in place of one that is not found.
@@ -231,7 +233,10 @@ fn described(composite: &Composite) -> Vec<Described> {
 }
 
 /// Where a component's implementation comes from, and what of it says which file describes it: the class, or else the whole tag.
-fn implementation<'a>(component: &'a Component, composite: &'a Composite) -> Option<(Origin, &'a str)> {
+fn implementation<'a>(
+    component: &'a ComponentElement,
+    composite: &'a Composite,
+) -> Option<(Origin, &'a str)> {
     let implementation = component.implementation.as_ref()?;
     let written = match component.class() {
         Some(class) => class.as_str(),

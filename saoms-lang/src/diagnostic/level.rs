@@ -5,14 +5,14 @@ use crate::source::Location;
 
 /// What a diagnostic can be set to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum SeverityLevel {
     /// It is not told, and kept for the record.
     Allow,
     /// It has this severity.
     Set(Severity),
 }
 
-impl Level {
+impl SeverityLevel {
     /// All, from what hides most.
     pub const ALL: [Self; 4] =
         [Self::Allow, Self::Set(Severity::Note), Self::Set(Severity::Warning), Self::Set(Severity::Error)];
@@ -45,7 +45,7 @@ impl Level {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SetBy {
     /// What it was set to.
-    pub level: Level,
+    pub level: SeverityLevel,
     /// Where.
     pub at: Location,
     /// Whether on the command line; in a composite otherwise.

@@ -22,7 +22,7 @@ pub use codes::Code;
 pub use collector::Diagnostics;
 pub use human::{Human, human};
 pub use json::{Json, json};
-pub use level::{Level, SetBy};
+pub use level::{SetBy, SeverityLevel};
 pub use quoted::quoted;
 pub use saoms_api::host::{nearest_equal, nearest_few};
 pub use saoms_api::rule::{Severity, nearest};
@@ -101,7 +101,7 @@ impl Diagnostic {
 
     /// Whether it is kept for the record alone: it is not told, and counts for nothing.
     pub fn is_allowed(&self) -> bool {
-        self.set.as_ref().is_some_and(|set| set.level == Level::Allow)
+        self.set.as_ref().is_some_and(|set| set.level == SeverityLevel::Allow)
     }
 
     /// Sets what the picture says at the place.

@@ -1,14 +1,14 @@
 //! What expressions come to.
 
 use super::parse::Node;
-use super::{Expression, Fault, Lookup, Problem, Value};
+use super::{Expression, ExpressionError, ExpressionFault, ExpressionValue, Lookup};
 use crate::diagnostic::quoted;
 
 /// The whole number that an expression comes to.
 ///
 /// # Errors
 /// A name has no value, or it comes to something else.
-pub fn integer(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<i64, Fault> {
+pub fn integer(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<i64, ExpressionFault> {
     number(value(expression, lookup)?, expression)
 }
 
@@ -16,30 +16,29 @@ pub fn integer(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<i64, 
 ///
 /// # Errors
 /// A name has no value, or it comes to something else.
-pub fn boolean(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<bool, Fault> {
+pub fn boolean(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<bool, ExpressionFault> {
     condition(value(expression, lookup)?, expression)
 }
 
-fn number(value: Value, of: &Expression) -> Result<i64, Fault> {
+fn number(value: ExpressionValue, of: &Expression) -> Result<i64, ExpressionFault> {
     match value {
-        Value::Integer(number) => Ok(number),
-        other => {
-            Err(Problem::new(format!("here is {other}, and a whole number is expected")).at(of.at.clone()))
-        }
+        ExpressionValue::Integer(number) => Ok(number),
+        other => Err(ExpressionError::new(format!("here is {other}, and a whole number is expected"))
+            .at(of.at.clone())),
     }
 }
 
-fn condition(value: Value, of: &Expression) -> Result<bool, Fault> {
+fn condition(value: ExpressionValue, of: &Expression) -> Result<bool, ExpressionFault> {
     match value {
-        Value::Boolean(value) => Ok(value),
-        other => Err(Problem::new(format!("here is {other}, and a condition is expected"))
+        ExpressionValue::Boolean(value) => Ok(value),
+        other => Err(ExpressionError::new(format!("here is {other}, and a condition is expected"))
             .help("compare it with something, as in `robots > 10`")
             .at(of.at.clone())),
     }
 }
 
 /// Chains such as `1 + 2 + 3` lean to the left: they are followed in a loop, so that only parentheses and signs cost the stack a frame.
-fn value(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Fault> {
+fn value(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<ExpressionValue, ExpressionFault> {
     let mut chain = Vec::new();
     let mut first = expression;
     while let Node::Two(left, operator, right) = &first.node {
@@ -53,14 +52,14 @@ fn value(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Faul
     Ok(left.0)
 }
 
-fn single(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Fault> {
+fn single(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<ExpressionValue, ExpressionFault> {
     match &expression.node {
         Node::Value(value) => Ok(value.clone()),
         Node::Name(name, at) => lookup(name).map_err(|problem| problem.at(at.clone())),
-        Node::Not(inner) => Ok(Value::Boolean(!boolean(inner, lookup)?)),
+        Node::Not(inner) => Ok(ExpressionValue::Boolean(!boolean(inner, lookup)?)),
         Node::Negative(inner) => {
             let number = integer(inner, lookup)?;
-            number.checked_neg().map(Value::Integer).ok_or_else(|| overflow(expression))
+            number.checked_neg().map(ExpressionValue::Integer).ok_or_else(|| overflow(expression))
         }
         Node::Two(..) => value(expression, lookup),
     }
@@ -69,30 +68,32 @@ fn single(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Value, Fau
 /// What an operator makes of the value on its left, given with its expression, and of what is on its right.
 fn two(
     whole: &Expression,
-    (left, of): (Value, &Expression),
+    (left, of): (ExpressionValue, &Expression),
     operator: &str,
     right: &Expression,
     lookup: &mut Lookup<'_>,
-) -> Result<Value, Fault> {
+) -> Result<ExpressionValue, ExpressionFault> {
     match operator {
         "and" | "or" => {
             let decides = operator == "or";
             let left = condition(left, of)?;
             // The right side is looked at in any case: what is wrong with it is wrong. But the left one may keep numbers from it.
             match boolean(right, lookup) {
-                Err(fault) if left == decides && fault.problem.is_arithmetic => Ok(Value::Boolean(left)),
-                right => Ok(Value::Boolean(if decides { left | right? } else { left & right? })),
+                Err(fault) if left == decides && fault.problem.is_arithmetic => {
+                    Ok(ExpressionValue::Boolean(left))
+                }
+                right => Ok(ExpressionValue::Boolean(if decides { left | right? } else { left & right? })),
             }
         }
         "==" | "!=" => {
             let other = value(right, lookup).map_err(|fault| unquoted(fault, &left, right))?;
             if std::mem::discriminant(&left) != std::mem::discriminant(&other) {
                 let message = format!("{left} cannot be compared with {other}");
-                return Err(Problem::new(message)
+                return Err(ExpressionError::new(message)
                     .help("texts stand between two `'`, numbers and `true` and `false` do not")
                     .at(whole.at.clone()));
             }
-            Ok(Value::Boolean((left == other) == (operator == "==")))
+            Ok(ExpressionValue::Boolean((left == other) == (operator == "==")))
         }
         _ => {
             let (one, other) = (number(left, of)?, integer(right, lookup)?);
@@ -102,13 +103,14 @@ fn two(
 }
 
 /// A fault of what a text is compared with: a name that stands for nothing is probably a text without its quotes.
-fn unquoted(fault: Fault, text: &Value, of: &Expression) -> Fault {
-    let (Value::Text(_), Node::Name(name, _), None) = (text, &of.node, &fault.problem.instead) else {
+fn unquoted(fault: ExpressionFault, text: &ExpressionValue, of: &Expression) -> ExpressionFault {
+    let (ExpressionValue::Text(_), Node::Name(name, _), None) = (text, &of.node, &fault.problem.instead)
+    else {
         return fault;
     };
     let also = fault.problem.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
     let help = format!("a text stands between two `'`, as {}{also}", quoted(&format!("'{name}'")));
-    Fault { problem: fault.problem.help(help), ..fault }
+    ExpressionFault { problem: fault.problem.help(help), ..fault }
 }
 
 fn calculated(
@@ -117,15 +119,15 @@ fn calculated(
     operator: &str,
     other: i64,
     right: &Expression,
-) -> Result<Value, Fault> {
+) -> Result<ExpressionValue, ExpressionFault> {
     let number = match operator {
-        "<" => return Ok(Value::Boolean(one < other)),
-        "<=" => return Ok(Value::Boolean(one <= other)),
-        ">" => return Ok(Value::Boolean(one > other)),
-        ">=" => return Ok(Value::Boolean(one >= other)),
+        "<" => return Ok(ExpressionValue::Boolean(one < other)),
+        "<=" => return Ok(ExpressionValue::Boolean(one <= other)),
+        ">" => return Ok(ExpressionValue::Boolean(one > other)),
+        ">=" => return Ok(ExpressionValue::Boolean(one >= other)),
         "/" | "%" if other == 0 => {
             let message = format!("{} is divided by zero", quoted(&one.to_string()));
-            let problem = Problem { is_arithmetic: true, ..Problem::new(message) };
+            let problem = ExpressionError { is_arithmetic: true, ..ExpressionError::new(message) };
             return Err(problem.at(right.at.clone()));
         }
         "+" => one.checked_add(other),
@@ -134,7 +136,7 @@ fn calculated(
         "/" => floored(one, other),
         _ => one.checked_rem_euclid(other),
     };
-    number.map(Value::Integer).ok_or_else(|| overflow(whole))
+    number.map(ExpressionValue::Integer).ok_or_else(|| overflow(whole))
 }
 
 /// A quotient rounded down, whatever the signs are.
@@ -144,7 +146,7 @@ fn floored(one: i64, other: i64) -> Option<i64> {
     Some(if is_between { quotient - 1 } else { quotient })
 }
 
-fn overflow(expression: &Expression) -> Fault {
-    let problem = Problem::new("the number is too large: beyond 64 bits");
-    Problem { is_arithmetic: true, ..problem }.at(expression.at.clone())
+fn overflow(expression: &Expression) -> ExpressionFault {
+    let problem = ExpressionError::new("the number is too large: beyond 64 bits");
+    ExpressionError { is_arithmetic: true, ..problem }.at(expression.at.clone())
 }

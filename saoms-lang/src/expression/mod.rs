@@ -38,7 +38,7 @@ pub const INDEX: &str = "index";
 
 /// What an expression comes to.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Value {
+pub enum ExpressionValue {
     /// A whole number.
     Integer(i64),
     /// True or false.
@@ -47,7 +47,7 @@ pub enum Value {
     Text(SmolStr),
 }
 
-impl fmt::Display for Value {
+impl fmt::Display for ExpressionValue {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Integer(number) => write!(out, "the number {number}"),
@@ -59,7 +59,7 @@ impl fmt::Display for Value {
 
 /// Why a name has no value, or an expression none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Problem {
+pub struct ExpressionError {
     /// What is wrong.
     pub message: String,
     /// What to do.
@@ -70,7 +70,7 @@ pub struct Problem {
     pub(crate) is_arithmetic: bool,
 }
 
-impl Problem {
+impl ExpressionError {
     /// A problem without further words.
     pub fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), ..Self::default() }
@@ -88,19 +88,19 @@ impl Problem {
         Self { instead: Some(instead.into()), ..self }
     }
 
-    fn at(self, at: Range<usize>) -> Fault {
-        Fault { at, problem: self }
+    fn at(self, at: Range<usize>) -> ExpressionFault {
+        ExpressionFault { at, problem: self }
     }
 }
 
 /// A problem at bytes of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct ExpressionFault {
     /// Where.
     pub at: Range<usize>,
     /// What.
-    pub problem: Problem,
+    pub problem: ExpressionError,
 }
 
 /// Gives names their values.
-pub type Lookup<'l> = dyn FnMut(&str) -> Result<Value, Problem> + 'l;
+pub type Lookup<'l> = dyn FnMut(&str) -> Result<ExpressionValue, ExpressionError> + 'l;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::token::{Placed, Token, tokens};
-use super::{Fault, Problem, Value};
+use super::{ExpressionError, ExpressionFault, ExpressionValue};
 use crate::diagnostic::quoted;
 
 /// Operators of an expression: it is evaluated by recursion that is at most so deep.
@@ -20,7 +20,7 @@ pub struct Expression {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Node {
-    Value(Value),
+    Value(ExpressionValue),
     /// With its own bytes: those of the expression hold the parentheses around it, too.
     Name(String, Range<usize>),
     Negative(Box<Expression>),
@@ -49,16 +49,16 @@ impl Expression {
 ///
 /// # Errors
 /// It is none.
-pub fn parse(text: &str) -> Result<Expression, Fault> {
+pub fn parse(text: &str) -> Result<Expression, ExpressionFault> {
     let (expression, end) = parse_from(text, 0)?;
     if end < text.len() {
-        return Err(Problem::new("`:` means nothing here").at(end..end + 1));
+        return Err(ExpressionError::new("`:` means nothing here").at(end..end + 1));
     }
     Ok(expression)
 }
 
 /// Reads the expression in `text[start..]` up to its end or to a `:`; and where that is.
-pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize), Fault> {
+pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize), ExpressionFault> {
     let (tokens, end) = tokens(text, start)?;
     let mut parser = Parser { tokens: &tokens, next: 0, end, operators: 0, depth: 0 };
     let whole = parser.level(0)?;
@@ -69,7 +69,7 @@ pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize)
                 Token::Sign(sign) => format!("{} means nothing here", quoted(sign)),
                 _ => "an operator is expected before this".to_owned(),
             };
-            Err(Problem::new(message).at(at.clone()))
+            Err(ExpressionError::new(message).at(at.clone()))
         }
     }
 }
@@ -99,7 +99,7 @@ impl Parser<'_> {
 
     /// What operators of this level and those that bind more make. They are climbed in a loop, so that parentheses cost the stack no frame for
     /// each level: <https://en.wikipedia.org/wiki/Operator-precedence_parser#Precedence_climbing_method>.
-    fn level(&mut self, lowest: usize) -> Result<Expression, Fault> {
+    fn level(&mut self, lowest: usize) -> Result<Expression, ExpressionFault> {
         let mut left = match self.sign() {
             "not" if lowest <= COMPARISON => self.prefix(COMPARISON, Node::Not)?,
             _ => self.operand()?,
@@ -108,7 +108,7 @@ impl Parser<'_> {
         while let Some((level, operator)) = self.operator(lowest) {
             if is_comparison && level == COMPARISON {
                 let at = self.tokens[self.next].1.clone();
-                let problem = Problem::new("two comparisons in a row");
+                let problem = ExpressionError::new("two comparisons in a row");
                 return Err(problem.help("join them with `and`").at(at));
             }
             is_comparison = level == COMPARISON;
@@ -117,7 +117,7 @@ impl Parser<'_> {
             let at = left.at.start..right.at.end;
             self.operators += 1;
             if self.operators > MOST_OPERATORS {
-                return Err(Problem::new("the expression is too long").at(at));
+                return Err(ExpressionError::new("the expression is too long").at(at));
             }
             left = Expression { at, node: Node::Two(Box::new(left), operator, Box::new(right)) };
         }
@@ -133,7 +133,11 @@ impl Parser<'_> {
     }
 
     /// `not` or `-`, and what follows it.
-    fn prefix(&mut self, level: usize, make: fn(Box<Expression>) -> Node) -> Result<Expression, Fault> {
+    fn prefix(
+        &mut self,
+        level: usize,
+        make: fn(Box<Expression>) -> Node,
+    ) -> Result<Expression, ExpressionFault> {
         let start = self.tokens[self.next].1.clone();
         self.next += 1;
         self.deeper(start.clone())?;
@@ -142,15 +146,15 @@ impl Parser<'_> {
         Ok(Expression { at: start.start..inner.at.end, node: make(Box::new(inner)) })
     }
 
-    fn deeper(&mut self, at: Range<usize>) -> Result<(), Fault> {
+    fn deeper(&mut self, at: Range<usize>) -> Result<(), ExpressionFault> {
         self.depth += 1;
         match self.depth > MOST_NESTED {
-            true => Err(Problem::new("too many parentheses and signs inside each other").at(at)),
+            true => Err(ExpressionError::new("too many parentheses and signs inside each other").at(at)),
             false => Ok(()),
         }
     }
 
-    fn operand(&mut self) -> Result<Expression, Fault> {
+    fn operand(&mut self) -> Result<Expression, ExpressionFault> {
         let Some((token, at)) = self.tokens.get(self.next) else {
             let at = self.tokens.last().map_or(self.end..self.end, |(_, at)| at.clone());
             let message = if self.tokens.is_empty() {
@@ -158,20 +162,22 @@ impl Parser<'_> {
             } else {
                 "something is missing after this"
             };
-            return Err(Problem::new(message).at(at));
+            return Err(ExpressionError::new(message).at(at));
         };
         let node = match token {
-            Token::Integer(number) => Node::Value(Value::Integer(*number)),
-            Token::Text(text) => Node::Value(Value::Text(text.as_str().into())),
+            Token::Integer(number) => Node::Value(ExpressionValue::Integer(*number)),
+            Token::Text(text) => Node::Value(ExpressionValue::Text(text.as_str().into())),
             Token::Word(word) => match word.as_str() {
-                "true" => Node::Value(Value::Boolean(true)),
-                "false" => Node::Value(Value::Boolean(false)),
+                "true" => Node::Value(ExpressionValue::Boolean(true)),
+                "false" => Node::Value(ExpressionValue::Boolean(false)),
                 "not" => {
-                    let problem = Problem::new("`not` stands before a comparison");
+                    let problem = ExpressionError::new("`not` stands before a comparison");
                     return Err(problem.help("write `(not ...)`").at(at.clone()));
                 }
                 "and" | "or" => {
-                    return Err(Problem::new(format!("something is missing before `{word}`")).at(at.clone()));
+                    return Err(
+                        ExpressionError::new(format!("something is missing before `{word}`")).at(at.clone())
+                    );
                 }
                 name => Node::Name(name.to_owned(), at.clone()),
             },
@@ -183,16 +189,15 @@ impl Parser<'_> {
                 let mut inner = self.level(0)?;
                 self.depth -= 1;
                 if self.sign() != ")" {
-                    return Err(Problem::new("`(` is never closed").at(open));
+                    return Err(ExpressionError::new("`(` is never closed").at(open));
                 }
                 inner.at = open.start..self.tokens[self.next].1.end;
                 self.next += 1;
                 return Ok(inner);
             }
             Token::Sign(sign) => {
-                return Err(
-                    Problem::new(format!("something is missing before {}", quoted(sign))).at(at.clone())
-                );
+                return Err(ExpressionError::new(format!("something is missing before {}", quoted(sign)))
+                    .at(at.clone()));
             }
         };
         self.next += 1;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::parse::parse_from;
-use super::{Expression, Fault, Lookup, Problem, integer};
+use super::{Expression, ExpressionError, ExpressionFault, Lookup, integer};
 
 /// The most digits that a number is filled up to.
 const MOST_DIGITS: usize = 18;
@@ -24,7 +24,7 @@ pub fn has_expression(text: &str) -> bool {
 ///
 /// # Errors
 /// Every expression without a value.
-pub fn render(text: &str, lookup: &mut Lookup<'_>) -> Result<String, Vec<Fault>> {
+pub fn render(text: &str, lookup: &mut Lookup<'_>) -> Result<String, Vec<ExpressionFault>> {
     let mut out = String::with_capacity(text.len());
     let mut faults = Vec::new();
     for piece in pieces(text) {
@@ -77,7 +77,7 @@ pub fn inside(text: &str) -> Vec<Range<usize>> {
     all
 }
 
-fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, Fault>> {
+fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, ExpressionFault>> {
     let mut at = 0;
     std::iter::from_fn(move || {
         let rest = text.get(at..).filter(|rest| !rest.is_empty())?;
@@ -97,7 +97,7 @@ fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, Fault>> {
         let start = at;
         let Some(length) = end_of(&text[start + 2..]) else {
             at = text.len();
-            let problem = Problem::new("`${` is never closed");
+            let problem = ExpressionError::new("`${` is never closed");
             return Some(Err(problem.help("write `${...}`, or `$${` for `${` itself").at(start..text.len())));
         };
         let end = start + 2 + length;
@@ -120,7 +120,7 @@ fn end_of(inside: &str) -> Option<usize> {
     })
 }
 
-fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, Fault> {
+fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, ExpressionFault> {
     let upto = &text[..inside.end];
     let (expression, end) = parse_from(upto, inside.start)?;
     if end == inside.end {
@@ -131,7 +131,8 @@ fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, Fault> {
     match digits {
         Some(digits @ 1..=MOST_DIGITS) => Ok(Piece::Expression(expression, digits)),
         _ => {
-            let problem = Problem::new("after `:` the number of digits is expected, with a `0` before it");
+            let problem =
+                ExpressionError::new("after `:` the number of digits is expected, with a `0` before it");
             let plain = width.parse().is_ok_and(|digits: usize| (1..=MOST_DIGITS).contains(&digits));
             let problem = if plain { problem.instead(format!("0{width}")) } else { problem };
             Err(problem

@@ -1,14 +1,16 @@
 use proptest::prelude::*;
 
-use super::{Problem, Value, boolean, inside, integer, is_name, names, parse, pattern, render, words};
+use super::{
+    ExpressionError, ExpressionValue, boolean, inside, integer, is_name, names, parse, pattern, render, words,
+};
 
-fn lookup(name: &str) -> Result<Value, Problem> {
+fn lookup(name: &str) -> Result<ExpressionValue, ExpressionError> {
     match name {
-        "index" => Ok(Value::Integer(7)),
-        "robots" => Ok(Value::Integer(40)),
-        "site" => Ok(Value::Text("north".into())),
-        "simulated" => Ok(Value::Boolean(true)),
-        _ => Err(Problem::new(format!("no `{name}`"))),
+        "index" => Ok(ExpressionValue::Integer(7)),
+        "robots" => Ok(ExpressionValue::Integer(40)),
+        "site" => Ok(ExpressionValue::Text("north".into())),
+        "simulated" => Ok(ExpressionValue::Boolean(true)),
+        _ => Err(ExpressionError::new(format!("no `{name}`"))),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Fault, Problem};
+use super::{ExpressionError, ExpressionFault};
 use crate::diagnostic::quoted;
 
 /// A token.
@@ -64,7 +64,7 @@ pub fn words(text: &str) -> Vec<Range<usize>> {
 }
 
 /// The tokens of `text[start..]` with their bytes, up to its end or to a `:`; and where that is.
-pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), Fault> {
+pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), ExpressionFault> {
     let mut all = Vec::new();
     let mut at = start;
     while let Some(first) = text[at..].chars().next() {
@@ -83,7 +83,7 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), F
             (Token::Word(rest[..length].to_owned()), length)
         } else if first == '\'' || first == '"' {
             let Some(length) = rest[1..].find(first) else {
-                return Err(Problem::new("a text that does not end")
+                return Err(ExpressionError::new("a text that does not end")
                     .help("a text stands between two `'`")
                     .at(at..text.len()));
             };
@@ -95,7 +95,7 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), F
         };
         if all.len() == MOST_TOKENS {
             let message = format!("an expression of more than {MOST_TOKENS} signs, names and numbers");
-            return Err(Problem::new(message).at(at..at + length));
+            return Err(ExpressionError::new(message).at(at..at + length));
         }
         all.push((token, at..at + length));
         at += length;
@@ -103,36 +103,40 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), F
     Ok((all, at))
 }
 
-fn number(rest: &str, at: usize) -> Result<(Token, usize), Fault> {
+fn number(rest: &str, at: usize) -> Result<(Token, usize), ExpressionFault> {
     let length = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
     let behind = &rest[length..];
     if let Some(digits) = behind.strip_prefix('.') {
         let all = length + 1 + digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
         let message = format!("{} is no whole number", quoted(&rest[..all]));
-        return Err(Problem::new(message).help("expressions calculate with whole numbers").at(at..at + all));
+        return Err(ExpressionError::new(message)
+            .help("expressions calculate with whole numbers")
+            .at(at..at + all));
     }
     match rest[..length].parse() {
         Ok(number) => Ok((Token::Integer(number), length)),
-        Err(_) => Err(Problem::new(format!("{} is too large", quoted(&rest[..length]))).at(at..at + length)),
+        Err(_) => {
+            Err(ExpressionError::new(format!("{} is too large", quoted(&rest[..length]))).at(at..at + length))
+        }
     }
 }
 
-fn odd(rest: &str, first: char, at: usize) -> Fault {
+fn odd(rest: &str, first: char, at: usize) -> ExpressionFault {
     if let Some((written, meant)) = OTHERS.into_iter().find(|(written, _)| rest.starts_with(written)) {
-        let problem = Problem::new(format!("there is no {}", quoted(written))).instead(meant);
+        let problem = ExpressionError::new(format!("there is no {}", quoted(written))).instead(meant);
         return problem.at(at..at + written.len());
     }
     if let Some(inside) =
         rest.strip_prefix("${").and_then(|rest| rest.split_once('}')).map(|(inside, _)| inside)
     {
-        let problem =
-            Problem::new("an expression stands here by itself, without `${` and `}`").instead(inside.trim());
+        let problem = ExpressionError::new("an expression stands here by itself, without `${` and `}`")
+            .instead(inside.trim());
         return problem.at(at..at + inside.len() + 3);
     }
     if first == '$' {
-        let problem = Problem::new("names stand for themselves here").instead("");
+        let problem = ExpressionError::new("names stand for themselves here").instead("");
         return problem.help("write the name without `$`").at(at..at + 1);
     }
     let shown = quoted(first.encode_utf8(&mut [0; 4]));
-    Problem::new(format!("{shown} means nothing here")).at(at..at + first.len_utf8())
+    ExpressionError::new(format!("{shown} means nothing here")).at(at..at + first.len_utf8())
 }

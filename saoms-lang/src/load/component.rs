@@ -9,13 +9,13 @@ use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
-    Component, ComponentDetails, Implementation, ImplementationKind, Origin, Replicas, SAOMS_NAMESPACE,
+    ComponentDetails, ComponentElement, Implementation, ImplementationKind, Origin, Replicas, SAOMS_NAMESPACE,
 };
 use crate::source::Text;
 use crate::syntax::Element;
 
 impl Loader<'_> {
-    pub(super) fn component(&mut self, element: Element<'_>) -> Component {
+    pub(super) fn component(&mut self, element: Element<'_>) -> ComponentElement {
         self.check_attributes(element, &COMPONENT);
         self.no_text(element);
         let name = self.name(element);
@@ -30,7 +30,7 @@ impl Loader<'_> {
             autowire: self.boolean(element, "autowire"),
             loops: Vec::new(),
         };
-        let mut component = Component {
+        let mut component = ComponentElement {
             origin: Origin::of(element),
             name,
             implementation: None,
@@ -57,7 +57,7 @@ impl Loader<'_> {
         &mut self,
         element: Element<'_>,
         (child, family, name): (Element<'_>, Family, &str),
-        component: &mut Component,
+        component: &mut ComponentElement,
     ) -> bool {
         match (family, name) {
             (Family::Sca, "property") => {

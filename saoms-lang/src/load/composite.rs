@@ -8,7 +8,7 @@ use super::vocabulary::{
 };
 use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Composite, Include, Origin, Wire, WireDetails};
+use crate::model::{Composite, Include, Origin, WireDetails, WireElement};
 use crate::source::{Located, Text};
 use crate::syntax::{Attribute, Document, Element};
 
@@ -115,7 +115,7 @@ impl Loader<'_> {
         }
     }
 
-    fn wire(&mut self, element: Element<'_>) -> Wire {
+    fn wire(&mut self, element: Element<'_>) -> WireElement {
         self.check_attributes(element, &WIRE);
         self.no_text(element);
         self.leaf(element, &WIRE);
@@ -124,7 +124,7 @@ impl Loader<'_> {
         let meant = |attribute: Attribute<'_>| Located::new(true, attribute.location());
         let replace = self.boolean(element, "replace").or_else(|| element.attribute("replace").map(meant));
         let details = boxed(WireDetails { replace, condition: self.own(element, "if") });
-        Wire { origin: Origin::of(element), source, target, details }
+        WireElement { origin: Origin::of(element), source, target, details }
     }
 }
 

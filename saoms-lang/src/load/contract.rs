@@ -8,22 +8,23 @@ use super::vocabulary::{
 use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
-    Binding, Callback, Contract, Interface, InterfaceKind, Origin, Reference, ReferenceDetails, Service,
+    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Origin, ReferenceDetails, ReferenceElement,
+    ServiceElement,
 };
 use crate::source::Text;
 use crate::syntax::Element;
 
 impl Loader<'_> {
-    pub(super) fn service(&mut self, element: Element<'_>, kind: &'static Kind) -> Service {
+    pub(super) fn service(&mut self, element: Element<'_>, kind: &'static Kind) -> ServiceElement {
         self.check_attributes(element, kind);
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_SERVICE);
         let promote = if is_promoting { self.required(element, "promote") } else { None };
         let contract = self.contract(element, kind);
-        Service { origin: Origin::of(element), name, promote: promote.map(Box::new), contract }
+        ServiceElement { origin: Origin::of(element), name, promote: promote.map(Box::new), contract }
     }
 
-    pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> Reference {
+    pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> ReferenceElement {
         self.check_attributes(element, kind);
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_REFERENCE);
@@ -40,7 +41,7 @@ impl Loader<'_> {
         }
         let contract = self.contract(element, kind);
         let details = self.reference_details(element, promote);
-        Reference { origin: Origin::of(element), name, targets, details, contract }
+        ReferenceElement { origin: Origin::of(element), name, targets, details, contract }
     }
 
     fn reference_details(
@@ -137,7 +138,7 @@ impl Loader<'_> {
             }
             None => self.optional(element, "interface"),
         };
-        contract.interface = Some(Interface { origin: Origin::of(element), kind, interface });
+        contract.interface = Some(InterfaceElement { origin: Origin::of(element), kind, interface });
     }
 
     fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {

@@ -4,11 +4,11 @@ use super::Loader;
 use super::children::{Family, renaming};
 use super::vocabulary::{COMPONENT_PROPERTY, LOOP};
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Loop, Origin};
+use crate::model::{LoopElement, Origin};
 use crate::syntax::Element;
 
 impl Loader<'_> {
-    pub(super) fn looping(&mut self, element: Element<'_>) -> Loop {
+    pub(super) fn looping(&mut self, element: Element<'_>) -> LoopElement {
         self.check_attributes(element, &LOOP);
         self.no_text(element);
         let mut properties = Vec::new();
@@ -21,7 +21,7 @@ impl Loader<'_> {
                 _ => _ = self.unexpected(child, &LOOP, family),
             }
         }
-        Loop {
+        LoopElement {
             origin: Origin::of(element),
             name: self.name(element),
             class: self.optional(element, "class").map(Box::new),

@@ -4,7 +4,7 @@ use super::children::Family;
 use super::vocabulary::{COMPONENT, COMPOSITE, Kind, OWN_ELEMENTS};
 use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::model::{Origin, Part, Property, PropertyDetails, PropertyValue, SAOMS_NAMESPACE};
+use crate::model::{ComponentProperty, Origin, Part, Property, PropertyDetails, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
 use crate::syntax::{Element, ElementId};
 
@@ -55,7 +55,7 @@ impl Loader<'_> {
         element: Element<'_>,
         kind: &'static Kind,
         inside: Option<Text>,
-        values: Vec<PropertyValue>,
+        values: Vec<ComponentProperty>,
         content: Vec<ElementId>,
     ) -> PropertyDetails {
         // A property of a composite has none: one is reported, and not read.
@@ -106,9 +106,9 @@ impl Loader<'_> {
     }
 }
 
-fn value(element: Element<'_>) -> PropertyValue {
+fn value(element: Element<'_>) -> ComponentProperty {
     let at = Span::empty(element.start_tag_span().end).in_file(element.document().file());
     let text = element.trimmed_text().unwrap_or_else(|| -> Text { Located::new("".into(), at) });
     let content = element.children().map(Element::id).collect();
-    PropertyValue { origin: Origin::of(element), text, content }
+    ComponentProperty { origin: Origin::of(element), text, content }
 }

@@ -2,7 +2,7 @@
 
 use super::Loader;
 use super::vocabulary::SEVERITY;
-use crate::diagnostic::{Level, nearest, quoted};
+use crate::diagnostic::{SeverityLevel, nearest, quoted};
 use crate::model::{Origin, SeverityRule};
 use crate::source::{Located, Location};
 use crate::syntax::Element;
@@ -16,7 +16,7 @@ impl Loader<'_> {
         let reason = self.required(element, "reason");
         let Some(code) = code else { return };
         let is_wrong = level.is_none() || reason.is_none();
-        let level = level.unwrap_or_else(|| Located::new(Level::Allow, code.location));
+        let level = level.unwrap_or_else(|| Located::new(SeverityLevel::Allow, code.location));
         let reason = reason.unwrap_or_else(|| Located::new("".into(), code.location));
         let (origin, within) = (Origin::of(element), within(parent));
         self.severities.push(SeverityRule { origin, code, level, reason, is_wrong, within });
@@ -27,17 +27,17 @@ impl Loader<'_> {
         let (Some(parent), Some(code)) = (element.parent(), element.attribute("code")) else { return };
         let code = code.trimmed();
         let (level, reason) =
-            (Located::new(Level::Allow, code.location), Located::new("".into(), code.location));
+            (Located::new(SeverityLevel::Allow, code.location), Located::new("".into(), code.location));
         let (origin, within) = (Origin::of(element), within(parent));
         self.severities.push(SeverityRule { origin, code, level, reason, is_wrong: true, within });
     }
 
-    fn level(&mut self, element: Element<'_>) -> Option<Located<Level>> {
+    fn level(&mut self, element: Element<'_>) -> Option<Located<SeverityLevel>> {
         let text = self.required(element, "level")?;
-        if let Some(level) = Level::from_name(&text) {
+        if let Some(level) = SeverityLevel::from_name(&text) {
             return Some(Located::new(level, text.location));
         }
-        let names = Level::ALL.map(Level::name);
+        let names = SeverityLevel::ALL.map(SeverityLevel::name);
         let meant = match text.to_ascii_lowercase().as_str() {
             "deny" | "forbid" | "fail" => Some("error"),
             "warn" => Some("warning"),

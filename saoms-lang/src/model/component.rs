@@ -3,12 +3,12 @@
 use smol_str::SmolStr;
 
 use super::origin::parts;
-use super::{Loop, Origin, Property, Reference, Replicas, Service};
+use super::{LoopElement, Origin, Property, ReferenceElement, Replicas, ServiceElement};
 use crate::source::{Located, Text};
 
 /// A component: a configured use of an implementation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Component {
+pub struct ComponentElement {
     /// Where it comes from.
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
@@ -18,9 +18,9 @@ pub struct Component {
     /// Its properties in order.
     pub properties: Vec<Property>,
     /// Its services in order.
-    pub services: Vec<Service>,
+    pub services: Vec<ServiceElement>,
     /// Its references in order.
-    pub references: Vec<Reference>,
+    pub references: Vec<ReferenceElement>,
     /// Rarely needed fields, which the methods give.
     pub details: Option<Box<ComponentDetails>>,
 }
@@ -37,10 +37,10 @@ pub struct ComponentDetails {
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
     /// What it says about its loops, in order.
-    pub loops: Vec<Loop>,
+    pub loops: Vec<LoopElement>,
 }
 
-impl Component {
+impl ComponentElement {
     /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
     pub fn path(&self) -> Option<&Text> {
         self.details.as_ref()?.path.as_ref()
@@ -62,7 +62,7 @@ impl Component {
     }
 
     /// What it says about its loops, in order.
-    pub fn loops(&self) -> &[Loop] {
+    pub fn loops(&self) -> &[LoopElement] {
         self.details.as_ref().map_or(&[], |details| &details.loops)
     }
 
@@ -72,12 +72,12 @@ impl Component {
     }
 
     /// The first service of this name.
-    pub fn service(&self, name: &str) -> Option<&Service> {
+    pub fn service(&self, name: &str) -> Option<&ServiceElement> {
         self.services.iter().find(|service| service.name == name)
     }
 
     /// The first reference of this name.
-    pub fn reference(&self, name: &str) -> Option<&Reference> {
+    pub fn reference(&self, name: &str) -> Option<&ReferenceElement> {
         self.references.iter().find(|reference| reference.name == name)
     }
 
@@ -128,4 +128,4 @@ pub enum ImplementationKind {
     },
 }
 
-parts!(Component, Implementation);
+parts!(ComponentElement, Implementation);

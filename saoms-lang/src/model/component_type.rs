@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::origin::parts;
-use super::{Origin, Property, Reference, Service, Version};
+use super::{Origin, Property, ReferenceElement, ServiceElement, Version};
 use crate::syntax::Document;
 
 /// What an implementation offers, asks for and can be given, as a `.componentType` file states it.
@@ -16,9 +16,9 @@ pub struct ComponentType {
     /// The version of SCA that its namespace stands for.
     pub version: Version,
     /// Its services in order.
-    pub services: Vec<Service>,
+    pub services: Vec<ServiceElement>,
     /// Its references in order.
-    pub references: Vec<Reference>,
+    pub references: Vec<ReferenceElement>,
     /// Its properties in order; a value is the default of components.
     pub properties: Vec<Property>,
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::origin::parts;
-use super::{Component, Origin, Property, Reference, Service, SeverityRule, Version};
+use super::{ComponentElement, Origin, Property, ReferenceElement, ServiceElement, SeverityRule, Version};
 use crate::source::{FileId, Located, Text};
 use crate::syntax::Document;
 
@@ -29,13 +29,13 @@ pub struct Composite {
     /// Its properties in order.
     pub properties: Vec<Property>,
     /// Its services in order.
-    pub services: Vec<Service>,
+    pub services: Vec<ServiceElement>,
     /// Its references in order.
-    pub references: Vec<Reference>,
+    pub references: Vec<ReferenceElement>,
     /// Its components in order.
-    pub components: Vec<Component>,
+    pub components: Vec<ComponentElement>,
     /// Its wires in order.
-    pub wires: Vec<Wire>,
+    pub wires: Vec<WireElement>,
     /// What it says about severities, in order, that in its elements included.
     pub severities: Vec<SeverityRule>,
 }
@@ -55,7 +55,7 @@ pub struct Include {
 
 /// A wire from a reference to a service.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wire {
+pub struct WireElement {
     /// Where it comes from.
     pub origin: Origin,
     /// `source`: `component` or `component/reference`; `None` when the file has none.
@@ -75,7 +75,7 @@ pub struct WireDetails {
     pub condition: Option<Text>,
 }
 
-impl Wire {
+impl WireElement {
     /// `replace` (1.1)
     pub fn replace(&self) -> Option<Located<bool>> {
         self.details.as_ref()?.replace
@@ -87,7 +87,7 @@ impl Wire {
     }
 }
 
-parts!(Composite, Include, Wire);
+parts!(Composite, Include, WireElement);
 
 impl Composite {
     /// The file it was read from.
@@ -96,7 +96,7 @@ impl Composite {
     }
 
     /// The first component of this name.
-    pub fn component(&self, name: &str) -> Option<&Component> {
+    pub fn component(&self, name: &str) -> Option<&ComponentElement> {
         self.components.iter().find(|component| component.name == name)
     }
 }

@@ -8,7 +8,7 @@ use crate::source::{Located, Text};
 
 /// A service: of a component, or of a composite, which promotes one of a component.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Service {
+pub struct ServiceElement {
     /// Where it comes from.
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
@@ -21,7 +21,7 @@ pub struct Service {
 
 /// A reference: of a component, or of a composite, which promotes those of components.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reference {
+pub struct ReferenceElement {
     /// Where it comes from.
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
@@ -38,7 +38,7 @@ pub struct Reference {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contract {
     /// Its interface.
-    pub interface: Option<Interface>,
+    pub interface: Option<InterfaceElement>,
     /// Its bindings in order.
     pub bindings: Vec<Binding>,
     /// Its callback.
@@ -49,7 +49,7 @@ macro_rules! contract {
     ($($part:ty),*) => {
         $(impl $part {
             /// Its interface.
-            pub fn interface(&self) -> Option<&Interface> {
+            pub fn interface(&self) -> Option<&InterfaceElement> {
                 self.contract.as_ref()?.interface.as_ref()
             }
 
@@ -65,7 +65,7 @@ macro_rules! contract {
         })*
     };
 }
-contract!(Service, Reference);
+contract!(ServiceElement, ReferenceElement);
 
 /// Rarely needed fields, boxed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -82,7 +82,7 @@ pub struct ReferenceDetails {
     pub non_overridable: Option<Located<bool>>,
 }
 
-impl Reference {
+impl ReferenceElement {
     /// `promote`, of a composite's reference: each URI with its own place.
     pub fn promote(&self) -> &[Text] {
         self.details.as_ref().map_or(&[], |details| &details.promote)
@@ -159,7 +159,7 @@ impl Multiplicity {
 
 /// An interface of a service or a reference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Interface {
+pub struct InterfaceElement {
     /// Where it comes from.
     pub origin: Origin,
     /// Which kind of interface.
@@ -205,4 +205,4 @@ pub struct Callback {
     pub bindings: Vec<Binding>,
 }
 
-parts!(Service, Reference, Interface, Binding, Callback);
+parts!(ServiceElement, ReferenceElement, InterfaceElement, Binding, Callback);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use super::{Component, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Version};
+use super::{ComponentElement, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Version};
 use crate::diagnostic::{Candidates, nearest};
 use crate::source::{FileId, Text};
 use crate::syntax::ElementId;
@@ -76,7 +76,7 @@ impl<'a> Naming<'a> {
     }
 
     /// What `implementation.composite` names.
-    pub fn of_component(component: &'a Component) -> Option<Self> {
+    pub fn of_component(component: &'a ComponentElement) -> Option<Self> {
         let implementation = component.implementation.as_ref()?;
         match &implementation.kind {
             ImplementationKind::Composite { name } => {

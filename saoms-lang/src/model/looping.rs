@@ -6,7 +6,7 @@ use crate::source::{Located, Text};
 
 /// A `loop` of a component: it adds, replaces, removes, moves or parametrises one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Loop {
+pub struct LoopElement {
     /// Where it comes from.
     pub origin: Origin,
     /// `name`: what the loop is called within the component; empty, at the tag, when the file has none.
@@ -23,11 +23,11 @@ pub struct Loop {
     pub properties: Vec<Property>,
 }
 
-impl Loop {
+impl LoopElement {
     /// Whether it takes the loop of its name away.
     pub fn is_removal(&self) -> bool {
         self.remove.is_some_and(|remove| remove.value)
     }
 }
 
-parts!(Loop);
+parts!(LoopElement);

@@ -17,16 +17,17 @@ mod replicas;
 mod severity;
 mod version;
 
-pub use component::{Component, ComponentDetails, Implementation, ImplementationKind};
+pub use component::{ComponentDetails, ComponentElement, Implementation, ImplementationKind};
 pub use component_type::ComponentType;
-pub use composite::{Composite, Include, Wire, WireDetails};
+pub use composite::{Composite, Include, WireDetails, WireElement};
 pub use contract::{
-    Binding, Callback, Contract, Interface, InterfaceKind, Multiplicity, Reference, ReferenceDetails, Service,
+    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceDetails,
+    ReferenceElement, ServiceElement,
 };
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
-pub use looping::Loop;
+pub use looping::LoopElement;
 pub use origin::{Origin, Part};
-pub use property::{Property, PropertyDetails, PropertyValue, ValueDocument};
+pub use property::{ComponentProperty, Property, PropertyDetails, ValueDocument};
 pub use replicas::{Replicas, Row, Table};
 pub use severity::SeverityRule;
 pub use version::{SAOMS_NAMESPACE, Version};

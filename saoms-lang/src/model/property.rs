@@ -48,7 +48,7 @@ pub struct PropertyDetails {
     /// The same, where it is XML that is more than a text.
     pub document: Option<ValueDocument>,
     /// Its `<value>` elements.
-    pub values: Vec<PropertyValue>,
+    pub values: Vec<ComponentProperty>,
     /// Other elements inside: a complex value.
     pub content: Vec<ElementId>,
 }
@@ -70,7 +70,7 @@ impl PartialEq for ValueDocument {
 
 /// A `<value>` of a property.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PropertyValue {
+pub struct ComponentProperty {
     /// Where it comes from.
     pub origin: Origin,
     /// The text inside, trimmed; empty, at the end of the start tag, when there is none.
@@ -79,7 +79,7 @@ pub struct PropertyValue {
     pub content: Vec<ElementId>,
 }
 
-parts!(Property, PropertyValue);
+parts!(Property, ComponentProperty);
 
 impl Property {
     /// `value`: the value as an attribute.
@@ -138,7 +138,7 @@ impl Property {
     }
 
     /// Its `<value>` elements.
-    pub fn values(&self) -> &[PropertyValue] {
+    pub fn values(&self) -> &[ComponentProperty] {
         self.details.as_ref().map_or(&[], |details| &details.values)
     }
 

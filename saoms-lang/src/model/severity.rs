@@ -2,7 +2,7 @@
 
 use super::Origin;
 use super::origin::parts;
-use crate::diagnostic::Level;
+use crate::diagnostic::SeverityLevel;
 use crate::source::{Located, Location, Text};
 
 /// A `severity`: it sets that of the diagnostics of one code in the element that it stands in.
@@ -13,7 +13,7 @@ pub struct SeverityRule {
     /// `code`, as `S4001`.
     pub code: Text,
     /// `level`.
-    pub level: Located<Level>,
+    pub level: Located<SeverityLevel>,
     /// `reason`.
     pub reason: Text,
     /// Whether it is wrong, which is reported: what it is about is not told beside that.

@@ -20,12 +20,12 @@ pub struct Classes {
     /// The resolver of libraries that composites name themselves; `None` where nobody looks for them.
     pub libraries: Option<Rc<dyn LibraryResolver>>,
     /// Faults of plugins, which have no place in a composite.
-    pub problems: Vec<Problem>,
+    pub problems: Vec<PluginFault>,
 }
 
 /// A fault of a plugin.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct PluginFault {
     /// True if somebody named the plugin, or if it contradicts another one; others are only left out.
     pub is_error: bool,
     /// The fault.

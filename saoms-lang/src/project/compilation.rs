@@ -1,6 +1,6 @@
 //! The outcome of a compilation.
 
-use super::Problem;
+use super::PluginFault;
 use crate::assembly::{Assembly, expanded};
 use crate::diagnostic::{Diagnostic, Human, Severity};
 use crate::model::{Composite, Contribution};
@@ -21,7 +21,7 @@ pub struct Compilation<T = Assembly> {
     /// All diagnostics by file and place, with those that are allowed and kept for the record alone.
     pub diagnostics: Vec<Diagnostic>,
     /// Faults of plugins, which have no place in a composite.
-    pub problems: Vec<Problem>,
+    pub problems: Vec<PluginFault>,
 }
 
 impl<T> Compilation<T> {

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::merge::Merged;
-use super::{ClassPath, Classes, Compilation, Input, Loaded, Problem, Project, load};
+use super::{ClassPath, Classes, Compilation, Input, Loaded, PluginFault, Project, load};
 use crate::assembly::Assembly;
 use crate::check::{self, Options};
 use crate::contribution::{Finder, FolderFleet, SideFile};
@@ -25,7 +25,7 @@ pub struct Compilations<T> {
     /// All diagnostics, fleet by fleet; those of a composite that several fleets name are there once.
     pub diagnostics: Vec<Diagnostic>,
     /// Faults of plugins, which have no place in a composite.
-    pub problems: Vec<Problem>,
+    pub problems: Vec<PluginFault>,
 }
 
 /// The output for one of several fleets.
@@ -161,7 +161,7 @@ impl From<FolderFleet> for Member {
 }
 
 /// Adds problems that are not known yet: several folders can have the same plugin.
-fn add_new(known: &mut Vec<Problem>, found: Vec<Problem>) {
+fn add_new(known: &mut Vec<PluginFault>, found: Vec<PluginFault>) {
     for one in found {
         if !known.contains(&one) {
             known.push(one);

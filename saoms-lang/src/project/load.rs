@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::{ClassPath, Classes, Compilation, Input, Problem, Project, folder, libraries};
+use super::{ClassPath, Classes, Compilation, Input, PluginFault, Project, folder, libraries};
 use crate::assembly::Assembly;
 use crate::check::{self, Occurrences, Options, Setting, SeveritySetting, Variable};
 use crate::contribution::{Finder, read_values};
@@ -29,7 +29,7 @@ pub struct Loaded {
     pub registry: Registry,
     /// The texts that were read.
     pub sources: Sources,
-    pub(super) problems: Vec<Problem>,
+    pub(super) problems: Vec<PluginFault>,
     pub(super) diagnostics: Diagnostics,
     pub(super) options: Options,
     pub(super) is_part: bool,

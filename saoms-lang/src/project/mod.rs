@@ -24,7 +24,7 @@ use crate::contribution::Finder;
 use crate::load::MAX_SIZE;
 use crate::source::OpenTexts;
 
-pub use classes::{ClassPath, Classes, LibraryResolver, Problem};
+pub use classes::{ClassPath, Classes, LibraryResolver, PluginFault};
 pub use compilation::Compilation;
 pub use each::{Compilations, FleetOutput};
 pub use load::{INPUT, Loaded, SET, SEVERITY, read};

@@ -13,7 +13,7 @@ use super::ClassDeclaration;
 
 /// A class under one of its names: what it declares, and how to construct components of it.
 #[derive(Clone, Debug)]
-pub struct Class {
+pub struct RegisteredClass {
     pub(super) name: String,
     pub(super) declaration: Arc<ClassDeclaration>,
     pub(super) presets: Vec<(SmolStr, PropertyValue)>,
@@ -22,7 +22,7 @@ pub struct Class {
     pub(super) provider: Arc<dyn Provider>,
 }
 
-impl Class {
+impl RegisteredClass {
     /// The name it is registered under: that of the declaration, or a further one.
     pub fn name(&self) -> &str {
         &self.name
@@ -70,13 +70,13 @@ impl Class {
 
 /// Where the code of a class comes from.
 pub trait Provider: fmt::Debug + Send + Sync {
-    /// As [`Class::construct`].
+    /// As [`RegisteredClass::construct`].
     ///
     /// # Errors
     /// As there.
     fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
 
-    /// As [`Class::origin`].
+    /// As [`RegisteredClass::origin`].
     fn origin(&self) -> Option<&Path>;
 }
 

@@ -30,10 +30,10 @@ pub struct ClassDeclaration {
     pub properties: Vec<PropertyDeclaration>,
     /// The topics it publishes.
     #[serde(default)]
-    pub publishes: Vec<TopicDeclaration>,
+    pub publishes: Vec<ClassTopic>,
     /// The topics it subscribes to.
     #[serde(default)]
-    pub subscribes: Vec<TopicDeclaration>,
+    pub subscribes: Vec<ClassTopic>,
     /// The services it implements; [`ClassDeclaration::offers`] also has what the host serves for it.
     #[serde(default)]
     pub services: Vec<ServiceDeclaration>,
@@ -166,7 +166,7 @@ impl PropertyDeclaration {
 
 /// A topic that a class publishes or subscribes to.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct TopicDeclaration {
+pub struct ClassTopic {
     /// Its name before any `topicRename`.
     #[serde(rename = "topic")]
     pub name: String,

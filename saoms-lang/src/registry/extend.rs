@@ -79,7 +79,7 @@ mod tests {
     use serde_json::{Value, json};
     use smol_str::SmolStr;
 
-    use crate::registry::{Class, Provider, Registry};
+    use crate::registry::{Provider, RegisteredClass, Registry};
 
     #[derive(Debug)]
     struct Nowhere;
@@ -119,7 +119,7 @@ mod tests {
         })
     }
 
-    fn read(declaration: &Value) -> Result<Class, String> {
+    fn read(declaration: &Value) -> Result<RegisteredClass, String> {
         let mut registry = Registry::new();
         let added = registry.add_provided(&declaration.to_string(), Arc::new(Nowhere));
         added.map_err(|error| error.to_string())?;

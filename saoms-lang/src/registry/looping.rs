@@ -11,7 +11,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use smol_str::SmolStr;
 
-use super::{PropertyDeclaration, ReferenceDeclaration, TopicDeclaration, simple};
+use super::{ClassTopic, PropertyDeclaration, ReferenceDeclaration, simple};
 
 /// All that a loop declares.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -35,13 +35,13 @@ pub struct LoopDeclaration {
     pub effects: Vec<String>,
     /// The entries that it adds to the knowledge.
     #[serde(default)]
-    pub entries: Vec<EntryDeclaration>,
+    pub entries: Vec<KnowledgeEntry>,
     /// The topics it publishes.
     #[serde(default)]
-    pub publishes: Vec<TopicDeclaration>,
+    pub publishes: Vec<ClassTopic>,
     /// The topics it subscribes to.
     #[serde(default)]
-    pub subscribes: Vec<TopicDeclaration>,
+    pub subscribes: Vec<ClassTopic>,
     /// The references it can call through.
     #[serde(default)]
     pub references: Vec<ReferenceDeclaration>,
@@ -64,12 +64,12 @@ pub struct KnowledgeDeclaration {
     pub doc: String,
     /// Its entries in order.
     #[serde(default)]
-    pub entries: Vec<EntryDeclaration>,
+    pub entries: Vec<KnowledgeEntry>,
 }
 
 /// An entry of a knowledge.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct EntryDeclaration {
+pub struct KnowledgeEntry {
     /// Its name.
     pub name: String,
     /// Its type, as in the schema of a message.
@@ -119,13 +119,13 @@ impl DefaultLoops {
 
 /// A loop that composites can name: what it declares, and how to construct it.
 #[derive(Clone, Debug)]
-pub struct LoopClass {
+pub struct RegisteredLoop {
     pub(super) declaration: LoopDeclaration,
     pub(super) text: Arc<str>,
     pub(super) provider: Arc<dyn LoopProvider>,
 }
 
-impl LoopClass {
+impl RegisteredLoop {
     /// The name it is registered under.
     pub fn name(&self) -> &str {
         &self.declaration.name
@@ -163,13 +163,13 @@ impl LoopClass {
 
 /// Where the code of a loop comes from.
 pub trait LoopProvider: fmt::Debug + Send + Sync {
-    /// As [`LoopClass::construct`].
+    /// As [`RegisteredLoop::construct`].
     ///
     /// # Errors
     /// As there.
     fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
 
-    /// As [`LoopClass::origin`].
+    /// As [`RegisteredLoop::origin`].
     fn origin(&self) -> Option<&Path>;
 }
 

@@ -23,16 +23,16 @@ use std::sync::Arc;
 use saoms_api::host::{LoopRegistration, Registration};
 use saoms_api::rule::{Code, FleetRule};
 
-pub use class::{Class, Provider};
+pub use class::{Provider, RegisteredClass};
 pub use declaration::{
-    Alias, ClassDeclaration, ClassKind, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
-    ServiceDeclaration, TopicDeclaration,
+    Alias, ClassDeclaration, ClassKind, ClassTopic, InterfaceDeclaration, PropertyDeclaration,
+    ReferenceDeclaration, ServiceDeclaration,
 };
 pub use error::{Holder, RegistryError};
 pub use looping::{
-    DefaultLoops, EntryDeclaration, KnowledgeDeclaration, LoopClass, LoopDeclaration, LoopProvider,
+    DefaultLoops, KnowledgeDeclaration, KnowledgeEntry, LoopDeclaration, LoopProvider, RegisteredLoop,
 };
-pub use rule::{Rule, RuleProvider};
+pub use rule::{RegisteredRule, RuleProvider};
 pub use team::{Team, TeamFault};
 
 use crate::diagnostic::codes;
@@ -42,11 +42,11 @@ use near::{near, simple};
 ///
 /// ```
 /// use saoms_api::host::Registration;
-/// use saoms_api::{Class, Component, Failure};
+/// use saoms_api::{RegisteredClass, Component, Failure};
 /// use saoms_lang::registry::Registry;
 ///
 /// /// Stands around.
-/// #[derive(Class)]
+/// #[derive(RegisteredClass)]
 /// #[class(name = "example.Lamp", passive)]
 /// struct Lamp;
 ///
@@ -67,9 +67,9 @@ use near::{near, simple};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Registry {
-    classes: BTreeMap<String, Arc<Class>>,
-    loops: BTreeMap<String, Arc<LoopClass>>,
-    rules: Vec<Rule>,
+    classes: BTreeMap<String, Arc<RegisteredClass>>,
+    loops: BTreeMap<String, Arc<RegisteredLoop>>,
+    rules: Vec<RegisteredRule>,
 }
 
 impl Registry {
@@ -114,7 +114,7 @@ impl Registry {
         prevents_start: bool,
         provider: Arc<dyn RuleProvider>,
     ) -> Result<(), RegistryError> {
-        let rule = Rule { code, judges_parts, prevents_start, provider };
+        let rule = RegisteredRule { code, judges_parts, prevents_start, provider };
         let taken = |known: &Code, origin| RegistryError::NameTaken {
             name: code.id.to_owned(),
             first: Holder::new("rule", known.name, origin),
@@ -133,7 +133,7 @@ impl Registry {
     }
 
     /// The rules over whole fleets, by their codes.
-    pub fn rules(&self) -> &[Rule] {
+    pub fn rules(&self) -> &[RegisteredRule] {
         &self.rules
     }
 
@@ -169,7 +169,7 @@ impl Registry {
         declaration: &str,
         provider: Arc<dyn LoopProvider>,
     ) -> Result<(), RegistryError> {
-        let same = |known: &&Arc<LoopClass>| &*known.text == declaration;
+        let same = |known: &&Arc<RegisteredLoop>| &*known.text == declaration;
         if self.loops.values().find(same).is_some_and(|same| same.origin() == provider.origin()) {
             return Ok(());
         }
@@ -194,7 +194,8 @@ impl Registry {
     ) -> Result<(), RegistryError> {
         let classes = read::class(declaration, &provider)?;
         for (place, class) in classes.iter().enumerate() {
-            let holder = |class: &Class| Holder::new("class", &class.declaration.name, class.origin());
+            let holder =
+                |class: &RegisteredClass| Holder::new("class", &class.declaration.name, class.origin());
             let again = classes[..place].iter().find(|other| other.name == class.name);
             if let Some(first) = self.holder(&class.name).or(again.map(holder)) {
                 let (name, second) = (class.name.clone(), holder(class));
@@ -220,7 +221,7 @@ impl Registry {
     pub fn origins(&self) -> impl Iterator<Item = &Path> {
         let classes = self.classes.values().filter_map(|class| class.origin());
         let loops = self.loops.values().filter_map(|one| one.origin());
-        classes.chain(loops).chain(self.rules.iter().filter_map(Rule::origin))
+        classes.chain(loops).chain(self.rules.iter().filter_map(RegisteredRule::origin))
     }
 
     /// The names of the classes of a library.
@@ -229,22 +230,22 @@ impl Registry {
     }
 
     /// The class of this name.
-    pub fn get(&self, name: &str) -> Option<&Arc<Class>> {
+    pub fn get(&self, name: &str) -> Option<&Arc<RegisteredClass>> {
         self.classes.get(name)
     }
 
     /// The loop of this name.
-    pub fn get_loop(&self, name: &str) -> Option<&Arc<LoopClass>> {
+    pub fn get_loop(&self, name: &str) -> Option<&Arc<RegisteredLoop>> {
         self.loops.get(name)
     }
 
     /// All loops, sorted by name.
-    pub fn loops(&self) -> impl ExactSizeIterator<Item = &Arc<LoopClass>> {
+    pub fn loops(&self) -> impl ExactSizeIterator<Item = &Arc<RegisteredLoop>> {
         self.loops.values()
     }
 
     /// All classes under all their names, sorted by name.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<Class>> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<RegisteredClass>> {
         self.classes.values()
     }
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use serde::de::DeserializeOwned;
 
 use super::{
-    Class, ClassDeclaration, LoopClass, LoopDeclaration, LoopProvider, Provider, RegistryError, error,
-    extend, validate,
+    ClassDeclaration, LoopDeclaration, LoopProvider, Provider, RegisteredClass, RegisteredLoop,
+    RegistryError, error, extend, validate,
 };
 
 /// What every version of a declaration has.
@@ -18,7 +18,7 @@ struct Head {
 }
 
 /// A class under each of its names, the declared one first.
-pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Class>, RegistryError> {
+pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<RegisteredClass>, RegistryError> {
     let malformed = |class: String, message| RegistryError::Malformed { class, message };
     let mut own: ClassDeclaration = declaration(text, malformed)?;
     let extended = extend::lineage(text).map_err(|message| malformed(own.name.clone(), message))?;
@@ -34,7 +34,7 @@ pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Clas
     let extended: Arc<[Arc<str>]> = extended.into_iter().map(Arc::from).collect();
     let declaration = Arc::new(own);
     let text: Arc<str> = text.into();
-    let class = |name: &str, presets| Class {
+    let class = |name: &str, presets| RegisteredClass {
         name: name.to_owned(),
         declaration: Arc::clone(&declaration),
         presets,
@@ -55,11 +55,11 @@ fn inherit(class: &mut ClassDeclaration, base: Option<ClassDeclaration>) -> Resu
     inherited.map_err(|message| RegistryError::Malformed { class: class.name.clone(), message })
 }
 
-pub(super) fn looping(text: &str, provider: Arc<dyn LoopProvider>) -> Result<LoopClass, RegistryError> {
+pub(super) fn looping(text: &str, provider: Arc<dyn LoopProvider>) -> Result<RegisteredLoop, RegistryError> {
     let malformed = |name: String, message| RegistryError::MalformedLoop { name, message };
     let declaration: LoopDeclaration = declaration(text, malformed)?;
     validate::looping(&declaration).map_err(|message| malformed(declaration.name.clone(), message))?;
-    Ok(LoopClass { declaration, text: text.into(), provider })
+    Ok(RegisteredLoop { declaration, text: text.into(), provider })
 }
 
 fn declaration<D: DeserializeOwned>(

@@ -8,14 +8,14 @@ use saoms_api::{Failure, Finding};
 
 /// A rule over whole fleets; see [`FleetRule`].
 #[derive(Clone, Debug)]
-pub struct Rule {
+pub struct RegisteredRule {
     pub(super) code: &'static Code,
     pub(super) judges_parts: bool,
     pub(super) prevents_start: bool,
     pub(super) provider: Arc<dyn RuleProvider>,
 }
 
-impl Rule {
+impl RegisteredRule {
     /// The code of its findings.
     pub fn code(&self) -> &'static Code {
         self.code
@@ -47,13 +47,13 @@ impl Rule {
 
 /// Where the code of a rule comes from.
 pub trait RuleProvider: fmt::Debug + Send + Sync {
-    /// As [`Rule::check`].
+    /// As [`RegisteredRule::check`].
     ///
     /// # Errors
     /// As there.
     fn check(&self, fleet: &FleetView<'_>) -> Result<Vec<Finding>, Failure>;
 
-    /// As [`Rule::origin`].
+    /// As [`RegisteredRule::origin`].
     fn origin(&self) -> Option<&Path>;
 }
 

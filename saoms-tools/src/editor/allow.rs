@@ -3,7 +3,7 @@
 use saoms_lang::load::vocabulary::{SEVERITY, SEVERITY_PARENTS};
 use saoms_lang::model::SAOMS_NAMESPACE;
 
-use super::Edit;
+use super::FileEdit;
 use super::scene::Scene;
 
 /// Edits that allow a code in one part of a composite.
@@ -12,7 +12,7 @@ pub struct Allowance {
     /// The title of the action.
     pub title: String,
     /// The edits of the file.
-    pub edits: Vec<Edit>,
+    pub edits: Vec<FileEdit>,
 }
 
 /// The ways to allow a code at a byte of the first file: for the component, service, reference, wire or include there, and for
@@ -53,7 +53,7 @@ fn is_set(scene: &Scene, element: usize, code: &str) -> bool {
     inside.any(|child| tree.value(text, child, "code").is_some_and(|at| text[at] == *code))
 }
 
-fn inserted(scene: &Scene, element: usize, code: &str) -> Vec<Edit> {
+fn inserted(scene: &Scene, element: usize, code: &str) -> Vec<FileEdit> {
     let file = scene.file();
     let (text, tree) = (&*file.text, &file.tree);
     let one = &tree.elements[element];
@@ -68,15 +68,15 @@ fn inserted(scene: &Scene, element: usize, code: &str) -> Vec<Edit> {
     let mut edits = if one.is_empty {
         let name = &text[one.name.clone()];
         let start = text[..one.tag.end - 2].trim_end().len();
-        vec![Edit::new(start..one.tag.end, format!(">{own}{newline}{indent}</{name}>"))]
+        vec![FileEdit::new(start..one.tag.end, format!(">{own}{newline}{indent}</{name}>"))]
     } else {
-        vec![Edit::new(one.tag.end..one.tag.end, own)]
+        vec![FileEdit::new(one.tag.end..one.tag.end, own)]
     };
     if bound.is_none()
         && let Some(root) = tree.elements.first()
     {
         let at = root.name.end;
-        edits.push(Edit::new(at..at, format!(" xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"")));
+        edits.push(FileEdit::new(at..at, format!(" xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"")));
     }
     edits
 }

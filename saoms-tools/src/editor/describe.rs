@@ -5,10 +5,12 @@ use std::fmt::Write;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::diagnostic::Code;
 use saoms_lang::load::vocabulary::{Kind, Known, children};
-use saoms_lang::registry::{Class, ClassDeclaration, LoopClass, PropertyDeclaration, TopicDeclaration};
+use saoms_lang::registry::{
+    ClassDeclaration, ClassTopic, PropertyDeclaration, RegisteredClass, RegisteredLoop,
+};
 
 /// A class, all about it.
-pub(crate) fn class(class: &Class) -> String {
+pub(crate) fn class(class: &RegisteredClass) -> String {
     let declaration = class.declaration();
     let kind = if declaration.is_periodic() { "periodic" } else { "passive" };
     let mut text = format!("**{}** ({kind} class)\n\n{}\n", class.name(), declaration.doc);
@@ -45,12 +47,12 @@ pub(crate) fn properties(class: &ClassDeclaration) -> impl Iterator<Item = &Prop
 }
 
 /// What the class's name presets for the property.
-pub(crate) fn preset<'a>(class: &'a Class, property: &str) -> Option<&'a str> {
+pub(crate) fn preset<'a>(class: &'a RegisteredClass, property: &str) -> Option<&'a str> {
     let also = class.declaration().also.iter().find(|alias| alias.name == class.name())?;
     also.preset.get(property).map(String::as_str)
 }
 
-fn presets(class: &Class) -> String {
+fn presets(class: &RegisteredClass) -> String {
     let also = class.declaration().also.iter().find(|alias| alias.name == class.name());
     let presets = also.iter().flat_map(|alias| &alias.preset);
     let shown: Vec<String> = presets.map(|(name, value)| format!("`{name}` = `{value}`")).collect();
@@ -83,7 +85,7 @@ pub(crate) fn facts(one: &PropertyDeclaration, preset: Option<&str>) -> String {
 }
 
 /// A loop, all about it.
-pub(crate) fn looping(one: &LoopClass) -> String {
+pub(crate) fn looping(one: &RegisteredLoop) -> String {
     let declaration = one.declaration();
     let mut text = format!("**{}** (loop)\n\n{}\n", declaration.name, declaration.doc);
     if let Some(origin) = one.origin() {
@@ -108,7 +110,7 @@ pub fn code(one: &Code, rule: Option<&str>) -> String {
 }
 
 /// A topic, as a class or a loop declares it.
-pub(crate) fn topic(one: &TopicDeclaration) -> String {
+pub(crate) fn topic(one: &ClassTopic) -> String {
     format!("**{}**: a topic of `{}` ({})", one.name, one.message, one.kind.name())
 }
 

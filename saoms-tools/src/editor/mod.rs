@@ -25,32 +25,32 @@ mod tests;
 use std::ops::Range;
 
 pub use allow::{Allowance, allowances};
-pub use complete::{Completion, CompletionKind, Insert, complete};
+pub use complete::{Insert, Proposal, ProposalKind, complete};
 pub use describe::code as describe_code;
 pub use folding::{Fold, folds};
 pub use formatting::formatted;
 pub use hover::hover;
 pub use line_index::LineIndex;
 pub use links::links;
-pub use navigate::{Target, definition, references};
+pub use navigate::{DefinitionTarget, definition, references};
 pub use rename::{prepare as prepare_rename, rename};
 pub use scene::file::File;
 pub use scene::symbol::FileRange;
 pub use scene::workspace::{Surroundings, Workspace};
-pub use scene::{Fleet, Scene};
+pub use scene::{Scene, SceneFleet};
 pub use selection::{linked_tags, selections};
 pub use symbols::{DocumentSymbol, SymbolKind, WorkspaceSymbol, document_symbols, workspace_symbols};
 
 /// New text for a range of bytes of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Edit {
+pub struct FileEdit {
     /// The bytes that are replaced.
     pub range: Range<usize>,
     /// The text in their place.
     pub text: String,
 }
 
-impl Edit {
+impl FileEdit {
     pub(crate) fn new(range: Range<usize>, text: impl Into<String>) -> Self {
         Self { range, text: text.into() }
     }

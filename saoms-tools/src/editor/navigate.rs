@@ -8,7 +8,7 @@ use super::syntax::Cursor;
 
 /// The target of a jump.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Target {
+pub enum DefinitionTarget {
     /// A range of a file of the scene.
     Range(FileRange),
     /// A whole file, which need not be of the scene.
@@ -16,7 +16,7 @@ pub enum Target {
 }
 
 /// The definitions of the name at a byte of the file.
-pub fn definition(scene: &Scene, byte: usize) -> Vec<Target> {
+pub fn definition(scene: &Scene, byte: usize) -> Vec<DefinitionTarget> {
     let Some(found) = at(scene, byte) else { return side_file(scene, byte).into_iter().collect() };
     let mut defined = defined(scene, &found.symbol);
     if defined.is_empty() {
@@ -29,10 +29,10 @@ pub fn definition(scene: &Scene, byte: usize) -> Vec<Target> {
             defined = self::defined(scene, &owner);
         }
         if let Symbol::Composite { file } = found.symbol {
-            return vec![Target::Range(FileRange { file, start: 0, end: 0 })];
+            return vec![DefinitionTarget::Range(FileRange { file, start: 0, end: 0 })];
         }
     }
-    defined.into_iter().map(|one| Target::Range(one.at)).collect()
+    defined.into_iter().map(|one| DefinitionTarget::Range(one.at)).collect()
 }
 
 fn defined(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
@@ -40,7 +40,7 @@ fn defined(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
 }
 
 /// A file beside the composite that an attribute names.
-fn side_file(scene: &Scene, byte: usize) -> Option<Target> {
+fn side_file(scene: &Scene, byte: usize) -> Option<DefinitionTarget> {
     let file = scene.file();
     let Cursor::AttributeValue { element, attribute, value } = file.tree.cursor(&file.text, byte) else {
         return None;
@@ -48,7 +48,7 @@ fn side_file(scene: &Scene, byte: usize) -> Option<Target> {
     let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
     let is_file = matches!(name, "file" | "uri" | "library") || name.ends_with(":overrides");
     let path = file.path.parent()?.join(file.text[value].trim());
-    (is_file && path.is_file()).then_some(Target::File(path))
+    (is_file && path.is_file()).then_some(DefinitionTarget::File(path))
 }
 
 /// The places that name the same as the name at a byte of the file.

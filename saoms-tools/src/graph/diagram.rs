@@ -10,17 +10,17 @@ pub struct Diagram {
     /// Its target namespace.
     pub namespace: Option<String>,
     /// Its properties.
-    pub properties: Vec<Setting>,
+    pub properties: Vec<DiagramSetting>,
     /// The services that it promotes.
     pub services: Vec<Port>,
     /// The references that it promotes.
     pub references: Vec<Port>,
     /// Its components in order; last those that are named and not there.
-    pub components: Vec<Component>,
+    pub components: Vec<DiagramComponent>,
     /// Wires and promotions.
-    pub links: Vec<Link>,
+    pub links: Vec<DiagramLink>,
     /// The topics of its components, in the order of their first use.
-    pub topics: Vec<Topic>,
+    pub topics: Vec<DiagramTopic>,
     /// How many wires are left out: of those that autowire makes there can be as many as the product of all ends, and those to components that are not
     /// there have a box each.
     pub left_out: usize,
@@ -28,7 +28,7 @@ pub struct Diagram {
 
 /// A component.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Component {
+pub struct DiagramComponent {
     /// Its name; that of a replicated one with `*` for each expression.
     pub name: String,
     /// The fewest and the most replicas in one of the composites that it is in, where it is replicated and that is known.
@@ -38,7 +38,7 @@ pub struct Component {
     /// What is known of that.
     pub state: State,
     /// Its properties.
-    pub properties: Vec<Setting>,
+    pub properties: Vec<DiagramSetting>,
     /// Its services.
     pub services: Vec<Port>,
     /// Its references.
@@ -47,7 +47,7 @@ pub struct Component {
     pub inside: Option<Box<Diagram>>,
 }
 
-impl Component {
+impl DiagramComponent {
     /// Its name as a picture has it: `Robot* × 40` for forty replicas, `Robot* × 2–4` where halls have two to four.
     pub(super) fn label(&self) -> String {
         match self.replicas {
@@ -85,7 +85,7 @@ pub enum State {
 
 /// A property and its value as the file gives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Setting {
+pub struct DiagramSetting {
     /// Its name.
     pub name: String,
     /// Its value; `None` when there is none, or it is no simple one.
@@ -114,13 +114,13 @@ impl Port {
 
 /// A wire or a promotion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Link {
+pub struct DiagramLink {
     /// Which of both.
     pub kind: LinkKind,
     /// The side that calls: a reference of a component, or a service of the composite.
-    pub from: End,
+    pub from: DiagramEnd,
     /// The side that is called: a service of a component, or a reference of the composite.
-    pub to: End,
+    pub to: DiagramEnd,
 }
 
 /// Whether a link is a wire or a promotion.
@@ -134,7 +134,7 @@ pub enum LinkKind {
 
 /// An end of a link: the place of a service or reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum End {
+pub enum DiagramEnd {
     /// Of a component.
     Component {
         /// The component's place.
@@ -148,7 +148,7 @@ pub enum End {
 
 /// A topic with its ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Topic {
+pub struct DiagramTopic {
     /// Its name after renaming, or what its names have in common, with `*` for the rest.
     pub name: String,
     /// Its names, where replicas have one each that all their ends share.

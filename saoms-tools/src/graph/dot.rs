@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::diagram::{Component, Diagram, End, LinkKind, Port, State};
+use super::diagram::{Diagram, DiagramComponent, DiagramEnd, LinkKind, Port, State};
 use super::picture::{Picture, Sink};
 use super::text::left_out;
 
@@ -82,20 +82,22 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
 fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     for link in &diagram.links {
         let from = match link.from {
-            End::Component { component, port } => {
+            DiagramEnd::Component { component, port } => {
                 match diagram.components[component].references[port].inside {
                     Some(place) => format!("{prefix}c{component}_r{place}"),
                     None => format!("{prefix}c{component}:r{port}:e"),
                 }
             }
-            End::Composite(place) => format!("{prefix}s{place}"),
+            DiagramEnd::Composite(place) => format!("{prefix}s{place}"),
         };
         let to = match link.to {
-            End::Component { component, port } => match diagram.components[component].services[port].inside {
-                Some(place) => format!("{prefix}c{component}_s{place}"),
-                None => format!("{prefix}c{component}:s{port}:w"),
-            },
-            End::Composite(place) => format!("{prefix}r{place}"),
+            DiagramEnd::Component { component, port } => {
+                match diagram.components[component].services[port].inside {
+                    Some(place) => format!("{prefix}c{component}_s{place}"),
+                    None => format!("{prefix}c{component}:s{port}:w"),
+                }
+            }
+            DiagramEnd::Composite(place) => format!("{prefix}r{place}"),
         };
         let style = if link.kind == LinkKind::Promotion { " [style=dashed]" } else { "" };
         let _ = writeln!(out, "  {from} -> {to}{style};");
@@ -113,7 +115,7 @@ fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     }
 }
 
-fn record(component: &Component) -> String {
+fn record(component: &DiagramComponent) -> String {
     let column = |id: &str, ports: &[Port]| {
         let fields =
             ports.iter().enumerate().map(|(place, port)| format!("<{id}{place}> {}", field(&port.name)));

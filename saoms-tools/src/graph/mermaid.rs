@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::diagram::{Diagram, End, LinkKind, State};
+use super::diagram::{Diagram, DiagramEnd, LinkKind, State};
 use super::picture::{Picture, Sink};
 use super::text::left_out;
 
@@ -65,20 +65,20 @@ fn composite(diagram: &Diagram, prefix: &str, id: &str, label: &str, out: &mut S
 fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     for link in &diagram.links {
         let (from, source) = match link.from {
-            End::Component { component, port } => {
+            DiagramEnd::Component { component, port } => {
                 let port = &diagram.components[component].references[port];
                 let inside = port.inside.map_or(String::new(), |place| format!("_r{place}"));
                 (format!("c{component}{inside}"), &*port.name)
             }
-            End::Composite(place) => (format!("s{place}"), ""),
+            DiagramEnd::Composite(place) => (format!("s{place}"), ""),
         };
         let (to, target) = match link.to {
-            End::Component { component, port } => {
+            DiagramEnd::Component { component, port } => {
                 let port = &diagram.components[component].services[port];
                 let inside = port.inside.map_or(String::new(), |place| format!("_s{place}"));
                 (format!("c{component}{inside}"), &*port.name)
             }
-            End::Composite(place) => (format!("r{place}"), ""),
+            DiagramEnd::Composite(place) => (format!("r{place}"), ""),
         };
         let arrow = match link.kind {
             LinkKind::Wire => "-->",

@@ -19,7 +19,9 @@ mod text;
 mod topics;
 mod wiring;
 
-pub use diagram::{Component, Diagram, End, Link, LinkKind, Port, Setting, State, Topic};
+pub use diagram::{
+    Diagram, DiagramComponent, DiagramEnd, DiagramLink, DiagramSetting, DiagramTopic, LinkKind, Port, State,
+};
 pub use dot::dot;
 pub use mermaid::mermaid;
 pub use picture::Picture;

@@ -2,14 +2,15 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::diagram::{Component, Diagram, Port, Setting, State};
+use super::diagram::{Diagram, DiagramComponent, DiagramSetting, Port, State};
 use super::{topics, wiring};
 use saoms_lang::check::{Occurrences, TopicUse};
 use saoms_lang::expression::pattern;
 use saoms_lang::model::{
-    self, Composite, Contribution, ImplementationKind, Interface, Link, Origin, Reference, Service, Wire,
+    self, Composite, Contribution, ImplementationKind, InterfaceElement, Link, Origin, ReferenceElement,
+    ServiceElement, WireElement,
 };
-use saoms_lang::registry::{Class, Registry};
+use saoms_lang::registry::{RegisteredClass, Registry};
 
 /// Composites that are drawn inside each other, and components that are drawn in all of them: a few lines of text can name
 /// a composite of composites of composites.
@@ -78,7 +79,7 @@ impl<'c> View<'c> {
     }
 
     /// The topics that a component of them uses.
-    pub(super) fn topics(&self, component: &model::Component) -> &'c [TopicUse] {
+    pub(super) fn topics(&self, component: &model::ComponentElement) -> &'c [TopicUse] {
         self.census.topics(&self.around, component.origin)
     }
 
@@ -87,7 +88,7 @@ impl<'c> View<'c> {
     }
 
     /// All components, each with whether its composite asks for autowire.
-    pub(super) fn components(&self) -> impl Iterator<Item = (bool, &'c model::Component)> {
+    pub(super) fn components(&self) -> impl Iterator<Item = (bool, &'c model::ComponentElement)> {
         let all = self
             .composites
             .iter()
@@ -97,16 +98,16 @@ impl<'c> View<'c> {
         })
     }
 
-    pub(super) fn wires(&self) -> impl Iterator<Item = &'c Wire> {
+    pub(super) fn wires(&self) -> impl Iterator<Item = &'c WireElement> {
         let all = self.composites().flat_map(|composite| &composite.wires);
         all.filter(|wire| self.census.is_there(wire.origin))
     }
 
-    pub(super) fn services(&self) -> impl Iterator<Item = &'c Service> {
+    pub(super) fn services(&self) -> impl Iterator<Item = &'c ServiceElement> {
         self.composites().flat_map(|composite| &composite.services)
     }
 
-    pub(super) fn references(&self) -> impl Iterator<Item = &'c Reference> {
+    pub(super) fn references(&self) -> impl Iterator<Item = &'c ReferenceElement> {
         self.composites().flat_map(|composite| &composite.references)
     }
 }
@@ -156,7 +157,7 @@ impl Reader<'_> {
         diagram
     }
 
-    fn component(&mut self, one: &model::Component) -> Component {
+    fn component(&mut self, one: &model::ComponentElement) -> DiagramComponent {
         let mut component = component(one, self.registry);
         if one.replicas().is_some() {
             component.replicas = self.census.range(&self.around, one.origin);
@@ -197,11 +198,14 @@ impl Reader<'_> {
 }
 
 /// The registered class of a component.
-pub(super) fn class_of<'r>(component: &model::Component, registry: &'r Registry) -> Option<&'r Class> {
+pub(super) fn class_of<'r>(
+    component: &model::ComponentElement,
+    registry: &'r Registry,
+) -> Option<&'r RegisteredClass> {
     registry.get(component.class()?).map(AsRef::as_ref)
 }
 
-fn component(component: &model::Component, registry: &Registry) -> Component {
+fn component(component: &model::ComponentElement, registry: &Registry) -> DiagramComponent {
     let class = class_of(component, registry);
     let mut services: Vec<Port> =
         component.services.iter().map(|one| port(&one.name, one.interface())).collect();
@@ -221,7 +225,7 @@ fn component(component: &model::Component, registry: &Registry) -> Component {
         declared(own, &mut references);
     }
     let is_unknown = class.is_none() && component.class().is_some();
-    Component {
+    DiagramComponent {
         name: match component.replicas() {
             Some(_) => pattern(&component.name),
             None => component.name.to_string(),
@@ -256,7 +260,7 @@ fn declared(all: impl IntoIterator<Item = Port>, ports: &mut Vec<Port>) {
     }
 }
 
-fn label(component: &model::Component) -> String {
+fn label(component: &model::ComponentElement) -> String {
     let Some(implementation) = &component.implementation else { return String::new() };
     let kind = match &implementation.kind {
         ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => {
@@ -270,17 +274,17 @@ fn label(component: &model::Component) -> String {
     format!("implementation.{kind}")
 }
 
-fn port(name: &str, interface: Option<&Interface>) -> Port {
+fn port(name: &str, interface: Option<&InterfaceElement>) -> Port {
     let interface = interface.and_then(|one| one.interface.as_ref()).map(ToString::to_string);
     Port { interface, ..Port::named(name) }
 }
 
-fn reference(one: &Reference) -> Port {
+fn reference(one: &ReferenceElement) -> Port {
     let many = one.multiplicity().map(|one| one.value.is_many());
     Port { many, ..port(&one.name, one.interface()) }
 }
 
-fn setting(property: &model::Property) -> Setting {
+fn setting(property: &model::Property) -> DiagramSetting {
     let simple = property.simple_value().or_else(|| property.source()).or_else(|| property.file());
-    Setting { name: property.name.to_string(), value: simple.map(ToString::to_string) }
+    DiagramSetting { name: property.name.to_string(), value: simple.map(ToString::to_string) }
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use super::diagram::{Component, Diagram, LinkKind, Port, Setting, State, Topic};
+use super::diagram::{Diagram, DiagramComponent, DiagramSetting, DiagramTopic, LinkKind, Port, State};
 use super::layout::measure::{CHEVRON, CHIP_HEIGHT, CHIP_SIZE, Chip, LABEL, NAME_SIZE, SMALL_SIZE};
 use super::layout::{
     LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, border, heading, layout,
@@ -122,7 +122,7 @@ impl Out<'_, '_> {
         self.chips(&layout.chips, &diagram.properties, Point { x: 0, y: 0 });
     }
 
-    fn component(&mut self, placed: &Placed, component: &Component) {
+    fn component(&mut self, placed: &Placed, component: &DiagramComponent) {
         let Placed { rect, plan } = placed;
         let class = match component.state {
             State::Known => "component",
@@ -175,7 +175,7 @@ impl Out<'_, '_> {
     }
 
     /// Joins what a composite promotes to the parts of its component of the same names: on each side by one line, as the names say which belong together.
-    fn ties(&mut self, placed: &Placed, component: &Component, picture: &Layout, at: Point) {
+    fn ties(&mut self, placed: &Placed, component: &DiagramComponent, picture: &Layout, at: Point) {
         let Placed { rect, plan } = placed;
         let (left, right) = (rect.x + TIE, rect.x + rect.width - TIE);
         let sides = [
@@ -232,7 +232,7 @@ impl Out<'_, '_> {
         );
     }
 
-    fn chips(&mut self, chips: &[Chip], settings: &[Setting], origin: Point) {
+    fn chips(&mut self, chips: &[Chip], settings: &[DiagramSetting], origin: Point) {
         for (chip, setting) in chips.iter().zip(settings) {
             let (x, y) = (origin.x + chip.x, origin.y + chip.y);
             self.text.push_str("<g>");
@@ -244,7 +244,7 @@ impl Out<'_, '_> {
         }
     }
 
-    fn rail(&mut self, rail: &Rail, topic: &Topic, color: &str) {
+    fn rail(&mut self, rail: &Rail, topic: &DiagramTopic, color: &str) {
         let Rect { x, y, width, height } = rail.label;
         let middle = y + height / 2;
         self.text.push_str("<g>");
@@ -300,7 +300,8 @@ impl Out<'_, '_> {
             out.label("small", Point { x: x + 24, y: y + 4 }, text, SMALL_SIZE, "start");
             x += 24 + width(text, SMALL_SIZE, false) + 16;
         };
-        let has_ports = |ports: fn(&Component) -> bool| diagram.any(&|one| one.components.iter().any(ports));
+        let has_ports =
+            |ports: fn(&DiagramComponent) -> bool| diagram.any(&|one| one.components.iter().any(ports));
         let has = |kind: LinkKind| diagram.any(&|one| one.links.iter().any(|link| link.kind == kind));
         let has_properties = |one: &Diagram| {
             !one.properties.is_empty() || one.components.iter().any(|one| !one.properties.is_empty())

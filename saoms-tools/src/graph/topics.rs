@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use super::diagram::{Diagram, Topic};
+use super::diagram::{Diagram, DiagramTopic};
 use super::read::View;
 use saoms_lang::check::TopicUse;
 
 /// The topics of the components whose classes are registered, those of their loops among them.
-pub(super) fn of(view: &View<'_>) -> Vec<Topic> {
+pub(super) fn of(view: &View<'_>) -> Vec<DiagramTopic> {
     let mut topics = Topics::default();
     for (place, (_, component)) in view.components().enumerate() {
         for one in view.topics(component) {
@@ -24,7 +24,7 @@ pub(super) fn of(view: &View<'_>) -> Vec<Topic> {
 pub(super) fn join(diagram: &mut Diagram, is_repeated: bool) {
     let is_several =
         |end: &usize| is_repeated || diagram.components[*end].replicas.is_some_and(|(_, most)| most > 1);
-    let mut all: Vec<Topic> = Vec::with_capacity(diagram.topics.len());
+    let mut all: Vec<DiagramTopic> = Vec::with_capacity(diagram.topics.len());
     // By what they are the same in; `names` has the one before renaming until here.
     let mut places: HashMap<Sameness, usize> = HashMap::new();
     for mut topic in std::mem::take(&mut diagram.topics) {
@@ -67,14 +67,14 @@ fn common(names: &[String]) -> String {
 
 #[derive(Default)]
 struct Topics {
-    all: Vec<Topic>,
+    all: Vec<DiagramTopic>,
     places: HashMap<String, usize>,
 }
 
 impl Topics {
-    fn get(&mut self, one: &TopicUse) -> &mut Topic {
+    fn get(&mut self, one: &TopicUse) -> &mut DiagramTopic {
         let place = *self.places.entry(one.name.clone()).or_insert_with(|| {
-            self.all.push(Topic {
+            self.all.push(DiagramTopic {
                 name: one.name.clone(),
                 names: vec![one.declared.name.clone()],
                 kind: one.declared.kind,

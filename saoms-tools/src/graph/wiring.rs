@@ -2,12 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::diagram::{Component, Diagram, End, Link, LinkKind, State};
+use super::diagram::{Diagram, DiagramComponent, DiagramEnd, DiagramLink, LinkKind, State};
 use super::groups::Groups;
 use super::ports::{Ports, Side};
 use super::read::View;
 use saoms_lang::expression::{has_expression, pattern};
-use saoms_lang::model::Wire;
+use saoms_lang::model::WireElement;
 
 /// Wires of autowire that are drawn of one composite: each reference that takes several has one to each service of its interface.
 const MOST_AUTOWIRED: usize = 20_000;
@@ -29,9 +29,9 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
         left: MOST_MISSING,
         is_inside,
     };
-    let is_replacing = |wire: &Wire| wire.replace().is_some_and(|replace| replace.value);
+    let is_replacing = |wire: &WireElement| wire.replace().is_some_and(|replace| replace.value);
     let replaced = view.wires().filter(|wire| is_replacing(wire)).filter_map(|wire| wire.source.as_ref());
-    let replaced: HashSet<End> = replaced.filter_map(|source| linker.reference(source)).collect();
+    let replaced: HashSet<DiagramEnd> = replaced.filter_map(|source| linker.reference(source)).collect();
     linker.targets(view, &replaced);
     for wire in view.wires() {
         let (Some(source), Some(target)) = (&wire.source, &wire.target) else { continue };
@@ -54,9 +54,9 @@ struct Linker<'d> {
     places: HashMap<String, usize>,
     groups: Groups,
     ports: Ports,
-    seen: HashSet<Link>,
+    seen: HashSet<DiagramLink>,
     /// What has a link already.
-    linked: HashSet<End>,
+    linked: HashSet<DiagramEnd>,
     /// How many more components may be drawn as missing.
     left: usize,
     /// Whether there is something around the composite.
@@ -65,10 +65,10 @@ struct Linker<'d> {
 
 impl Linker<'_> {
     /// Wires references to their targets, but those to which a wire gives others in their place.
-    fn targets(&mut self, view: &View<'_>, replaced: &HashSet<End>) {
+    fn targets(&mut self, view: &View<'_>, replaced: &HashSet<DiagramEnd>) {
         for (component, (_, model)) in view.components().enumerate() {
             for (port, reference) in model.references.iter().enumerate() {
-                let from = End::Component { component, port };
+                let from = DiagramEnd::Component { component, port };
                 let stands = !replaced.contains(&from);
                 for target in reference.targets.iter().filter(|_| stands) {
                     self.wire(from, target);
@@ -86,11 +86,11 @@ impl Linker<'_> {
                 self.diagram.left_out += 1;
                 continue;
             };
-            if let End::Component { component, port } = to {
+            if let DiagramEnd::Component { component, port } = to {
                 let inner = &self.diagram.components[component].services[port];
                 self.diagram.services[place].interface = interface.or_else(|| inner.interface.clone());
             }
-            self.add(LinkKind::Promotion, End::Composite(place), to);
+            self.add(LinkKind::Promotion, DiagramEnd::Composite(place), to);
         }
         for (place, reference) in view.references().enumerate() {
             for promote in reference.promote() {
@@ -98,12 +98,12 @@ impl Linker<'_> {
                     self.diagram.left_out += 1;
                     continue;
                 };
-                if let End::Component { component, port } = from {
+                if let DiagramEnd::Component { component, port } = from {
                     let inner = &self.diagram.components[component].references[port];
                     let outer = &mut self.diagram.references[place].interface;
                     *outer = outer.take().or_else(|| inner.interface.clone());
                 }
-                self.add(LinkKind::Promotion, from, End::Composite(place));
+                self.add(LinkKind::Promotion, from, DiagramEnd::Composite(place));
             }
         }
     }
@@ -115,7 +115,7 @@ impl Linker<'_> {
         for (component, (is_default, model)) in view.components().enumerate() {
             let is_default = model.autowire().map_or(is_default, |one| one.value);
             for port in 0..self.diagram.components[component].references.len() {
-                let from = End::Component { component, port };
+                let from = DiagramEnd::Component { component, port };
                 let written = model.references.get(port);
                 let is_asked = written.and_then(|one| one.autowire()).map_or(is_default, |one| one.value);
                 if !is_asked || self.linked.contains(&from) {
@@ -132,7 +132,11 @@ impl Linker<'_> {
                 let drawn = most.min(left);
                 let offered = all.iter().filter(|(offering, _)| *offering != component);
                 for &(component, port) in offered.take(drawn) {
-                    let link = Link { kind: LinkKind::Wire, from, to: End::Component { component, port } };
+                    let link = DiagramLink {
+                        kind: LinkKind::Wire,
+                        from,
+                        to: DiagramEnd::Component { component, port },
+                    };
                     if self.seen.insert(link) {
                         self.diagram.links.push(link);
                     }
@@ -162,12 +166,12 @@ impl Linker<'_> {
         all
     }
 
-    fn wire(&mut self, from: End, target: &str) {
+    fn wire(&mut self, from: DiagramEnd, target: &str) {
         let interface = match from {
-            End::Component { component, port } => {
+            DiagramEnd::Component { component, port } => {
                 self.diagram.components[component].references[port].interface.clone()
             }
-            End::Composite(_) => None,
+            DiagramEnd::Composite(_) => None,
         };
         match self.service(target, interface.as_deref()) {
             Some(to) => self.add(LinkKind::Wire, from, to),
@@ -175,8 +179,8 @@ impl Linker<'_> {
         }
     }
 
-    fn add(&mut self, kind: LinkKind, from: End, to: End) {
-        let link = Link { kind, from, to };
+    fn add(&mut self, kind: LinkKind, from: DiagramEnd, to: DiagramEnd) {
+        let link = DiagramLink { kind, from, to };
         if self.seen.insert(link) {
             // What is promoted is wired around the composite, where there is something around it.
             if kind == LinkKind::Wire || self.is_inside {
@@ -187,17 +191,17 @@ impl Linker<'_> {
     }
 
     /// The service that `component`, `component/service` or `component/service/binding` names; `None` where that is not drawn.
-    fn service(&mut self, uri: &str, interface: Option<&str>) -> Option<End> {
+    fn service(&mut self, uri: &str, interface: Option<&str>) -> Option<DiagramEnd> {
         let (component, name) = self.split(uri)?;
         let port = match &name {
             Some(name) => self.ports.named(self.diagram, component, Side::Services, name),
             None => self.ports.meant(self.diagram, component, interface),
         };
-        Some(End::Component { component, port })
+        Some(DiagramEnd::Component { component, port })
     }
 
     /// The reference that `component` or `component/reference` names; `None` where that is not drawn.
-    fn reference(&mut self, uri: &str) -> Option<End> {
+    fn reference(&mut self, uri: &str) -> Option<DiagramEnd> {
         let (component, name) = self.split(uri)?;
         let port = match (name, self.diagram.components[component].references.len()) {
             (None, 1..) => 0,
@@ -205,7 +209,7 @@ impl Linker<'_> {
                 self.ports.named(self.diagram, component, Side::References, &name.unwrap_or_default())
             }
         };
-        Some(End::Component { component, port })
+        Some(DiagramEnd::Component { component, port })
     }
 
     /// The component of a URI, drawn as missing when there is none, and what follows it; `None` where there are too many that are missing.
@@ -218,7 +222,7 @@ impl Linker<'_> {
             Some(place) => place,
             None => {
                 self.left = self.left.checked_sub(1)?;
-                self.diagram.components.push(Component {
+                self.diagram.components.push(DiagramComponent {
                     name: name.to_owned(),
                     replicas: None,
                     class: String::new(),

@@ -8,7 +8,7 @@ use saoms_api::host::parse_duration;
 use super::node::{Documented, NewElement};
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::model::Version;
-use saoms_lang::registry::{Class, ClassDeclaration, PropertyDeclaration, Registry};
+use saoms_lang::registry::{ClassDeclaration, PropertyDeclaration, RegisteredClass, Registry};
 
 /// The number of a text, where it is one.
 const INTEGER: &str = "^[+-]?[0-9]+$";
@@ -49,7 +49,7 @@ fn of_class(declaration: &ClassDeclaration, registry: &Registry) -> Vec<(String,
         // A name of the class may preset it.
         let lacks = |name: &&&str| {
             let class = registry.get(name).map(AsRef::as_ref);
-            class.is_none_or(|class: &Class| {
+            class.is_none_or(|class: &RegisteredClass| {
                 class.presets().iter().all(|(preset, _)| *preset != property.name)
             })
         };

@@ -26,7 +26,7 @@ use saoms_lang::registry::Registry;
 
 /// A schema, which is one file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Schema {
+pub struct XsdSchema {
     /// The name of the file; schemas refer to each other by these names.
     pub file: &'static str,
     /// The namespace that it describes.
@@ -58,16 +58,16 @@ const OWN_FILE: &str = "saoms.xsd";
 /// assert_eq!(files, ["sca-1.1.xsd", "sca-1.1-draft.xsd", "sca-1.0.xsd", "saoms.xsd"]);
 /// assert!(all[0].text.contains("targetNamespace=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\""));
 /// ```
-pub fn schemas(registry: &Registry, xsd: Xsd) -> Vec<Schema> {
+pub fn schemas(registry: &Registry, xsd: Xsd) -> Vec<XsdSchema> {
     let sca = Version::ALL.map(|version| {
         let assertions = match xsd {
             Xsd::V1_0 => Vec::new(),
             Xsd::V1_1 => assertions::of_components(registry, version),
         };
         let text = sca::schema(version, assertions).document();
-        Schema { file: file(version), namespace: version.namespace(), text }
+        XsdSchema { file: file(version), namespace: version.namespace(), text }
     });
-    let own = Schema {
+    let own = XsdSchema {
         file: OWN_FILE,
         namespace: SAOMS_NAMESPACE,
         text: own::schema(&Words::of(registry)).document(),

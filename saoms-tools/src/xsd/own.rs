@@ -6,7 +6,7 @@ use super::node::{Documented, NewElement};
 use super::root;
 use super::sca::{attributes as declared, holding, name_of};
 use super::words::{Names, Words};
-use saoms_lang::diagnostic::{Level, Severity};
+use saoms_lang::diagnostic::{Severity, SeverityLevel};
 use saoms_lang::load::vocabulary::{
     Holds, IMPLEMENTATION_RUST, INTERFACE_RUST, Kind, Known, LOOP, OWN_ATTRIBUTES, SEVERITY, children,
 };
@@ -114,12 +114,12 @@ fn simple() -> [NewElement; 4] {
         };
         enumeration(value.name(), doc)
     };
-    let level = |level: Level| {
+    let level = |level: SeverityLevel| {
         let doc = match level {
-            Level::Allow => "They are kept for the record alone.",
-            Level::Set(Severity::Note) => "They are worth knowing.",
-            Level::Set(Severity::Warning) => "They are probably not meant.",
-            Level::Set(Severity::Error) => "Nothing starts with them.",
+            SeverityLevel::Allow => "They are kept for the record alone.",
+            SeverityLevel::Set(Severity::Note) => "They are worth knowing.",
+            SeverityLevel::Set(Severity::Warning) => "They are probably not meant.",
+            SeverityLevel::Set(Severity::Error) => "Nothing starts with them.",
         };
         enumeration(level.name(), doc)
     };
@@ -130,7 +130,8 @@ fn simple() -> [NewElement; 4] {
             .named("Given", "A text that is not empty."),
         restricted("xs:token", Multiplicity::ALL.map(multiplicity))
             .named("Multiplicity", "How many targets a reference takes."),
-        restricted("xs:token", Level::ALL.map(level)).named("Level", "How bad diagnostics of a code are."),
+        restricted("xs:token", SeverityLevel::ALL.map(level))
+            .named("Level", "How bad diagnostics of a code are."),
     ]
 }
 

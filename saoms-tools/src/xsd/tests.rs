@@ -40,7 +40,7 @@ impl Component for Lamp {
     }
 }
 
-fn lamps() -> Vec<Schema> {
+fn lamps() -> Vec<XsdSchema> {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Lamp>()).unwrap();
     schemas(&registry, Xsd::V1_0)

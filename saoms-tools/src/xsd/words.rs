@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use saoms_lang::assembly::TaskProperties;
-use saoms_lang::registry::{Class, InterfaceDeclaration, PropertyDeclaration, Registry};
+use saoms_lang::registry::{InterfaceDeclaration, PropertyDeclaration, RegisteredClass, Registry};
 
 /// Names of one sort with their documentation, sorted.
 pub(super) type Names = BTreeMap<String, String>;
@@ -125,7 +125,7 @@ fn paragraph(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn about_class(class: &Class) -> String {
+fn about_class(class: &RegisteredClass) -> String {
     let declaration = class.declaration();
     let mut text = String::new();
     if class.is_alias() {

@@ -5,7 +5,7 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::host::format_duration;
-use saoms_lang::assembly::{Assembly, End, Topic, Traffic};
+use saoms_lang::assembly::{Assembly, TopicEnd, Traffic, TrafficTopic};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
@@ -17,7 +17,7 @@ struct Group<'a> {
     paths: Vec<&'a str>,
 }
 
-fn groups<'a>(ends: &[End], assembly: &'a Assembly) -> Vec<Group<'a>> {
+fn groups<'a>(ends: &[TopicEnd], assembly: &'a Assembly) -> Vec<Group<'a>> {
     let mut all: Vec<Group<'a>> = Vec::new();
     let mut places: HashMap<(&str, Option<Duration>, u32), usize> = HashMap::new();
     for end in ends {
@@ -78,7 +78,7 @@ impl fmt::Display for Group<'_> {
 }
 
 /// The rate, with as many digits as are significant.
-fn rate(topic: &Topic) -> String {
+fn rate(topic: &TrafficTopic) -> String {
     let rate = topic.rate();
     if rate < 10.0 { format!("{}", (rate * 10.0).round() / 10.0) } else { format!("{rate:.0}") }
 }

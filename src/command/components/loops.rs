@@ -2,21 +2,21 @@
 
 use std::fmt::Write;
 
-use saoms_lang::registry::{ClassDeclaration, EntryDeclaration, LoopClass};
+use saoms_lang::registry::{ClassDeclaration, KnowledgeEntry, RegisteredLoop};
 
 use super::{first_sentence, interface_lines, property_lines, section, topic_line, type_name, wrapped};
 
 /// A line per loop.
-pub(super) fn listed(loops: &[&LoopClass]) -> String {
+pub(super) fn listed(loops: &[&RegisteredLoop]) -> String {
     let width = loops.iter().map(|one| one.name().len()).max().unwrap_or(0);
-    let line = |one: &&LoopClass| {
+    let line = |one: &&RegisteredLoop| {
         format!("{:width$}  loop      {}\n", one.name(), first_sentence(&one.declaration().doc))
     };
     loops.iter().map(line).collect()
 }
 
 /// Everything about one loop.
-pub(super) fn described(one: &LoopClass) -> String {
+pub(super) fn described(one: &RegisteredLoop) -> String {
     let declaration = one.declaration();
     let mut text = format!("{} (loop)\n", one.name());
     for line in wrapped(&declaration.doc, 100) {
@@ -58,7 +58,7 @@ pub(super) fn of_class(class: &ClassDeclaration, text: &mut String) {
     }
 }
 
-fn entry_lines(entry: &EntryDeclaration) -> String {
+fn entry_lines(entry: &KnowledgeEntry) -> String {
     let mut facts = vec![type_name(&entry.of)];
     facts.extend(entry.unit.as_ref().map(|unit| format!("in {unit}")));
     if entry.effector {

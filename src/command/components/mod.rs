@@ -9,7 +9,8 @@ use clap::Args;
 use saoms_api::Properties;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::registry::{
-    Class, InterfaceDeclaration, LoopClass, PropertyDeclaration, Registry, Rule, TopicDeclaration,
+    ClassTopic, InterfaceDeclaration, PropertyDeclaration, RegisteredClass, RegisteredLoop, RegisteredRule,
+    Registry,
 };
 use serde_json::{Value, json};
 
@@ -37,7 +38,7 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
         Ok(registry) => registry,
         Err(exit) => return exit,
     };
-    let (chosen, loops): (Vec<&Class>, Vec<&LoopClass>) = match &arguments.name {
+    let (chosen, loops): (Vec<&RegisteredClass>, Vec<&RegisteredLoop>) = match &arguments.name {
         None => (
             registry.iter().map(AsRef::as_ref).filter(|class| !class.is_alias()).collect(),
             registry.loops().map(AsRef::as_ref).collect(),
@@ -86,7 +87,7 @@ fn unknown(name: &str, registry: &Registry) -> String {
 }
 
 /// A line per class, then one per loop, then one per rule of a plugin.
-fn listed(classes: &[&Class], loops: &[&LoopClass], rules: &[Rule]) -> String {
+fn listed(classes: &[&RegisteredClass], loops: &[&RegisteredLoop], rules: &[RegisteredRule]) -> String {
     let width = classes.iter().map(|class| class.name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for class in classes {
@@ -120,12 +121,12 @@ fn first_sentence(doc: &str) -> String {
     words[..end].join(" ").trim_end_matches('.').to_owned()
 }
 
-fn kind(class: &Class) -> &'static str {
+fn kind(class: &RegisteredClass) -> &'static str {
     if class.declaration().is_periodic() { "periodic" } else { "passive" }
 }
 
 /// Everything about one class.
-fn described(class: &Class) -> String {
+fn described(class: &RegisteredClass) -> String {
     let declaration = class.declaration();
     let mut text = format!("{} ({})\n", class.name(), kind(class));
     if class.is_alias() {
@@ -175,7 +176,7 @@ fn described(class: &Class) -> String {
 }
 
 /// The value that the class's name presets for the property.
-fn preset<'a>(class: &'a Class, property: &str) -> Option<&'a str> {
+fn preset<'a>(class: &'a RegisteredClass, property: &str) -> Option<&'a str> {
     let declaration = class.declaration();
     let alias = declaration.also.iter().find(|alias| alias.name == class.name())?;
     alias.preset.get(property).map(String::as_str)
@@ -210,7 +211,7 @@ fn property_lines((property, preset): (&PropertyDeclaration, Option<&str>)) -> S
     text
 }
 
-fn topic_line(topic: &TopicDeclaration) -> String {
+fn topic_line(topic: &ClassTopic) -> String {
     format!("  {} ({} topic of {})\n", topic.name, topic.kind.name(), topic.message)
 }
 
@@ -255,7 +256,7 @@ fn type_name(value: &Value) -> String {
 }
 
 /// The class's declaration; that of a periodic class includes the task properties.
-fn as_json(class: &Class) -> Value {
+fn as_json(class: &RegisteredClass) -> Value {
     let mut declaration: Value = serde_json::from_str(class.declaration_json()).unwrap_or_default();
     if class.declaration().is_periodic() {
         declaration["taskProperties"] = serde_json::from_str(TaskProperties::DECLARATION).unwrap_or_default();

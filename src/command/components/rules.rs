@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use saoms_lang::registry::Rule;
+use saoms_lang::registry::RegisteredRule;
 use serde_json::{Value, json};
 
 /// A line per rule that a plugin brings; those that ship are in the manual of diagnostics.
-pub(super) fn listed(rules: &[Rule]) -> String {
+pub(super) fn listed(rules: &[RegisteredRule]) -> String {
     let mut text = String::new();
-    let of_plugins: Vec<&Rule> = rules.iter().filter(|rule| rule.origin().is_some()).collect();
+    let of_plugins: Vec<&RegisteredRule> = rules.iter().filter(|rule| rule.origin().is_some()).collect();
     let width = of_plugins.iter().map(|rule| rule.code().name.len()).max().unwrap_or(0);
     for rule in &of_plugins {
         let code = rule.code();
@@ -19,7 +19,7 @@ pub(super) fn listed(rules: &[Rule]) -> String {
     text
 }
 
-pub(super) fn as_json(rule: &Rule) -> Value {
+pub(super) fn as_json(rule: &RegisteredRule) -> Value {
     let code = rule.code();
     json!({
         "code": code.id,

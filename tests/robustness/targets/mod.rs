@@ -13,7 +13,8 @@ use saoms_lang::assembly::TaskProperties;
 use saoms_lang::check::{Occurrences, Options};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes, human, json, sarif};
 use saoms_lang::expression::{
-    Fault, Problem, Value, boolean, has_expression, integer, names, parse, pattern, render,
+    ExpressionError, ExpressionFault, ExpressionValue, boolean, has_expression, integer, names, parse,
+    pattern, render,
 };
 use saoms_lang::load::{MAX_SIZE, load_file, read_from};
 use saoms_lang::model::{Composite, Contribution};
@@ -79,13 +80,14 @@ pub(crate) fn value(bytes: &[u8]) {
 pub(crate) fn expression(bytes: &[u8]) {
     let text = &*String::from_utf8_lossy(bytes);
     let mut lookup = |name: &str| match name {
-        "index" => Ok(Value::Integer(7)),
-        "large" => Ok(Value::Integer(i64::MAX)),
-        "site" => Ok(Value::Text("north".into())),
-        "is" => Ok(Value::Boolean(true)),
-        _ => Err(Problem::new("there is none")),
+        "index" => Ok(ExpressionValue::Integer(7)),
+        "large" => Ok(ExpressionValue::Integer(i64::MAX)),
+        "site" => Ok(ExpressionValue::Text("north".into())),
+        "is" => Ok(ExpressionValue::Boolean(true)),
+        _ => Err(ExpressionError::new("there is none")),
     };
-    let is_inside = |fault: Fault| assert!(text.get(fault.at.clone()).is_some(), "{fault:?} in {text:?}");
+    let is_inside =
+        |fault: ExpressionFault| assert!(text.get(fault.at.clone()).is_some(), "{fault:?} in {text:?}");
     match parse(text) {
         Ok(one) => {
             one.names().into_iter().for_each(|(name, at)| assert_eq!(text.get(at), Some(name), "{text:?}"));

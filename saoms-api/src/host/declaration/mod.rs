@@ -110,14 +110,14 @@ mod rule;
 mod text;
 
 /// The part of a topic's declaration that marks it as [optional](crate::Topic::optional).
-pub const fn optional_topic(is_optional: bool) -> Text {
+pub const fn optional_topic(is_optional: bool) -> ConstText {
     match is_optional {
-        true => Text::Plain(",\"optional\":true"),
-        false => Text::EMPTY,
+        true => ConstText::Plain(",\"optional\":true"),
+        false => ConstText::EMPTY,
     }
 }
 
 pub use crate::property::PropertyShape;
 pub(crate) use rule::trim;
 pub use rule::{PlainBounds, PropertyKind, Rule, Scalar, parse_scalar};
-pub use text::{Text, text};
+pub use text::{ConstText, text};

@@ -2,24 +2,24 @@ use std::fmt::{self, Write};
 
 /// A text that is put together while the program is compiled, as a tree: parts can come from constants of other types.
 #[derive(Clone, Copy, Debug)]
-pub enum Text {
+pub enum ConstText {
     /// As it stands.
     Plain(&'static str),
     /// As a JSON string: in quotation marks, with escapes.
     Quoted(&'static str),
     /// One after the other.
-    Joined(&'static [Text]),
+    Joined(&'static [ConstText]),
 }
 
-impl Text {
+impl ConstText {
     /// No text.
-    pub const EMPTY: Text = Text::Plain("");
+    pub const EMPTY: ConstText = ConstText::Plain("");
 
     /// Its length in bytes.
     pub const fn length(self) -> usize {
         match self {
-            Text::Plain(text) => text.len(),
-            Text::Quoted(text) => {
+            ConstText::Plain(text) => text.len(),
+            ConstText::Quoted(text) => {
                 let (bytes, mut at, mut length) = (text.as_bytes(), 0, 2);
                 while at < bytes.len() {
                     length += escape(bytes[at]).1;
@@ -27,7 +27,7 @@ impl Text {
                 }
                 length
             }
-            Text::Joined(parts) => {
+            ConstText::Joined(parts) => {
                 let (mut at, mut length) = (0, 0);
                 while at < parts.len() {
                     length += parts[at].length();
@@ -38,7 +38,7 @@ impl Text {
         }
     }
 
-    /// Its bytes; `N` has to be its [`length`](Text::length).
+    /// Its bytes; `N` has to be its [`length`](ConstText::length).
     pub const fn bytes<const N: usize>(self) -> [u8; N] {
         let mut bytes = [0; N];
         let end = self.put(&mut bytes, 0);
@@ -48,8 +48,8 @@ impl Text {
 
     const fn put(self, bytes: &mut [u8], start: usize) -> usize {
         match self {
-            Text::Plain(text) => copy(text.as_bytes(), text.len(), bytes, start),
-            Text::Quoted(text) => {
+            ConstText::Plain(text) => copy(text.as_bytes(), text.len(), bytes, start),
+            ConstText::Quoted(text) => {
                 let mut end = copy(b"\"", 1, bytes, start);
                 let mut at = 0;
                 while at < text.len() {
@@ -59,7 +59,7 @@ impl Text {
                 }
                 copy(b"\"", 1, bytes, end)
             }
-            Text::Joined(parts) => {
+            ConstText::Joined(parts) => {
                 let (mut at, mut end) = (0, start);
                 while at < parts.len() {
                     end = parts[at].put(bytes, end);
@@ -71,11 +71,11 @@ impl Text {
     }
 }
 
-impl fmt::Display for Text {
+impl fmt::Display for ConstText {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Text::Plain(text) => formatter.write_str(text),
-            Text::Quoted(text) => {
+            ConstText::Plain(text) => formatter.write_str(text),
+            ConstText::Quoted(text) => {
                 formatter.write_str("\"")?;
                 for letter in text.chars() {
                     match u8::try_from(letter).map(escape) {
@@ -89,12 +89,12 @@ impl fmt::Display for Text {
                 }
                 formatter.write_str("\"")
             }
-            Text::Joined(parts) => parts.iter().try_for_each(|part| part.fmt(formatter)),
+            ConstText::Joined(parts) => parts.iter().try_for_each(|part| part.fmt(formatter)),
         }
     }
 }
 
-/// The text of bytes from [`Text::bytes`].
+/// The text of bytes from [`ConstText::bytes`].
 #[expect(clippy::panic, reason = "it stops the compiler, not the program: a text's bytes are UTF-8")]
 pub const fn text(bytes: &'static [u8]) -> &'static str {
     match std::str::from_utf8(bytes) {

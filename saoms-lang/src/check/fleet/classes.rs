@@ -9,10 +9,10 @@ use crate::check::properties::property_table::PropertyTable;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
-use crate::model::{Component, Contribution, ImplementationKind, LibraryLink, Part};
+use crate::model::{ComponentElement, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
-    Class, InterfaceDeclaration, LoopDeclaration, ReferenceDeclaration, Registry, ServiceDeclaration,
-    TopicDeclaration,
+    ClassTopic, InterfaceDeclaration, LoopDeclaration, ReferenceDeclaration, RegisteredClass, Registry,
+    ServiceDeclaration,
 };
 use crate::source::{Sources, Text};
 use crate::syntax::escaped;
@@ -22,14 +22,14 @@ const OFFERED: usize = 3;
 
 /// A class of the fleet, with its declaration at hand; where components of it have loops, together with these.
 pub(crate) struct ClassIndex<'r> {
-    pub(crate) class: &'r Arc<Class>,
+    pub(crate) class: &'r Arc<RegisteredClass>,
     pub(crate) table: PropertyTable<'r>,
     /// Its services, those that the host serves for it included.
     pub(crate) services: Vec<&'r ServiceDeclaration>,
     /// Those of its loops included, like its topics.
     pub(crate) references: Vec<&'r ReferenceDeclaration>,
-    pub(crate) publishes: Vec<&'r TopicDeclaration>,
-    pub(crate) subscribes: Vec<&'r TopicDeclaration>,
+    pub(crate) publishes: Vec<&'r ClassTopic>,
+    pub(crate) subscribes: Vec<&'r ClassTopic>,
 }
 
 /// The services of a class with an interface.
@@ -42,7 +42,7 @@ pub(crate) enum Fitting {
 }
 
 impl<'r> ClassIndex<'r> {
-    fn new(class: &'r Arc<Class>) -> Self {
+    fn new(class: &'r Arc<RegisteredClass>) -> Self {
         let declaration = class.declaration();
         let services = declaration.offers().collect();
         Self {
@@ -148,7 +148,11 @@ pub(crate) fn resolve<'r>(
 }
 
 /// The name of the class of a component that names one.
-fn runnable<'a>(component: &'a Component, assume_classes: bool, report: &mut Report<'_>) -> Option<&'a Text> {
+fn runnable<'a>(
+    component: &'a ComponentElement,
+    assume_classes: bool,
+    report: &mut Report<'_>,
+) -> Option<&'a Text> {
     const SUPPORTED: &str = "components are implemented by a class: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
     let Some(implementation) = &component.implementation else {
         if assume_classes {
@@ -176,7 +180,7 @@ fn runnable<'a>(component: &'a Component, assume_classes: bool, report: &mut Rep
 }
 
 /// The kind of a component without a class, where that is taken as given.
-fn given(component: &Component) -> Kind {
+fn given(component: &ComponentElement) -> Kind {
     match component.implementation.as_ref().map(|implementation| &implementation.kind) {
         // A composite that is faulty, or missing: seen to when the fleet was unfolded.
         Some(ImplementationKind::Composite { .. }) => Kind::Nothing,
@@ -186,7 +190,7 @@ fn given(component: &Component) -> Kind {
 
 /// True if the class is in the library that is to have it, where one is named.
 fn is_in_library(
-    component: &Component,
+    component: &ComponentElement,
     class: &Text,
     contribution: &Contribution,
     registry: &Registry,
@@ -237,7 +241,7 @@ fn is_in_library(
 
 /// The library that a component's composite names for its class, as the first composite would name it.
 pub(crate) fn library(
-    component: &Component,
+    component: &ComponentElement,
     contribution: &Contribution,
     sources: &Sources,
 ) -> Option<String> {

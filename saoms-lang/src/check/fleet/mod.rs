@@ -14,7 +14,9 @@ use crate::check::unfolding::replica::Instance;
 use smol_str::SmolStr;
 
 use crate::expression::has_expression;
-use crate::model::{Component, Composite, Contribution, Reference, Service, Wire};
+use crate::model::{
+    ComponentElement, Composite, Contribution, ReferenceElement, ServiceElement, WireElement,
+};
 use crate::source::{FileId, Location};
 use crate::syntax::ElementId;
 
@@ -71,7 +73,7 @@ pub(crate) struct Member<'a> {
     pub(crate) composite: &'a Composite,
     pub(crate) unit: usize,
     pub(crate) scope: usize,
-    pub(crate) component: &'a Component,
+    pub(crate) component: &'a ComponentElement,
     /// True if its composite asks for autowire.
     pub(crate) autowire: bool,
     pub(crate) kind: Kind,
@@ -104,7 +106,12 @@ pub(crate) enum Kind {
 }
 
 impl<'a> Member<'a> {
-    pub(crate) fn new(composite: &'a Composite, unit: usize, scope: usize, component: &'a Component) -> Self {
+    pub(crate) fn new(
+        composite: &'a Composite,
+        unit: usize,
+        scope: usize,
+        component: &'a ComponentElement,
+    ) -> Self {
         Self {
             composite,
             unit,
@@ -154,12 +161,12 @@ impl<'a> Unit<'a> {
     }
 
     /// The services of the composite, those of included ones behind its own.
-    pub(crate) fn services(&self) -> impl Iterator<Item = &'a Service> + use<'a, '_> {
+    pub(crate) fn services(&self) -> impl Iterator<Item = &'a ServiceElement> + use<'a, '_> {
         self.composites.iter().flat_map(|composite| &composite.services)
     }
 
     /// The references of the composite, those of included ones behind its own.
-    pub(crate) fn references(&self) -> impl Iterator<Item = &'a Reference> + use<'a, '_> {
+    pub(crate) fn references(&self) -> impl Iterator<Item = &'a ReferenceElement> + use<'a, '_> {
         self.composites.iter().flat_map(|composite| &composite.references)
     }
 }
@@ -197,7 +204,7 @@ impl<'a> Fleet<'a> {
     }
 
     /// True if a condition keeps a wire away.
-    pub(crate) fn is_absent_wire(&self, unit: usize, wire: &Wire) -> bool {
+    pub(crate) fn is_absent_wire(&self, unit: usize, wire: &WireElement) -> bool {
         !self.absent_wires.is_empty()
             && self.absent_wires.contains(&(unit, wire.origin.file(), wire.origin.element))
     }

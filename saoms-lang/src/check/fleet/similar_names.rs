@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-use crate::assembly::{Topic, Traffic};
+use crate::assembly::{Traffic, TrafficTopic};
 use crate::diagnostic::{Candidates, nearest};
 
 /// The topics of a fleet, to be found by what they are like.
@@ -17,14 +17,14 @@ pub(crate) struct Similar<'t> {
 
 /// A topic with what is asked of it.
 pub(crate) struct Known<'t> {
-    pub(crate) topic: &'t Topic,
+    pub(crate) topic: &'t TrafficTopic,
     /// True if all who use it gave it its name.
     pub(crate) is_renamed: bool,
     name: Name,
 }
 
 impl<'t> Similar<'t> {
-    pub(crate) fn of(traffic: &'t Traffic, is_renamed: impl Fn(&Topic) -> bool) -> Self {
+    pub(crate) fn of(traffic: &'t Traffic, is_renamed: impl Fn(&TrafficTopic) -> bool) -> Self {
         let mut groups: HashMap<_, Vec<Known<'t>>> = HashMap::new();
         for topic in &traffic.topics {
             let known = Known { topic, is_renamed: is_renamed(topic), name: Name::of(&topic.name) };
@@ -34,7 +34,11 @@ impl<'t> Similar<'t> {
     }
 
     /// The topic with the most similar name among those that fit.
-    pub(crate) fn nearest(&self, topic: &Topic, fits: impl Fn(&Known<'t>) -> bool) -> Option<&'t Topic> {
+    pub(crate) fn nearest(
+        &self,
+        topic: &TrafficTopic,
+        fits: impl Fn(&Known<'t>) -> bool,
+    ) -> Option<&'t TrafficTopic> {
         let group = self.groups.get(&key(topic))?;
         if !self.candidates.borrow_mut().admit(group.len()) {
             return None;
@@ -75,6 +79,6 @@ impl Name {
     }
 }
 
-fn key(topic: &Topic) -> (&'static str, &str) {
+fn key(topic: &TrafficTopic) -> (&'static str, &str) {
     (topic.kind.name(), &topic.message)
 }

@@ -10,7 +10,7 @@ use crate::check::fleet::classes::ClassIndex;
 use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Loop, Part};
+use crate::model::{LoopElement, Part};
 use crate::registry::Registry;
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
@@ -32,9 +32,9 @@ pub(super) fn plan<'a>(
         report.push(one.help("loops work on the knowledge of a component, and this one declares none"));
         return (loops, false);
     }
-    let mut named: HashMap<&str, &Loop> = HashMap::new();
-    let mut removed: HashMap<&str, &Loop> = HashMap::new();
-    let mut taken: Vec<&Loop> = Vec::with_capacity(elements.len());
+    let mut named: HashMap<&str, &LoopElement> = HashMap::new();
+    let mut removed: HashMap<&str, &LoopElement> = HashMap::new();
+    let mut taken: Vec<&LoopElement> = Vec::with_capacity(elements.len());
     for one in elements {
         if one.name.is_empty() {
             is_sound = false;
@@ -138,7 +138,7 @@ fn by_default<'a>(
 }
 
 /// What one element says has to make sense: one that is removed cannot be anything else, and nothing stands at two places.
-fn fits_together(one: &Loop, report: &mut Report<'_>) -> bool {
+fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
     let contradiction = |at, message: String, other, what: &str| {
         Diagnostic::new(&codes::LOOP_CONTRADICTION, at, message).label(other, what)
     };
@@ -164,7 +164,7 @@ fn fits_together(one: &Loop, report: &mut Report<'_>) -> bool {
 }
 
 /// Says that an element names a loop that the component has, and leaves all of it as it is. What was meant to change it may be wrong, which is told.
-fn unchanged(one: &Loop, member: &Member<'_>, report: &mut Report<'_>) {
+fn unchanged(one: &LoopElement, member: &Member<'_>, report: &mut Report<'_>) {
     let says_something = [&one.class, &one.before, &one.after].into_iter().any(Option::is_some);
     let document = &member.composite.document;
     let span = one.origin().element(document).span();

@@ -21,8 +21,8 @@ use crate::check::report::Report;
 use crate::check::report::findings::Subject;
 use crate::check::values::parameters::Parameters;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Loop, Property};
-use crate::registry::{LoopClass, Registry};
+use crate::model::{LoopElement, Property};
+use crate::registry::{RegisteredLoop, Registry};
 
 /// The loops of a component, resolved.
 pub(crate) struct Resolved<'a> {
@@ -35,16 +35,16 @@ pub(crate) struct Resolved<'a> {
 /// A loop that the composite says something about.
 struct Changed<'a> {
     place: usize,
-    element: &'a Loop,
+    element: &'a LoopElement,
     /// Its values that are not one text in the composite, for their places.
     origins: Vec<ValueOrigin>,
 }
 
 impl Resolved<'_> {
     /// Those that the composite says something about, for the judgement of their constructors: the others are as their class has them.
-    pub(crate) fn changed(&self) -> impl Iterator<Item = (&LoopClass, Subject<'_>)> {
+    pub(crate) fn changed(&self) -> impl Iterator<Item = (&RegisteredLoop, Subject<'_>)> {
         self.changed.iter().map(|one| {
-            let (spec, Loop { name, properties, .. }) = (&self.specs[one.place], one.element);
+            let (spec, LoopElement { name, properties, .. }) = (&self.specs[one.place], one.element);
             let (values, origins, properties) = (&spec.values, &one.origins, properties);
             (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, origins })
         })
@@ -55,8 +55,8 @@ impl Resolved<'_> {
 struct Planned<'a> {
     name: &'a str,
     /// `None` where it is unknown, which is reported.
-    class: Option<&'a Arc<LoopClass>>,
-    element: Option<&'a Loop>,
+    class: Option<&'a Arc<RegisteredLoop>>,
+    element: Option<&'a LoopElement>,
 }
 
 /// A place among the classes, and the value that chooses among the lists of loops that the class has.
@@ -101,7 +101,7 @@ pub(crate) fn resolve<'a>(
         }
         let (loops, is_planned) = list::plan(member, class, &check.given, registry, report);
         let is_team = is_planned && team::check(member, class, &loops, report);
-        let used: Vec<&Arc<LoopClass>> = loops.iter().filter_map(|one| one.class).collect();
+        let used: Vec<&Arc<RegisteredLoop>> = loops.iter().filter_map(|one| one.class).collect();
         let mut with = index;
         if !used.is_empty() {
             let key = (index, used.iter().map(|one| one.name()).collect());

@@ -11,7 +11,7 @@ use super::list::report_unknown;
 use crate::check::fleet::Member;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::Loop;
+use crate::model::LoopElement;
 use crate::source::Text;
 
 /// Loops of a circle that are shown with their places.
@@ -20,8 +20,8 @@ const MOST_SHOWN: usize = 30;
 /// Brings the loops into the order that the elements ask for; `false` where they ask for none that is possible.
 pub(super) fn sort<'a>(
     loops: &mut Vec<Planned<'a>>,
-    elements: &[&'a Loop],
-    removed: &HashMap<&str, &Loop>,
+    elements: &[&'a LoopElement],
+    removed: &HashMap<&str, &LoopElement>,
     member: &Member<'_>,
     names: &[&str],
     report: &mut Report<'_>,
@@ -65,7 +65,7 @@ pub(super) fn sort<'a>(
     }
     let places: HashMap<&str, usize> = order.into_iter().zip(0..).collect();
     let is_stuck = |name: &str| moved.contains_key(name) && !places.contains_key(name);
-    let stuck: Vec<&&Loop> = elements.iter().filter(|one| is_stuck(&one.name)).collect();
+    let stuck: Vec<&&LoopElement> = elements.iter().filter(|one| is_stuck(&one.name)).collect();
     if let Some((last, others)) = stuck.split_last() {
         let target = moved[last.name.as_str()];
         let message = match others {

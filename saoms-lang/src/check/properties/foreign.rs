@@ -5,7 +5,7 @@ use crate::check::report::{Report, replacing};
 use crate::check::values::parameters::{Parameters, ValueSite};
 use crate::check::wiring::offer::Side;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
-use crate::model::{Component, ComponentType, ImplementationKind, Part, Reference};
+use crate::model::{ComponentElement, ComponentType, ImplementationKind, Part, ReferenceElement};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
 use std::collections::HashSet;
@@ -39,7 +39,7 @@ impl<'a> Fleet<'a> {
             Side::Reference => (&[][..], &component.references[..]),
         };
         let own = services.iter().map(|one| one.name.as_str());
-        let own = own.chain(references.iter().map(|one: &Reference| one.name.as_str()));
+        let own = own.chain(references.iter().map(|one: &ReferenceElement| one.name.as_str()));
         let mut names: Vec<&str> = own.chain(described).filter(|name| !name.is_empty()).collect();
         names.sort_unstable();
         names.dedup();
@@ -137,7 +137,7 @@ impl<'a> ForeignType<'a> {
 }
 
 /// Checks the services and references that a component writes against what is known of it.
-pub(crate) fn contracts(component: &Component, known: ForeignType<'_>, report: &mut Report<'_>) {
+pub(crate) fn contracts(component: &ComponentElement, known: ForeignType<'_>, report: &mut Report<'_>) {
     let names: Vec<&str> = known.names(Side::Service).collect();
     for name in component.services.iter().map(|one| &one.name) {
         let wrong = (&component.name, name.as_str(), name.location);

@@ -22,7 +22,9 @@ use crate::check::values::raw::{Piece, Raw, raw};
 use crate::check::values::value_type::{self, Match, Typed};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_equal, quoted};
 use crate::expression::has_expression;
-use crate::model::{Component, ComponentType, Loop, Origin, Part, Property, PropertyValue as Value, Version};
+use crate::model::{
+    ComponentElement, ComponentProperty, ComponentType, LoopElement, Origin, Part, Property, Version,
+};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
 use crate::syntax::{Document, escaped};
@@ -46,7 +48,7 @@ impl<'m, 'a> Giver<'m, 'a> {
         Self { what: "component", name, origin: component.origin, properties, member, described }
     }
 
-    pub(crate) fn looping(one: &'a Loop, member: &'m Member<'a>) -> Self {
+    pub(crate) fn looping(one: &'a LoopElement, member: &'m Member<'a>) -> Self {
         let properties = &one.properties;
         Self { what: "loop", name: &one.name, origin: one.origin, properties, member, described: None }
     }
@@ -303,7 +305,7 @@ const FEW: usize = 16;
 
 /// Says that a property that its declaration says takes one value is given several.
 fn several(
-    (property, first, second): (&Property, &Value, &Value),
+    (property, first, second): (&Property, &ComponentProperty, &ComponentProperty),
     declared: &Property,
     report: &mut Report<'_>,
 ) {
@@ -329,7 +331,7 @@ pub(crate) fn one_value(property: &Property, version: Version, report: &mut Repo
 }
 
 /// Reports properties that one component gives twice.
-pub(crate) fn repeated(component: &Component, report: &mut Report<'_>) {
+pub(crate) fn repeated(component: &ComponentElement, report: &mut Report<'_>) {
     let all = &component.properties;
     if all.len() <= FEW {
         for (place, property) in all.iter().enumerate().filter(|(_, property)| !property.name.is_empty()) {

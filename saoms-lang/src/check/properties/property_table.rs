@@ -6,7 +6,7 @@ use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 use crate::assembly::TaskProperties;
-use crate::registry::{Class, LoopClass, PropertyDeclaration};
+use crate::registry::{PropertyDeclaration, RegisteredClass, RegisteredLoop};
 
 /// The task property that people know a task by.
 const ID: &str = "ID";
@@ -66,7 +66,7 @@ impl<'r> TableEntry<'r> {
 }
 
 impl<'r> PropertyTable<'r> {
-    pub(crate) fn of_class(class: &'r Class) -> Self {
+    pub(crate) fn of_class(class: &'r RegisteredClass) -> Self {
         let declaration = class.declaration();
         let mut table = Self {
             what: "class",
@@ -92,7 +92,7 @@ impl<'r> PropertyTable<'r> {
         table
     }
 
-    pub(crate) fn of_loop(class: &'r LoopClass) -> Self {
+    pub(crate) fn of_loop(class: &'r RegisteredLoop) -> Self {
         let table = Self { what: "loop", name: class.name(), ..Self::own(&class.declaration().properties) };
         Self { required: table.places(TableEntry::is_required), ..table }
     }

@@ -8,7 +8,7 @@ use super::{Report, replacing};
 use crate::check::fleet::Member;
 use crate::check::properties::given_values::ValueOrigin;
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
-use crate::model::{Component, Property};
+use crate::model::{ComponentElement, Property};
 use crate::source::Location;
 use crate::syntax::escaped;
 
@@ -41,7 +41,7 @@ impl<'a> Subject<'a> {
         values: &'a [(SmolStr, PropertyValue)],
         origins: &'a [ValueOrigin],
     ) -> Self {
-        let Component { name, properties, .. } = member.component;
+        let ComponentElement { name, properties, .. } = member.component;
         Self { what: "component", name: name.as_str(), at: name.location, values, properties, origins }
     }
 

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use crate::check::options::Options;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Level, SetBy, Severity, codes, nearest, quoted};
+use crate::diagnostic::{
+    Code, Diagnostic, Diagnostics, SetBy, Severity, SeverityLevel, codes, nearest, quoted,
+};
 use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::{FileId, Located, Location, Sources, Span, Text};
@@ -14,7 +16,7 @@ pub struct SeveritySetting {
     /// The code.
     pub code: Text,
     /// Its level.
-    pub level: Located<Level>,
+    pub level: Located<SeverityLevel>,
     /// Why.
     pub reason: Option<Text>,
 }
@@ -38,11 +40,11 @@ impl SeveritySetting {
             let start = part.as_ptr() as usize - text.as_ptr() as usize;
             Span::new(start as u32, (start + part.len()) as u32).in_file(file)
         };
-        if let Some(level) = Level::from_name(level).map(|found| Located::new(found, place(level))) {
+        if let Some(level) = SeverityLevel::from_name(level).map(|found| Located::new(found, place(level))) {
             let reason = (!reason.is_empty()).then(|| Located::new(reason.into(), place(reason)));
             return Some(Self { code: Located::new(code.into(), place(code)), level, reason });
         }
-        let names = Level::ALL.map(Level::name);
+        let names = SeverityLevel::ALL.map(SeverityLevel::name);
         let one = if level.is_empty() {
             let whole = Span::new(0, text.len() as u32).in_file(file);
             Diagnostic::new(&codes::SEVERITY, whole, format!("{} sets no severity", quoted(text)))
@@ -125,15 +127,23 @@ impl Severities {
         let mut rules: Vec<Rule> = Vec::new();
         // The rules of each place about each code.
         let mut said: HashMap<(&str, Scope), Vec<usize>> = HashMap::new();
-        let mut add = |code: &'o Text, level: Level, reason: Option<&Text>, scope: Scope, is_wrong: bool| {
+        let mut add = |code: &'o Text,
+                       level: SeverityLevel,
+                       reason: Option<&Text>,
+                       scope: Scope,
+                       is_wrong: bool| {
             let is_known = known.iter().any(|known| known.id == code.as_str());
             if !is_known {
                 diagnostics.push(unknown(code, &known));
             }
             if is_wrong || !is_known {
                 if let Some(meant) = meant(code, &known) {
-                    let set =
-                        SetBy { level: Level::Allow, at: code.location, is_option: false, reason: None };
+                    let set = SetBy {
+                        level: SeverityLevel::Allow,
+                        at: code.location,
+                        is_option: false,
+                        reason: None,
+                    };
                     let code = meant.to_owned();
                     rules.push(Rule { code, set, scope, is_used: true, is_wrong: true });
                 }
@@ -204,7 +214,7 @@ impl Severities {
                 return;
             }
             rule.is_used = true;
-            let is_lowered = rule.set.level != Level::Set(Severity::Error);
+            let is_lowered = rule.set.level != SeverityLevel::Set(Severity::Error);
             let is_fixed = !codes::is_judgement(one.code) || self.preventing.contains(&one.code.id);
             if one.severity == Severity::Error && is_lowered && is_fixed {
                 let label = format!("not set to `{}`", rule.set.level.name());
@@ -212,7 +222,7 @@ impl Severities {
                 one.help.push("its severity cannot be lowered: nothing can run with it".to_owned());
                 return;
             }
-            if let Level::Set(severity) = rule.set.level {
+            if let SeverityLevel::Set(severity) = rule.set.level {
                 one.severity = severity;
                 if let Some(reason) = &rule.set.reason {
                     let text = format!("set to `{}`: {reason}", severity.name());
@@ -226,7 +236,8 @@ impl Severities {
     /// Reports what composites say that changed nothing, without the codes that were not looked for.
     pub(crate) fn finish(&self, wiring: bool, diagnostics: &mut Diagnostics) {
         let in_files = self.rules.iter().filter(|rule| !matches!(rule.scope, Scope::Option));
-        let unused = in_files.filter(|rule| !rule.is_used && rule.set.level != Level::Set(Severity::Error));
+        let unused =
+            in_files.filter(|rule| !rule.is_used && rule.set.level != SeverityLevel::Set(Severity::Error));
         for rule in unused.filter(|rule| wiring || !codes::is_of_wiring(&rule.code)) {
             let message =
                 format!("there is no {} here that could be set to `{}`", rule.code, rule.set.level.name());
@@ -255,7 +266,7 @@ impl Severities {
     }
 }
 
-fn twice(code: &Text, level: Level, first: &SetBy) -> Diagnostic {
+fn twice(code: &Text, level: SeverityLevel, first: &SetBy) -> Diagnostic {
     let (one, other) = (level.name(), first.level.name());
     let message = match one == other {
         true => format!("the severity of {code} is set twice"),

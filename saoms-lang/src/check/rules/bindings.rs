@@ -4,17 +4,17 @@ use std::collections::HashMap;
 
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Binding, Callback, Part, Reference, Service, Version};
+use crate::model::{Binding, Callback, Part, ReferenceElement, ServiceElement, Version};
 use crate::source::{Location, Text};
 
 /// Checks the bindings of a service.
-pub(crate) fn of_service(service: &Service, report: &mut Report<'_>) {
+pub(crate) fn of_service(service: &ServiceElement, report: &mut Report<'_>) {
     names("service", &service.name, service.bindings(), report);
     of_callback(service.callback(), &service.name, report);
 }
 
 /// Checks the bindings of a reference.
-pub(crate) fn of_reference(reference: &Reference, version: Version, report: &mut Report<'_>) {
+pub(crate) fn of_reference(reference: &ReferenceElement, version: Version, report: &mut Report<'_>) {
     let bindings = reference.bindings();
     if bindings.is_empty() {
         return;

@@ -7,7 +7,7 @@ use crate::check::loops;
 use crate::check::report::Report;
 use crate::check::report::findings::{Subject, diagnostic};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::registry::{LoopClass, PropertyDeclaration};
+use crate::registry::{PropertyDeclaration, RegisteredLoop};
 use saoms_api::host::declaration::PropertyKind;
 use saoms_api::host::{PropertyValue, contain::contained};
 use saoms_api::{Failure, Finding};
@@ -29,7 +29,7 @@ pub(crate) fn component(
 /// The same for a loop.
 pub(crate) fn looping(
     subject: Subject<'_>,
-    class: &LoopClass,
+    class: &RegisteredLoop,
     without_plugin_code: bool,
     report: &mut Report<'_>,
 ) {

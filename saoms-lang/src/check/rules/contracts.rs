@@ -8,7 +8,10 @@ use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::{Report, replacing};
 use crate::check::wiring::offer::Offer;
 use crate::diagnostic::{Code, Diagnostic, Edit, codes, quoted};
-use crate::model::{Binding, Component, Interface, InterfaceKind, Multiplicity, Part, Reference, Service};
+use crate::model::{
+    Binding, ComponentElement, InterfaceElement, InterfaceKind, Multiplicity, Part, ReferenceElement,
+    ServiceElement,
+};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
 use crate::syntax::{Document, escaped};
@@ -121,7 +124,7 @@ fn references(member: usize, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], repo
 
 fn repeated<'a>(
     names: impl ExactSizeIterator<Item = &'a Text> + Clone,
-    component: &Component,
+    component: &ComponentElement,
     what: &str,
     rule: &'static str,
     report: &mut Report<'_>,
@@ -149,7 +152,7 @@ fn repeated<'a>(
 }
 
 /// Reports a service that is a reference, for which its `target` is no further mistake.
-fn swapped(service: &Service, whose: &Whose<'_>, document: &Document, report: &mut Report<'_>) {
+fn swapped(service: &ServiceElement, whose: &Whose<'_>, document: &Document, report: &mut Report<'_>) {
     let element = service.origin.element(document);
     if let Some(target) = element.attribute("target") {
         report.withdraw(&codes::UNKNOWN_ATTRIBUTE, target.name_span().in_file(document.file()));
@@ -183,7 +186,7 @@ fn unknown<'n>(
 
 /// True if the interface that a file names is that of the class.
 pub(crate) fn interface(
-    given: Option<&Interface>,
+    given: Option<&InterfaceElement>,
     declared: &InterfaceDeclaration,
     of: &str,
     rule: &'static str,
@@ -232,7 +235,7 @@ pub(crate) fn of_class(declared: &ReferenceDeclaration) -> Multiplicity {
 
 /// Checks that the multiplicity that a component gives narrows that of what implements it.
 pub(crate) fn narrows(
-    reference: &Reference,
+    reference: &ReferenceElement,
     own: Multiplicity,
     whose: &dyn fmt::Display,
     report: &mut Report<'_>,

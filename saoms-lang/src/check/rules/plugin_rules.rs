@@ -13,7 +13,7 @@ use crate::check::report::Report;
 use crate::check::report::findings::{Subject, diagnostic};
 use crate::check::wiring::Wiring;
 use crate::diagnostic::{Diagnostic, Severity, codes};
-use crate::registry::{Class, Rule};
+use crate::registry::{RegisteredClass, RegisteredRule};
 
 /// The declaration of a class and of those that it extends.
 fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
@@ -27,7 +27,7 @@ pub(crate) fn check<'s>(
     classes: &'s [ClassIndex<'_>],
     checks: &'s [ComponentCheck<'_>],
     (wiring, has_open_wires): (&Wiring, bool),
-    rules: impl Iterator<Item = &'s Rule>,
+    rules: impl Iterator<Item = &'s RegisteredRule>,
     report: &mut Report<'_>,
 ) {
     let mut parts: Vec<usize> = Vec::with_capacity(fleet.members.len());
@@ -122,12 +122,12 @@ pub(crate) fn check<'s>(
 
 /// The views of classes with their loops, each made once.
 #[derive(Default)]
-struct ClassViews<'s>(HashMap<(*const Class, *const LoopSpec), Rc<ClassView<'s>>>);
+struct ClassViews<'s>(HashMap<(*const RegisteredClass, *const LoopSpec), Rc<ClassView<'s>>>);
 
 impl<'s> ClassViews<'s> {
     /// The view of the class of a component.
     fn of(&mut self, class: &ClassIndex<'s>, check: &'s ComponentCheck<'_>) -> Rc<ClassView<'s>> {
-        let class: &'s Class = class.class;
+        let class: &'s RegisteredClass = class.class;
         let loops: &'s [LoopSpec] = check.loops.as_ref().map_or(&[], |loops| &loops.specs);
         let make = || {
             let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use saoms_api::host::{TopicKind, format_duration};
 
-use crate::assembly::{Assembly, End, Loss, Topic, Traffic};
+use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic};
 use crate::check::fleet::similar_names::{Name, Similar};
 use crate::check::report::Report;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
@@ -25,8 +25,8 @@ pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mu
     let traffic = Traffic::of(assembly);
     let all = All { assembly, places };
     let similar = Similar::of(&traffic, |topic| topic.ends().all(|end| all.is_renamed(end, topic)));
-    let is_lone = |topic: &&Topic| topic.writers.is_empty() || topic.readers.is_empty();
-    let mut lone: HashMap<&str, &Topic> =
+    let is_lone = |topic: &&TrafficTopic| topic.writers.is_empty() || topic.readers.is_empty();
+    let mut lone: HashMap<&str, &TrafficTopic> =
         traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
     let mut told: HashSet<&str> = HashSet::new();
     for topic in &traffic.topics {
@@ -63,14 +63,14 @@ struct All<'a> {
 
 impl All<'_> {
     /// The place from which a component has the name of a topic.
-    fn at(&self, end: &End, topic: &Topic) -> Location {
+    fn at(&self, end: &TopicEnd, topic: &TrafficTopic) -> Location {
         let place = &self.places[end.component];
         let renamed = place.renamed.iter().find(|(name, _)| *name == topic.name);
         renamed.map_or(place.name, |(_, at)| *at)
     }
 
     /// `component X`, or `component X and 3 others`.
-    fn who(&self, ends: &[End]) -> String {
+    fn who(&self, ends: &[TopicEnd]) -> String {
         let first = ends.first().map_or("", |end| self.assembly.components[end.component].path.as_str());
         match ends.len() {
             0 | 1 => format!("component {}", quoted(first)),
@@ -80,7 +80,7 @@ impl All<'_> {
     }
 
     /// The same with what they do: `component X reads`, or `component X and 3 others read`.
-    fn who_does(&self, ends: &[End], does: &str) -> String {
+    fn who_does(&self, ends: &[TopicEnd], does: &str) -> String {
         let does = match (ends.len(), does) {
             (0 | 1, does) => does,
             (_, "reads") => "read",
@@ -91,7 +91,7 @@ impl All<'_> {
 
     /// The topic that those who use this one meant by a `topicRename`: of the same messages, with nearly its name, which is the one that it has
     /// without renaming. Names that only add something to another one, or differ in their numbers, keep parts of a fleet apart.
-    fn missed<'t>(&self, topic: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+    fn missed<'t>(&self, topic: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
         if topic.writers.is_empty()
             || topic.readers.is_empty()
             || !topic.ends().all(|end| self.is_renamed(end, topic))
@@ -102,13 +102,13 @@ impl All<'_> {
         similar.nearest(topic, |other| !other.is_renamed && !other.is_apart(&name))
     }
 
-    fn is_renamed(&self, end: &End, topic: &Topic) -> bool {
+    fn is_renamed(&self, end: &TopicEnd, topic: &TrafficTopic) -> bool {
         self.places[end.component].renamed.iter().any(|(name, _)| *name == topic.name)
     }
 
-    fn alone(&self, topic: &Topic, meant: &Topic, report: &mut Report<'_>) {
+    fn alone(&self, topic: &TrafficTopic, meant: &TrafficTopic, report: &mut Report<'_>) {
         let (Some(end), Some(other)) = (topic.writers.first(), meant.ends().next()) else { return };
-        let mut users: Vec<End> = topic.ends().copied().collect();
+        let mut users: Vec<TopicEnd> = topic.ends().copied().collect();
         users.sort_by_key(|end| end.component);
         users.dedup_by_key(|end| end.component);
         let hear = match users.len() {
@@ -130,7 +130,7 @@ impl All<'_> {
         );
     }
 
-    fn near(&self, lone: &Topic, meant: &Topic, report: &mut Report<'_>) {
+    fn near(&self, lone: &TrafficTopic, meant: &TrafficTopic, report: &mut Report<'_>) {
         let (does, ends, others, do_not) = match lone.writers.is_empty() {
             true => ("reads", &lone.readers, &meant.writers, "publishes"),
             false => ("publishes", &lone.writers, &meant.readers, "reads"),
@@ -157,7 +157,7 @@ impl All<'_> {
     }
 
     /// Says that one end of a topic is nobody.
-    fn lone(&self, topic: &Topic, report: &mut Report<'_>) {
+    fn lone(&self, topic: &TrafficTopic, report: &mut Report<'_>) {
         let (code, does, ends, missing): (&'static Code, _, _, _) = match topic.writers.is_empty() {
             true => (&codes::TOPIC_UNWRITTEN, "reads", &topic.readers, "publishes"),
             false => (&codes::TOPIC_UNREAD, "publishes", &topic.writers, "reads"),
@@ -171,14 +171,14 @@ impl All<'_> {
     }
 
     /// Compares how often a topic is written and read.
-    fn rates(&self, topic: &Topic, report: &mut Report<'_>) {
+    fn rates(&self, topic: &TrafficTopic, report: &mut Report<'_>) {
         let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
         let pace = topic.pace();
         let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
         // Those of one period, and of these those that lose messages with one queue: one is told of each, since a fleet of robots says the same.
-        let mut alike: HashMap<Duration, Vec<End>> = HashMap::new();
-        let mut queues: HashMap<(Duration, usize), Vec<End>> = HashMap::new();
-        let losing = |reader: &End| {
+        let mut alike: HashMap<Duration, Vec<TopicEnd>> = HashMap::new();
+        let mut queues: HashMap<(Duration, usize), Vec<TopicEnd>> = HashMap::new();
+        let losing = |reader: &TopicEnd| {
             let task = self.assembly.components[reader.component].task.as_ref()?;
             (topic.kind == TopicKind::Event && task.loss == Loss::Fail).then_some(task.queue)
         };
@@ -237,7 +237,7 @@ impl All<'_> {
 }
 
 /// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one lacks.
-fn meant<'t>(lone: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+fn meant<'t>(lone: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
     similar.nearest(lone, |other| match lone.writers.is_empty() {
         true => !other.topic.writers.is_empty(),
         false => !other.topic.readers.is_empty(),
@@ -246,7 +246,7 @@ fn meant<'t>(lone: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
 
 /// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with nearly its name,
 /// and used by several others.
-fn left<'t>(topic: &Topic, similar: &Similar<'t>) -> Option<&'t Topic> {
+fn left<'t>(topic: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
     let only = topic.writers.first()?.component;
     if topic.readers.is_empty() || topic.ends().any(|end| end.component != only) {
         return None;

@@ -8,7 +8,7 @@ use crate::check::values::global_element;
 use crate::check::values::type_name;
 use crate::check::values::value_type::{self, Typed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Composite, Part, Property, Reference, Service, Version};
+use crate::model::{Composite, Part, Property, ReferenceElement, ServiceElement, Version};
 use crate::source::{Location, Text};
 
 /// Checks the properties, services and references of every composite and component.
@@ -47,7 +47,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     report.about_all();
 }
 
-fn service(service: &Service, version: Version, report: &mut Report<'_>) {
+fn service(service: &ServiceElement, version: Version, report: &mut Report<'_>) {
     bindings::of_service(service, report);
     // In SCA 1.0 it is where the service can be reached from outside.
     let of_sca = service.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
@@ -61,7 +61,7 @@ fn service(service: &Service, version: Version, report: &mut Report<'_>) {
 }
 
 /// Reports a reference whose implementation wires it and that the composite wires as well (SCA Assembly 1.1, 4.3).
-fn reference(reference: &Reference, version: Version, report: &mut Report<'_>) {
+fn reference(reference: &ReferenceElement, version: Version, report: &mut Report<'_>) {
     let Some(wired) = reference.wired_by_impl().filter(|wired| wired.value) else { return };
     let uris = reference.bindings().iter().filter_map(|binding| binding.uri.as_ref());
     let (at, what, rule) = if let Some(target) = reference.targets.first() {
@@ -77,7 +77,7 @@ fn reference(reference: &Reference, version: Version, report: &mut Report<'_>) {
 }
 
 fn wired_twice(
-    reference: &Reference,
+    reference: &ReferenceElement,
     (at, what, rule): (Location, &str, &'static str),
     said: Location,
     version: Version,
@@ -92,7 +92,7 @@ fn wired_twice(
 /// Reports wires that start from references that their implementations wire, which are few.
 fn wired_by_wires(composite: &Composite, report: &mut Report<'_>) {
     for component in &composite.components {
-        let wired = |one: &&Reference| one.wired_by_impl().is_some_and(|wired| wired.value);
+        let wired = |one: &&ReferenceElement| one.wired_by_impl().is_some_and(|wired| wired.value);
         for reference in component.references.iter().filter(wired) {
             let is_from = |source: &&Text| {
                 let end = source.split_once('/');

@@ -22,8 +22,8 @@ use crate::check::report::{Report, list, replacing};
 use crate::check::rules::unique_values::Unique;
 use crate::check::tasks::unused_renames::{Listed, Unused};
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Component, Part};
-use crate::registry::TopicDeclaration;
+use crate::model::{ComponentElement, Part};
+use crate::registry::ClassTopic;
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
 
@@ -41,7 +41,7 @@ pub(crate) struct Task<'a> {
 
 /// The task of a component of a periodic class. Faults are reported.
 pub(crate) fn check<'a>(
-    component: &Component,
+    component: &ComponentElement,
     class: &ClassIndex<'a>,
     checked: &PropertyValues,
     report: &mut Report<'_>,
@@ -63,7 +63,7 @@ pub(crate) fn check<'a>(
 
 /// The settings of a component whose properties are sound.
 fn settings(
-    component: &Component,
+    component: &ComponentElement,
     class: &ClassIndex<'_>,
     checked: &PropertyValues,
     renames: &[(String, String)],
@@ -117,9 +117,7 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
 }
 
 /// The topics of a class, each once.
-fn topics<'c, 'a>(
-    class: &'c ClassIndex<'a>,
-) -> impl Iterator<Item = &'a TopicDeclaration> + Clone + use<'c, 'a> {
+fn topics<'c, 'a>(class: &'c ClassIndex<'a>) -> impl Iterator<Item = &'a ClassTopic> + Clone + use<'c, 'a> {
     let published = |name: &str| class.publishes.iter().any(|topic| topic.name == name);
     let others = class.subscribes.iter().filter(move |topic| !published(&topic.name));
     class.publishes.iter().chain(others).copied()
@@ -168,7 +166,12 @@ fn renames<'a>(
 }
 
 /// Reports a component that has topics and must not use them.
-fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &PropertyValues, report: &mut Report<'_>) {
+fn use_jms(
+    component: &ComponentElement,
+    class: &ClassIndex<'_>,
+    checked: &PropertyValues,
+    report: &mut Report<'_>,
+) {
     let Some(given) = checked.get(&class.table, "useJMS") else { return };
     if !class.has_topics() || bool::from_value(&given.value) != Ok(false) {
         return;
@@ -196,7 +199,7 @@ fn use_jms(component: &Component, class: &ClassIndex<'_>, checked: &PropertyValu
 
 /// Settings that do not go together.
 fn combinations(
-    component: &Component,
+    component: &ComponentElement,
     class: &ClassIndex<'_>,
     checked: &PropertyValues,
     settings: &TaskSettings,

@@ -9,7 +9,7 @@ use crate::check::fleet::Member;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::registry::TopicDeclaration;
+use crate::registry::ClassTopic;
 use crate::source::Location;
 
 /// The topics of a fleet by the names they have after renaming.
@@ -25,7 +25,7 @@ pub(crate) struct Topics<'a> {
 struct End<'a> {
     component: &'a str,
     place: Location,
-    declaration: &'a TopicDeclaration,
+    declaration: &'a ClassTopic,
     verb: &'static str,
 }
 

@@ -7,8 +7,8 @@ use crate::check::report::{Report, list};
 use crate::check::values::parameters::is_misspelt;
 use crate::check::values::value_type;
 use crate::diagnostic::{codes, nearest, quoted};
-use crate::expression::{INDEX, Problem, Value};
-use crate::model::{Component, Composite, Property};
+use crate::expression::{ExpressionError, ExpressionValue, INDEX};
+use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
 
 /// The properties of a composite and of what it includes, as far as they are simple.
@@ -29,7 +29,7 @@ struct Name {
     is_faulty: bool,
     /// The text of the value and where it stands.
     text: Option<Text>,
-    value: Result<Value, Problem>,
+    value: Result<ExpressionValue, ExpressionError>,
 }
 
 /// The value of a property as an expression takes it.
@@ -49,7 +49,7 @@ impl Names {
     /// The names that the expressions in a composite and in what it includes can use, the first of each, with what is taken of each. `owner` is the component that it implements.
     pub(crate) fn of(
         composites: &[&Composite],
-        owner: Option<&Component>,
+        owner: Option<&ComponentElement>,
         supply: &dyn Fn(&str) -> Supplied,
     ) -> Self {
         let mut names = Self::default();
@@ -67,7 +67,8 @@ impl Names {
                     let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
                     // What has to be supplied and is not is told where it should be.
                     let must = property.must_supply().is_some_and(|must| must.value);
-                    let is_misspelt = |owner: &Component| is_misspelt(&property.name, owner, is_declared);
+                    let is_misspelt =
+                        |owner: &ComponentElement| is_misspelt(&property.name, owner, is_declared);
                     let is_told = is_faulty || is_unset && (must || owner.is_some_and(is_misspelt));
                     Name { mistyped, is_told: Cell::new(is_told), is_faulty, text, value }
                 });
@@ -80,7 +81,7 @@ impl Names {
     }
 
     /// The value of a name.
-    pub(crate) fn value(&self, name: &str) -> Result<Value, Problem> {
+    pub(crate) fn value(&self, name: &str) -> Result<ExpressionValue, ExpressionError> {
         let Some(found) = self.all.get(name) else { return Err(self.unknown(name)) };
         self.ask(name);
         found.value.clone()
@@ -119,10 +120,10 @@ impl Names {
         self.used.borrow().iter().cloned().collect()
     }
 
-    fn unknown(&self, name: &str) -> Problem {
+    fn unknown(&self, name: &str) -> ExpressionError {
         let mut known: Vec<&str> = self.all.keys().map(String::as_str).collect();
         known.sort_unstable();
-        let problem = Problem::new(format!("the composite has no property {}", quoted(name)));
+        let problem = ExpressionError::new(format!("the composite has no property {}", quoted(name)));
         let truth = match name.to_ascii_lowercase().as_str() {
             "true" | "yes" | "on" => Some("true"),
             "false" | "no" | "off" => Some("false"),
@@ -146,17 +147,17 @@ impl Names {
 }
 
 /// The value of a property as its type has it; without a type, as what it looks like.
-fn value(property: &Property, supplied: &Supplied) -> Result<Value, Problem> {
+fn value(property: &Property, supplied: &Supplied) -> Result<ExpressionValue, ExpressionError> {
     let name = quoted(&property.name);
     let text = match supplied {
         Supplied::Text(text) => text,
         Supplied::Nothing => {
             let help = "write it in the file, or give it with `--set`, or in the component that the composite implements";
-            return Err(Problem::new(format!("the property {name} has no value")).help(help));
+            return Err(ExpressionError::new(format!("the property {name} has no value")).help(help));
         }
         Supplied::Other | Supplied::Faulty => {
             let help = "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`";
-            return Err(Problem::new(format!("the property {name} has no simple value")).help(help));
+            return Err(ExpressionError::new(format!("the property {name} has no simple value")).help(help));
         }
     };
     let of = property.r#type().filter(|of| !value_type::is_misspelt(of));
@@ -169,22 +170,25 @@ fn value(property: &Property, supplied: &Supplied) -> Result<Value, Problem> {
         _ => None,
     };
     let wrong = |expected: &str| {
-        Err(Problem::new(format!(
+        Err(ExpressionError::new(format!(
             "the property {name} is {}, and its type asks for {expected}",
             quoted(text)
         )))
     };
     match of {
-        "boolean" => boolean.map_or_else(|| wrong("`true` or `false`"), |value| Ok(Value::Boolean(value))),
+        "boolean" => {
+            boolean.map_or_else(|| wrong("`true` or `false`"), |value| Ok(ExpressionValue::Boolean(value)))
+        }
         "int" | "integer" | "long" | "short" | "byte" | "nonNegativeInteger" | "positiveInteger"
-        | "unsignedInt" | "unsignedLong" | "unsignedShort" | "unsignedByte" => text
-            .parse()
-            .map_or_else(|_| wrong("a whole number of at most 64 bits"), |value| Ok(Value::Integer(value))),
+        | "unsignedInt" | "unsignedLong" | "unsignedShort" | "unsignedByte" => text.parse().map_or_else(
+            |_| wrong("a whole number of at most 64 bits"),
+            |value| Ok(ExpressionValue::Integer(value)),
+        ),
         "" => Ok(match (boolean, text.parse()) {
-            (Some(value), _) => Value::Boolean(value),
-            (None, Ok(number)) => Value::Integer(number),
-            _ => Value::Text(text.value.clone()),
+            (Some(value), _) => ExpressionValue::Boolean(value),
+            (None, Ok(number)) => ExpressionValue::Integer(number),
+            _ => ExpressionValue::Text(text.value.clone()),
         }),
-        _ => Ok(Value::Text(text.value.clone())),
+        _ => Ok(ExpressionValue::Text(text.value.clone())),
     }
 }

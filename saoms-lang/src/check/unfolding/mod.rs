@@ -21,7 +21,7 @@ use crate::check::unfolding::conditions::{Presence, UnitProperties};
 use crate::check::unfolding::replica::{Instance, Replica};
 use crate::check::unfolding::replica_plan::{MOST_REPLICAS, Plan};
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Component, Composite, Contribution, Include, Link, Naming};
+use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
 use crate::source::Location;
 use crate::syntax::Element;
 
@@ -183,7 +183,7 @@ pub(crate) struct Open<'a> {
 }
 
 enum Next<'a> {
-    Component(&'a Component),
+    Component(&'a ComponentElement),
     Include(&'a Include),
 }
 
@@ -308,8 +308,8 @@ impl<'a> Unfolding<'a> {
     /// Adds a component as it is `written`, and what is inside it.
     pub(crate) fn member(
         &mut self,
-        written: &'a Component,
-        component: &'a Component,
+        written: &'a ComponentElement,
+        component: &'a ComponentElement,
         instance: Option<&'a Instance>,
         presence: Presence,
         report: &mut Report<'_>,
@@ -368,7 +368,7 @@ impl<'a> Unfolding<'a> {
         }
     }
 
-    fn repeated(&self, component: &Component, first: usize, report: &mut Report<'_>) {
+    fn repeated(&self, component: &ComponentElement, first: usize, report: &mut Report<'_>) {
         let first = &self.fleet.members[first];
         let message = format!("there are two components {}", quoted(&component.name));
         let mut one = Diagnostic::new(&codes::COMPONENT_REPEATED, component.name.location, message)

@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use super::expression_scope::Names;
 use crate::diagnostic::nearest;
-use crate::expression::{Fault, INDEX, Problem, Value, has_expression, render};
-use crate::model::{Component, Loop, Property, Table};
+use crate::expression::{ExpressionError, ExpressionFault, ExpressionValue, INDEX, has_expression, render};
+use crate::model::{ComponentElement, LoopElement, Property, Table};
 use crate::source::Text;
 use crate::syntax::Document;
 
@@ -27,7 +27,7 @@ pub(crate) struct Partial {
 
 /// A component of a replica.
 pub(crate) struct Replica {
-    pub(crate) component: Component,
+    pub(crate) component: ComponentElement,
     pub(crate) instance: Instance,
 }
 
@@ -36,13 +36,13 @@ pub(crate) const COUNTERS: [&str; 8] = ["i", "n", "nr", "no", "num", "idx", "cou
 
 impl Instance {
     /// The value of a name in an expression.
-    pub(crate) fn value(&self, name: &str) -> Result<Value, Problem> {
+    pub(crate) fn value(&self, name: &str) -> Result<ExpressionValue, ExpressionError> {
         match name {
-            INDEX => Ok(Value::Integer(self.index)),
+            INDEX => Ok(ExpressionValue::Integer(self.index)),
             name => self.names.value(name).map_err(|problem| match nearest(name, [INDEX]) {
-                Some(_) => Problem { help: None, ..problem.instead(INDEX) },
+                Some(_) => ExpressionError { help: None, ..problem.instead(INDEX) },
                 None if COUNTERS.contains(&name) && problem.instead.is_none() => {
-                    Problem { help: None, ..problem.instead(INDEX) }
+                    ExpressionError { help: None, ..problem.instead(INDEX) }
                 }
                 None => problem,
             }),
@@ -71,9 +71,9 @@ impl Instance {
     /// A component with the numbers of this index in all its texts; and the faults in these, each with the text it is in.
     pub(crate) fn of(
         &self,
-        template: &Component,
+        template: &ComponentElement,
         table: Option<(&Table, usize)>,
-    ) -> (Component, Vec<(Text, Fault)>) {
+    ) -> (ComponentElement, Vec<(Text, ExpressionFault)>) {
         let mut component = template.clone();
         if let Some(details) = &mut component.details {
             (details.replicas, details.condition) = (None, None);
@@ -92,7 +92,7 @@ impl Instance {
             // What is called something unknown cannot be looked at.
             component.services.retain(|service| !has_expression(&service.name));
             component.references.retain(|reference| !has_expression(&reference.name));
-            let is_known = |one: &Loop| {
+            let is_known = |one: &LoopElement| {
                 let texts =
                     [Some(&one.name), one.class.as_deref(), one.before.as_deref(), one.after.as_deref()];
                 !texts.into_iter().flatten().any(|text| has_expression(text))
@@ -107,7 +107,7 @@ impl Instance {
 }
 
 /// Gives a component the values of a line of a table.
-fn replace(component: &mut Component, table: &Table, row: usize) {
+fn replace(component: &mut ComponentElement, table: &Table, row: usize) {
     for (name, value) in table.properties.iter().zip(&table.rows[row].values) {
         let Some(value) = value else { continue };
         component.properties.retain(|property| property.name != *name.as_str());
@@ -122,7 +122,7 @@ fn replace(component: &mut Component, table: &Table, row: usize) {
 }
 
 /// Every text of a component but those that lead to other files.
-fn each_text(component: &mut Component, each: &mut dyn FnMut(&mut Text)) {
+fn each_text(component: &mut ComponentElement, each: &mut dyn FnMut(&mut Text)) {
     each(&mut component.name);
     component.details.iter_mut().filter_map(|details| details.path.as_mut()).for_each(&mut *each);
     if let Some(implementation) = &mut component.implementation {
@@ -176,7 +176,7 @@ fn complex_texts<'d>(property: &'d Property, document: &'d Document) -> impl Ite
 }
 
 /// Those of a component and its loops.
-pub(crate) fn all_complex_texts(component: &Component, document: &Document) -> Vec<Text> {
+pub(crate) fn all_complex_texts(component: &ComponentElement, document: &Document) -> Vec<Text> {
     let of_loops = component.loops().iter().flat_map(|one| &one.properties);
     let properties = component.properties.iter().chain(of_loops);
     properties.flat_map(|property| complex_texts(property, document)).collect()

@@ -10,11 +10,11 @@ use super::replica::{Instance, Partial, Replica};
 use super::replica_plan::{Plan, condition, first_index};
 use crate::check::report::Report;
 use crate::expression::pattern;
-use crate::model::{Component, Replicas};
+use crate::model::{ComponentElement, Replicas};
 
 impl<'a> Unfolding<'a> {
     /// Makes what stands next in the composite at hand.
-    pub(crate) fn component(&mut self, component: &'a Component, report: &mut Report<'_>) {
+    pub(crate) fn component(&mut self, component: &'a ComponentElement, report: &mut Report<'_>) {
         let Some(open) = self.open.last() else { return };
         let (unit, document) = (open.unit, &open.composite.document);
         let Some(replicas) = component.replicas() else {
@@ -84,7 +84,7 @@ impl<'a> Unfolding<'a> {
     /// Looks at a component of which it is not known how many there are.
     fn unplanned(
         &mut self,
-        component: &'a Component,
+        component: &'a ComponentElement,
         replicas: &Replicas,
         names: &Rc<Names>,
         report: &mut Report<'_>,
@@ -101,7 +101,12 @@ impl<'a> Unfolding<'a> {
     }
 
     /// Reports the faults in the texts of a replica that is not made, and in its condition.
-    fn faults_of(&self, component: &Component, instance: &Instance, report: &mut Report<'_>) -> Presence {
+    fn faults_of(
+        &self,
+        component: &ComponentElement,
+        instance: &Instance,
+        report: &mut Report<'_>,
+    ) -> Presence {
         let (made, faults) = instance.of(component, None);
         report.about_replica(&made.name, instance.index);
         self.faults(&instance.names, faults, report);
@@ -115,7 +120,7 @@ impl<'a> Unfolding<'a> {
     /// Adds one that stands for replicas that are not made.
     fn partial(
         &mut self,
-        component: &'a Component,
+        component: &'a ComponentElement,
         index: i64,
         names: &Rc<Names>,
         presence: Presence,

@@ -10,9 +10,10 @@ use crate::check::fleet::is_like;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::expression::{
-    self, Expression, Fault, INDEX, Problem, Value, boolean, integer, parse, pattern, render,
+    self, Expression, ExpressionError, ExpressionFault, ExpressionValue, INDEX, boolean, integer, parse,
+    pattern, render,
 };
-use crate::model::{Component, Property, Replicas, Table};
+use crate::model::{ComponentElement, Property, Replicas, Table};
 use crate::source::Text;
 use crate::syntax::{Document, escaped};
 
@@ -24,7 +25,7 @@ const BYTES: u64 = 2560;
 
 /// The replicas of a component that are still to be made.
 pub(crate) struct Plan<'a> {
-    pub(crate) component: &'a Component,
+    pub(crate) component: &'a ComponentElement,
     pub(crate) names: Rc<Names>,
     next: i64,
     /// The number of there are in all, and still to come.
@@ -39,7 +40,7 @@ pub(crate) struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// The plan of the replicas of a component; `None` with a fault, which is reported. `left` is how many there may be.
     pub(crate) fn of(
-        component: &'a Component,
+        component: &'a ComponentElement,
         replicas: &'a Replicas,
         document: &Document,
         names: &Rc<Names>,
@@ -268,7 +269,7 @@ pub(crate) fn first_index(replicas: &Replicas, names: &Names) -> Option<i64> {
 
 /// True if a component has an attribute that `count` may be meant by, and that is told as an error, which nobody can lower: with it
 /// nothing is known of the replicas.
-fn is_told(component: &Component, document: &Document, report: &mut Report<'_>) -> bool {
+fn is_told(component: &ComponentElement, document: &Document, report: &mut Report<'_>) -> bool {
     let file = document.file();
     let mut attributes = component.origin.element(document).attributes();
     let meant = attributes.find(|attribute| nearest(attribute.local_name(), ["count"]).is_some());
@@ -292,7 +293,7 @@ fn is_told(component: &Component, document: &Document, report: &mut Report<'_>) 
 }
 
 /// Checks that the name of a replicated component differs from replica to replica.
-fn has_index(component: &Component, names: &Rc<Names>, report: &mut Report<'_>) -> bool {
+fn has_index(component: &ComponentElement, names: &Rc<Names>, report: &mut Report<'_>) -> bool {
     let name = &component.name;
     if name.is_empty() || expression::names(name).iter().any(|name| name == INDEX) {
         return !name.is_empty();
@@ -343,7 +344,7 @@ fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Option<i64> {
 pub(crate) fn condition(
     text: &Text,
     names: &Names,
-    value: &mut dyn FnMut(&str) -> Result<Value, Problem>,
+    value: &mut dyn FnMut(&str) -> Result<ExpressionValue, ExpressionError>,
     report: &mut Report<'_>,
 ) -> Option<bool> {
     let holds = parse(text).and_then(|one| boolean(&one, value));
@@ -351,7 +352,13 @@ pub(crate) fn condition(
 }
 
 /// Reports what is wrong with an expression in a text.
-pub(crate) fn tell(text: &Text, parts: &Parts, fault: &Fault, names: &Names, report: &mut Report<'_>) {
+pub(crate) fn tell(
+    text: &Text,
+    parts: &Parts,
+    fault: &ExpressionFault,
+    names: &Names,
+    report: &mut Report<'_>,
+) {
     let written = text.get(fault.at.clone()).unwrap_or_default();
     if !names.tell_value(written.trim(), report) {
         report.push(wrong(text, parts, fault, names));
@@ -359,10 +366,10 @@ pub(crate) fn tell(text: &Text, parts: &Parts, fault: &Fault, names: &Names, rep
 }
 
 /// The diagnostic about an expression in a text.
-fn wrong(text: &Text, parts: &Parts, fault: &Fault, names: &Names) -> Diagnostic {
+fn wrong(text: &Text, parts: &Parts, fault: &ExpressionFault, names: &Names) -> Diagnostic {
     let code: &'static Code = &codes::EXPRESSION;
     let at = parts.part(fault.at.clone());
-    let Problem { message, help, instead, .. } = &fault.problem;
+    let ExpressionError { message, help, instead, .. } = &fault.problem;
     let mut one = Diagnostic::new(code, at, message.clone());
     let written = text.get(fault.at.clone()).unwrap_or_default();
     let inside = parse(written).ok();

@@ -37,7 +37,7 @@ use crate::check::wiring::promotion::{Promoted, ReferenceId};
 use crate::check::wiring::target::{Provider, Target, parts, spread, target, uri};
 use crate::check::wiring::wire::{Wire, wires};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Multiplicity, Reference};
+use crate::model::{Multiplicity, ReferenceElement};
 use crate::registry::{InterfaceDeclaration, ReferenceDeclaration};
 use crate::source::{Location, Text};
 use too_many::TooMany;
@@ -326,7 +326,7 @@ impl<'f, 'a> Wires<'f, 'a> {
     }
 
     /// True if targets are to be found by interface: said by the reference, its component, or the composite.
-    fn is_autowired(&self, (member, _): ReferenceId<'_>, reference: Option<&Reference>) -> bool {
+    fn is_autowired(&self, (member, _): ReferenceId<'_>, reference: Option<&ReferenceElement>) -> bool {
         let member = &self.fleet.members[member];
         let own = reference.and_then(|reference| reference.autowire());
         own.or(member.component.autowire()).map_or(member.autowire, |said| said.value)
@@ -335,7 +335,7 @@ impl<'f, 'a> Wires<'f, 'a> {
     fn autowired(
         &mut self,
         place: ReferenceId<'f>,
-        reference: Option<&Reference>,
+        reference: Option<&ReferenceElement>,
         interface: &'f InterfaceDeclaration,
         report: &mut Report<'_>,
     ) -> Ends {

@@ -2,7 +2,7 @@
 
 use super::promotion::ReferenceId;
 use crate::check::fleet::Fleet;
-use crate::model::{Multiplicity, Reference};
+use crate::model::{Multiplicity, ReferenceElement};
 use crate::source::Located;
 
 /// True if the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1): only with
@@ -10,7 +10,7 @@ use crate::source::Located;
 pub(crate) fn keeps_own(
     fleet: &Fleet<'_>,
     (member, _): ReferenceId<'_>,
-    reference: Option<&Reference>,
+    reference: Option<&ReferenceElement>,
 ) -> bool {
     let Some(reference) = reference else { return false };
     if reference.non_overridable().is_some_and(|fixed| fixed.value) {

@@ -8,7 +8,7 @@ use crate::check::fleet::{Fleet, Kind};
 use crate::check::report::Report;
 use crate::check::rules::contracts;
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::model::{Reference, Service};
+use crate::model::{ReferenceElement, ServiceElement};
 use crate::registry::InterfaceDeclaration;
 use crate::source::Location;
 
@@ -45,7 +45,7 @@ impl Fleet<'_> {
 
 /// Checks the interface that a composite's service says.
 pub(crate) fn service(
-    service: &Service,
+    service: &ServiceElement,
     (member, name): ReferenceId<'_>,
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
@@ -62,7 +62,7 @@ pub(crate) fn service(
 /// Checks the interface that a composite's reference says, and that all that it promotes has one interface: one target cannot serve two. Whether
 /// it has.
 pub(crate) fn reference(
-    reference: &Reference,
+    reference: &ReferenceElement,
     found: &[Found<'_>],
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],

@@ -6,7 +6,7 @@ use crate::check::fleet::{Fleet, Kind};
 use crate::check::report::{Report, list};
 use crate::check::rules::contracts::of_class;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Multiplicity, Part, Reference};
+use crate::model::{Multiplicity, Part, ReferenceElement};
 use crate::source::Location;
 
 /// References that are named in one message.
@@ -21,7 +21,7 @@ struct Narrower<'f> {
 
 /// Checks what a composite's reference promotes. What is wrong with several of them is told once, as one thing is to be changed.
 pub(crate) fn check<'f>(
-    by: &Reference,
+    by: &ReferenceElement,
     found: impl Iterator<Item = ReferenceId<'f>>,
     fleet: &Fleet<'_>,
     classes: &[ClassIndex<'_>],
@@ -73,7 +73,7 @@ fn takes(
     Some((takes, declared.is_some()))
 }
 
-fn overridden(by: &Reference, fixed: &[(ReferenceId<'_>, Location)], fleet: &Fleet<'_>) -> Diagnostic {
+fn overridden(by: &ReferenceElement, fixed: &[(ReferenceId<'_>, Location)], fleet: &Fleet<'_>) -> Diagnostic {
     let message = match fixed {
         [((member, name), _)] => {
             let component = quoted(&fleet.members[*member].component.name);
@@ -101,7 +101,7 @@ fn overridden(by: &Reference, fixed: &[(ReferenceId<'_>, Location)], fleet: &Fle
 }
 
 fn widened(
-    by: &Reference,
+    by: &ReferenceElement,
     (outer, at): (Multiplicity, Location),
     narrower: &[Narrower<'_>],
     fleet: &Fleet<'_>,

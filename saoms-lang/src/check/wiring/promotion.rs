@@ -11,7 +11,7 @@ use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind, Unit};
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Binding, Part, Reference};
+use crate::model::{Binding, Part, ReferenceElement};
 use crate::source::{Location, Text};
 
 /// A reference of a component, by its name.
@@ -143,7 +143,7 @@ fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>, classes: &[ClassIndex
     false
 }
 
-fn unwired(reference: &Reference, report: &mut Report<'_>) {
+fn unwired(reference: &ReferenceElement, report: &mut Report<'_>) {
     let message = format!(
         "reference {} of the composite is wired to nothing: calls through it fail",
         quoted(&reference.name)

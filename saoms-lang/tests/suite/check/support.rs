@@ -76,7 +76,7 @@ pub(crate) fn outcome(texts: &[&str], settings: &[&str]) -> String {
         }
         for wire in &component.references {
             let assembly = assembly.as_ref().unwrap();
-            let of = |target: &saoms_lang::assembly::Target| {
+            let of = |target: &saoms_lang::assembly::WireTarget| {
                 format!("{}/{}", assembly.components[target.component].path, target.service)
             };
             let targets: Vec<String> = wire.targets.iter().map(of).collect();

@@ -5,7 +5,8 @@ use std::collections::HashSet;
 use saoms_lang::diagnostic::{Diagnostics, codes, human, json};
 use saoms_lang::load::load_file;
 use saoms_lang::model::{
-    Binding, Callback, Composite, ImplementationKind, Interface, Part, Property, Reference, Service,
+    Binding, Callback, Composite, ImplementationKind, InterfaceElement, Part, Property, ReferenceElement,
+    ServiceElement,
 };
 use saoms_lang::source::{Location, Sources, Span, Text};
 use saoms_lang::syntax;
@@ -123,20 +124,20 @@ fn property<'a>(property: &'a Property, all: &mut Vec<&'a Text>) {
     all.extend(property.values().iter().filter(|one| one.content.is_empty()).map(|one| &one.text));
 }
 
-fn service<'a>(service: &'a Service, all: &mut Vec<&'a Text>) {
+fn service<'a>(service: &'a ServiceElement, all: &mut Vec<&'a Text>) {
     all.push(&service.name);
     all.extend(service.promote.as_deref());
     contract(service.interface(), service.bindings(), service.callback(), all);
 }
 
-fn reference<'a>(reference: &'a Reference, all: &mut Vec<&'a Text>) {
+fn reference<'a>(reference: &'a ReferenceElement, all: &mut Vec<&'a Text>) {
     all.push(&reference.name);
     all.extend(reference.targets.iter().chain(reference.promote()));
     contract(reference.interface(), reference.bindings(), reference.callback(), all);
 }
 
 fn contract<'a>(
-    interface: Option<&'a Interface>,
+    interface: Option<&'a InterfaceElement>,
     bindings: &'a [Binding],
     callback: Option<&'a Callback>,
     all: &mut Vec<&'a Text>,

@@ -2,16 +2,16 @@
 
 use std::ops::Range;
 
-use super::CompletionKind;
+use super::ProposalKind;
 use saoms_lang::load::vocabulary::{Known, own_attributes};
 use saoms_lang::model::{SAOMS_NAMESPACE, Version};
 
-use super::{Completion, value};
+use super::{Proposal, value};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 
 /// The attributes that an element can still get.
-pub(super) fn complete(scene: &Scene, element: usize, name: &Range<usize>) -> Vec<Completion> {
+pub(super) fn complete(scene: &Scene, element: usize, name: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let Some(kind) = file.kinds[element] else { return Vec::new() };
     let attributes = &file.tree.elements[element].attributes;
@@ -52,7 +52,7 @@ impl<'s> Own<'s> {
     }
 
     /// A proposal that has the prefix, with its declaration where that is lacking.
-    pub(super) fn bound(&self, one: Completion) -> Completion {
+    pub(super) fn bound(&self, one: Proposal) -> Proposal {
         match self.at {
             Some(at) => one.also(at, format!(" xmlns:{}=\"{SAOMS_NAMESPACE}\"", self.prefix)),
             None => one,
@@ -60,9 +60,9 @@ impl<'s> Own<'s> {
     }
 }
 
-fn attribute(written: String, known: &Known, has_value: bool, range: &Range<usize>) -> Completion {
+fn attribute(written: String, known: &Known, has_value: bool, range: &Range<usize>) -> Proposal {
     let text = if has_value { written.clone() } else { format!("{written}=\"$1\"") };
-    let one = Completion::new(written, CompletionKind::Field, range)
+    let one = Proposal::new(written, ProposalKind::Field, range)
         .detail(if known.required { "required" } else { "" })
         .doc(describe::attribute(known))
         .rank(if known.required { 1 } else { 5 });
@@ -70,7 +70,7 @@ fn attribute(written: String, known: &Known, has_value: bool, range: &Range<usiz
 }
 
 /// The namespaces that a composite needs.
-pub(super) fn namespaces(range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn namespaces(range: &Range<usize>) -> Vec<Proposal> {
     let sca = Version::ALL.map(|version| (version.namespace(), version.label()));
     let own = [(SAOMS_NAMESPACE, "what SAOMS adds to SCA")];
     let all = sca.into_iter().chain(own).enumerate();

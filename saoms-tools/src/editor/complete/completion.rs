@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use crate::editor::Edit;
+use crate::editor::FileEdit;
 
 /// A text that an editor offers at a place.
 #[derive(Clone, Debug)]
-pub struct Completion {
+pub struct Proposal {
     /// The name in the list.
     pub label: String,
     /// The kind of thing, which editors show as an icon.
-    pub kind: CompletionKind,
+    pub kind: ProposalKind,
     /// A short text beside the label; may be empty.
     pub detail: String,
     /// The description in Markdown; may be empty.
@@ -24,7 +24,7 @@ pub struct Completion {
     /// The bytes that are replaced.
     pub range: Range<usize>,
     /// A change at another place of the file that goes with it.
-    pub also: Option<Edit>,
+    pub also: Option<FileEdit>,
 }
 
 /// The text of a completion.
@@ -54,7 +54,7 @@ impl Insert {
 /// The kind of thing that a completion names, in the terms of editors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names say all")]
-pub enum CompletionKind {
+pub enum ProposalKind {
     Class,
     Constant,
     EnumMember,
@@ -72,9 +72,9 @@ pub enum CompletionKind {
     Variable,
 }
 
-impl Completion {
+impl Proposal {
     /// A completion that puts its label in place of a range.
-    pub(super) fn new(label: impl Into<String>, kind: CompletionKind, range: &Range<usize>) -> Self {
+    pub(super) fn new(label: impl Into<String>, kind: ProposalKind, range: &Range<usize>) -> Self {
         let label = label.into();
         Self {
             insert: Insert::Plain(label.clone()),
@@ -108,7 +108,7 @@ impl Completion {
 
     /// With a text that is put in elsewhere, outside of the range.
     pub(super) fn also(mut self, at: usize, text: String) -> Self {
-        self.also = Some(Edit::new(at..at, text));
+        self.also = Some(FileEdit::new(at..at, text));
         self
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::CompletionKind;
+use super::ProposalKind;
 use saoms_lang::load::vocabulary::{
     COMPONENT, COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, children, other,
 };
@@ -10,7 +10,7 @@ use saoms_lang::model::Version;
 
 use super::attributes::Own;
 use super::completion::in_snippet;
-use super::{Completion, names};
+use super::{Proposal, names};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 use crate::editor::syntax::prefix;
@@ -34,7 +34,7 @@ pub(super) fn in_tag(
     parent: Option<usize>,
     element: usize,
     name: &Range<usize>,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let file = scene.file();
     let one = &file.tree.elements[element];
     // An element that has its attributes or its end gets another name and nothing else.
@@ -49,21 +49,21 @@ pub(super) fn in_tag(
 }
 
 /// Elements at a place without a `<`.
-pub(super) fn in_content(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Completion> {
+pub(super) fn in_content(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
     proposals(scene, parent, &(at..at))
 }
 
 /// The end tag of an element.
-pub(super) fn end(scene: &Scene, element: Option<usize>, name: &Range<usize>, at: usize) -> Vec<Completion> {
+pub(super) fn end(scene: &Scene, element: Option<usize>, name: &Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     let Some(element) = element else { return Vec::new() };
     let wanted = &file.text[file.tree.elements[element].name.clone()];
     let close = if file.text[name.end..].trim_start().starts_with('>') { "" } else { ">" };
     let range = name.start..name.end.max(at);
-    vec![Completion::new(wanted, CompletionKind::Class, &range).insert(format!("{wanted}{close}"))]
+    vec![Proposal::new(wanted, ProposalKind::Class, &range).insert(format!("{wanted}{close}"))]
 }
 
-fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<Completion> {
+fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let (text, tree) = (&*file.text, &file.tree);
     let Some(parent) = parent else {
@@ -77,14 +77,14 @@ fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<
             && tree.elements[child].tag.start != range.start
     });
     let fits = |name: &&str| !(has_implementation && name.starts_with("implementation."));
-    let mut all: Vec<Completion> =
+    let mut all: Vec<Proposal> =
         children(kind).filter(fits).map(|name| element(kind, name, &format!("{sca}{name}"), range)).collect();
     if std::ptr::eq(kind, &COMPONENT) {
         all.extend(names::missing_properties(scene, parent).into_iter().map(|(one, preset)| {
             let name = format!("{sca}property {}", one.name);
             let value = in_snippet(one.default.as_deref().unwrap_or_default());
             let rank = if one.required { 0 } else { 6 };
-            Completion::new(name, CompletionKind::Property, range)
+            Proposal::new(name, ProposalKind::Property, range)
                 .detail(describe::facts(one, preset))
                 .doc(describe::property(one, preset))
                 .rank(rank)
@@ -103,16 +103,14 @@ fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<
 }
 
 /// An element that SAOMS adds and SCA's names do not have.
-fn added(kind: &'static Kind, own: &Own<'_>, attributes: &str, range: &Range<usize>) -> Completion {
+fn added(kind: &'static Kind, own: &Own<'_>, attributes: &str, range: &Range<usize>) -> Proposal {
     debug_assert!(OWN_ELEMENTS.contains(&kind.name));
     let name = format!("{}:{}", own.prefix, kind.name);
     let snippet = format!("<{name} {attributes}/>");
-    own.bound(
-        Completion::new(name, CompletionKind::Class, range).doc(describe::element(kind)).snippet(snippet),
-    )
+    own.bound(Proposal::new(name, ProposalKind::Class, range).doc(describe::element(kind)).snippet(snippet))
 }
 
-fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Range<usize>) -> Completion {
+fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Range<usize>) -> Proposal {
     let kind = parent.child(name);
     let doc = match kind {
         Some(kind) => describe::element(kind),
@@ -144,7 +142,7 @@ fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Ran
     };
     let first = kind.map_or(doc.as_str(), |kind| kind.doc);
     let detail = first.split_inclusive('.').next().unwrap_or_default().trim_end_matches('.');
-    Completion::new(written, CompletionKind::Class, range)
+    Proposal::new(written, ProposalKind::Class, range)
         .detail(detail)
         .doc(doc.clone())
         .rank(rank)
@@ -152,17 +150,17 @@ fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Ran
 }
 
 /// The root of a new file.
-fn root(scene: &Scene, range: &Range<usize>) -> Completion {
+fn root(scene: &Scene, range: &Range<usize>) -> Proposal {
     let namespace = Version::Oasis200912.namespace();
     let name = scene.file().path.file_name().unwrap_or_default();
     if name == "sca-contribution.xml" {
         let text = format!(
             "<contribution xmlns=\"{namespace}\">\n  <deployable composite=\"$1\"/>\n</contribution>"
         );
-        let one = Completion::new(CONTRIBUTION.name, CompletionKind::Class, range);
+        let one = Proposal::new(CONTRIBUTION.name, ProposalKind::Class, range);
         return one.doc(describe::element(&CONTRIBUTION)).snippet(text);
     }
-    Completion::new(COMPOSITE.name, CompletionKind::Class, range).doc(describe::element(&COMPOSITE)).snippet(format!(
+    Proposal::new(COMPOSITE.name, ProposalKind::Class, range).doc(describe::element(&COMPOSITE)).snippet(format!(
         "<composite xmlns=\"{namespace}\" name=\"$1\" targetNamespace=\"urn:${{2:fleet}}\">\n  $0\n</composite>"
     ))
 }

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::CompletionKind;
-use saoms_lang::expression::{INDEX, Problem, Value, render};
+use super::ProposalKind;
+use saoms_lang::expression::{ExpressionError, ExpressionValue, INDEX, render};
 use saoms_lang::registry::InterfaceDeclaration;
 
-use super::{Completion, names};
+use super::{Proposal, names};
 use crate::editor::scene::Scene;
 use crate::editor::scene::contracts::Contract;
 use crate::editor::scene::outline::{Component, Implementation, Side};
@@ -21,7 +21,7 @@ pub(super) fn complete(
     attribute: &str,
     value: Range<usize>,
     at: usize,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let file = scene.file();
     let text = &*file.text;
     let word = word(text, value, at);
@@ -82,7 +82,7 @@ pub(super) fn complete(
         };
         let mut add = |name: String, detail: &str, rank: u8| {
             let named =
-                |label| Completion::new(label, CompletionKind::Variable, &range).detail(detail).rank(rank);
+                |label| Proposal::new(label, ProposalKind::Variable, &range).detail(detail).rank(rank);
             match &parts[..] {
                 [] => all.push(named(name)),
                 parts => all.extend(parts.iter().map(|part| named(format!("{name}/{part}")))),
@@ -119,8 +119,8 @@ fn first_replica(scene: &Scene, (file, component): (usize, &Component)) -> Optio
     let written = from.and_then(|one| one.value.clone()).map(|at| of.text[at].trim());
     let first = written.map_or(Ok(1), str::parse).ok()?;
     let mut value = |name: &str| match name {
-        INDEX => Ok(Value::Integer(first)),
-        _ => Err(Problem::new("only the index is known")),
+        INDEX => Ok(ExpressionValue::Integer(first)),
+        _ => Err(ExpressionError::new("only the index is known")),
     };
     render(&component.name.text, &mut value).ok()
 }

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use saoms_api::extension::{self, PropertyLanguage, PropertyText};
-use saoms_lang::expression::{Value, render};
+use saoms_lang::expression::{ExpressionValue, render};
 
-use super::{Completion, CompletionKind};
+use super::{Proposal, ProposalKind};
 use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Component;
 
@@ -30,7 +30,7 @@ pub(super) fn complete(
     composite: usize,
     range: Range<usize>,
     at: usize,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let text = &scene.file().text[range.clone()];
     let components = |class: &str| components(scene, composite, class);
     let found = (language.complete)(&PropertyText { text, at: at - range.start, components: &components });
@@ -38,15 +38,15 @@ pub(super) fn complete(
 }
 
 /// The completion of a text that begins at a byte of the file.
-fn shifted(completion: extension::Completion, start: usize) -> Completion {
+fn shifted(completion: extension::Completion, start: usize) -> Proposal {
     let extension::Completion { label, kind, detail, rank, snippet, range } = completion;
     let kind = match kind {
-        extension::CompletionKind::Keyword => CompletionKind::Keyword,
-        extension::CompletionKind::Value => CompletionKind::Value,
-        extension::CompletionKind::Component => CompletionKind::Variable,
+        extension::CompletionKind::Keyword => ProposalKind::Keyword,
+        extension::CompletionKind::Value => ProposalKind::Value,
+        extension::CompletionKind::Component => ProposalKind::Variable,
     };
     let range = start + range.start..start + range.end;
-    let completion = Completion::new(label, kind, &range).detail(detail).rank(rank);
+    let completion = Proposal::new(label, kind, &range).detail(detail).rank(rank);
     match snippet {
         Some(snippet) => completion.snippet(snippet),
         None => completion,
@@ -56,6 +56,6 @@ fn shifted(completion: extension::Completion, start: usize) -> Completion {
 /// The names of the components of a class in a composite; of replicas, the name of the first.
 fn components(scene: &Scene, composite: usize, class: &str) -> Vec<String> {
     let components = scene.components_of(composite).filter(|(_, one)| is_a(scene, one, class));
-    let first = |name: &str| render(name, &mut |_| Ok(Value::Integer(1))).ok();
+    let first = |name: &str| render(name, &mut |_| Ok(ExpressionValue::Integer(1))).ok();
     components.filter_map(|(_, one)| first(&one.name.text)).collect()
 }

@@ -17,7 +17,7 @@ mod values;
 
 use std::ops::Range;
 
-use saoms_lang::diagnostic::Level;
+use saoms_lang::diagnostic::SeverityLevel;
 use saoms_lang::load::vocabulary::{
     BINDING_SCA, COMPONENT, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE,
     COMPOSITE_SERVICE, Holds, own_attributes,
@@ -28,10 +28,10 @@ use super::scene::Scene;
 use super::scene::expressions::template_before;
 use super::scene::outline::{Component, Side};
 use super::syntax::{Cursor, local};
-pub use completion::{Completion, CompletionKind, Insert};
+pub use completion::{Insert, Proposal, ProposalKind};
 
 /// The completions at a byte of the file.
-pub fn complete(scene: &Scene, at: usize) -> Vec<Completion> {
+pub fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     if file.is_beside {
         return beside(scene, at);
@@ -55,7 +55,7 @@ pub fn complete(scene: &Scene, at: usize) -> Vec<Completion> {
 }
 
 /// What can be written behind a `&`: the characters that cannot stand for themselves everywhere (XML 1.0, 4.6). `None` where there is none.
-fn entities(scene: &Scene, at: usize) -> Option<Vec<Completion>> {
+fn entities(scene: &Scene, at: usize) -> Option<Vec<Proposal>> {
     const ENTITIES: [(&str, &str); 5] =
         [("&amp;", "&"), ("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'")];
     let text = &scene.file().text;
@@ -68,13 +68,13 @@ fn entities(scene: &Scene, at: usize) -> Option<Vec<Completion>> {
     let behind = text[at..].len() - text[at..].trim_start_matches(is_part).len();
     let end = at + behind + usize::from(text[at + behind..].starts_with(';'));
     let one = |(name, meant): (&str, &str)| {
-        Completion::new(name, CompletionKind::Constant, &(start..end)).detail(meant)
+        Proposal::new(name, ProposalKind::Constant, &(start..end)).detail(meant)
     };
     can_be.then(|| ENTITIES.map(one).into())
 }
 
 /// What can be written in a file that holds values.
-fn beside(scene: &Scene, at: usize) -> Vec<Completion> {
+fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
     if let Some(of) = table::owner(scene) {
         return table::complete(scene, of, at);
     }
@@ -102,7 +102,7 @@ fn value_of(
     attribute: usize,
     value: Range<usize>,
     at: usize,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let file = scene.file();
     let Some(kind) = file.kinds[element] else { return Vec::new() };
     let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
@@ -119,7 +119,7 @@ fn value_of(
     }
     match known.holds {
         Holds::Boolean => names::words(&["true", "false"], &value),
-        Holds::Level => names::words(&Level::ALL.map(Level::name), &value),
+        Holds::Level => names::words(&SeverityLevel::ALL.map(SeverityLevel::name), &value),
         Holds::Code => names::codes(scene, &value),
         Holds::Multiplicity => names::words(&Multiplicity::ALL.map(Multiplicity::name), &value),
         Holds::PropertyName => names::properties(scene, element, &value),
@@ -166,7 +166,7 @@ fn in_template(
     is_name: bool,
     range: &Range<usize>,
     at: usize,
-) -> Option<Vec<Completion>> {
+) -> Option<Vec<Proposal>> {
     // The name is typed before it is said how many there are.
     let component = scene.component_around(element).filter(|one| one.is_replicated || is_name)?;
     template(scene, 0, component, range, at)
@@ -179,7 +179,7 @@ fn template(
     component: &Component,
     range: &Range<usize>,
     at: usize,
-) -> Option<Vec<Completion>> {
+) -> Option<Vec<Proposal>> {
     let text = &scene.file().text;
     let expression = template_before(text, range.clone(), at)?;
     let end = text[at..range.end].find(['}', '\n']).map_or(range.end, |found| at + found);
@@ -194,7 +194,7 @@ fn in_reference(scene: &Scene, element: usize) -> bool {
 }
 
 /// What can stand in the content of an element.
-fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Completion> {
+fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     let Some(element) = parent else { return elements::in_content(scene, None, at) };
     let one = &file.tree.elements[element];
@@ -236,6 +236,6 @@ fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Completion> {
 }
 
 /// A proposal of a value.
-fn value(label: impl Into<String>, range: &Range<usize>) -> Completion {
-    Completion::new(label, CompletionKind::Value, range)
+fn value(label: impl Into<String>, range: &Range<usize>) -> Proposal {
+    Proposal::new(label, ProposalKind::Value, range)
 }

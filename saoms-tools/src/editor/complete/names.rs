@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::CompletionKind;
+use super::ProposalKind;
 use saoms_lang::diagnostic::codes;
 use saoms_lang::expression::is_name;
 use saoms_lang::registry::{ClassDeclaration, PropertyDeclaration};
 
-use super::Completion;
+use super::Proposal;
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 use crate::editor::scene::contracts::Contract;
@@ -16,17 +16,17 @@ use crate::editor::scene::expressions::INDEX;
 use crate::editor::scene::outline::{Component, Loop, Named, Side};
 
 /// Fixed values.
-pub(super) fn words(words: &[&str], range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn words(words: &[&str], range: &Range<usize>) -> Vec<Proposal> {
     let all = words.iter().zip(0..);
-    all.map(|(word, rank)| Completion::new(*word, CompletionKind::EnumMember, range).rank(rank)).collect()
+    all.map(|(word, rank)| Proposal::new(*word, ProposalKind::EnumMember, range).rank(rank)).collect()
 }
 
 /// The codes of diagnostics, those of rules over fleets included.
-pub(super) fn codes(scene: &Scene, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn codes(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
     let of_rules = scene.registry.rules().iter().map(|rule| rule.code());
     let all = codes::ALL.iter().copied().chain(of_rules);
     all.map(|code| {
-        let one = Completion::new(code.id, CompletionKind::EnumMember, range);
+        let one = Proposal::new(code.id, ProposalKind::EnumMember, range);
         one.detail(format!("{}: {}", code.severity.name(), code.name)).doc(describe::code(code, code.rule))
     })
     .collect()
@@ -40,11 +40,11 @@ pub(super) fn word_at(text: &str, value: Range<usize>, at: usize) -> Range<usize
     value.start + before..at + after
 }
 
-pub(super) fn classes(scene: &Scene, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn classes(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
     let all = scene.registry.iter();
     all.map(|class| {
         let kind = if class.declaration().is_periodic() { "periodic" } else { "passive" };
-        Completion::new(class.name(), CompletionKind::Class, range)
+        Proposal::new(class.name(), ProposalKind::Class, range)
             .detail(kind)
             .doc(describe::class(class))
             // Those of larger packages are for files of theirs, as the manual's own names are.
@@ -54,15 +54,15 @@ pub(super) fn classes(scene: &Scene, range: &Range<usize>) -> Vec<Completion> {
 }
 
 /// The properties that a component, or a loop, has not been given yet. One that the cursor is in counts as not given.
-pub(super) fn properties(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn properties(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let Some(parent) = file.tree.elements[element].parent else { return Vec::new() };
     let given: Vec<&str> = given(scene, parent, element);
-    let mut all: Vec<Completion> = declared(scene, parent)
+    let mut all: Vec<Proposal> = declared(scene, parent)
         .into_iter()
         .filter(|(one, _)| !given.contains(&one.name.as_str()))
         .map(|(one, preset)| {
-            Completion::new(&one.name, CompletionKind::Property, range)
+            Proposal::new(&one.name, ProposalKind::Property, range)
                 .detail(describe::facts(one, preset))
                 .doc(describe::property(one, preset))
                 .rank(if one.required && preset.is_none() { 1 } else { 5 })
@@ -72,7 +72,7 @@ pub(super) fn properties(scene: &Scene, element: usize, range: &Range<usize>) ->
         for inner in scene.inside(0, component) {
             let declared = &scene.files[inner].outline.properties;
             let open = declared.iter().filter(|one| !given.contains(&one.text.as_str()));
-            all.extend(open.map(|one| Completion::new(&one.text, CompletionKind::Property, range)));
+            all.extend(open.map(|one| Proposal::new(&one.text, ProposalKind::Property, range)));
         }
     }
     all
@@ -123,7 +123,7 @@ pub(super) fn declared_in(
 }
 
 /// The names of loops: for `name` those that can be changed and are not yet, for `before` and `after` all others.
-pub(super) fn loops(scene: &Scene, element: usize, attribute: &str, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn loops(scene: &Scene, element: usize, attribute: &str, range: &Range<usize>) -> Vec<Proposal> {
     let Some(component) = scene.component_around(element) else { return Vec::new() };
     let is_own = |one: &&Loop| one.name.element == element;
     let others: Vec<&str> =
@@ -134,22 +134,22 @@ pub(super) fn loops(scene: &Scene, element: usize, attribute: &str, range: &Rang
     let is_open = |short: &str| if names_itself { !others.contains(&short) } else { short != own };
     let of_class = defaults.iter().filter(|(short, _)| is_open(short)).map(|(short, class)| {
         let doc = scene.registry.get_loop(class).map(|one| describe::looping(one));
-        Completion::new(*short, CompletionKind::Function, range).detail(*class).doc(doc.unwrap_or_default())
+        Proposal::new(*short, ProposalKind::Function, range).detail(*class).doc(doc.unwrap_or_default())
     });
     let is_new = |name: &&str| !name.is_empty() && defaults.iter().all(|(short, _)| short != name);
     let added = others.iter().filter(|name| !names_itself && is_new(name));
-    of_class.chain(added.map(|name| Completion::new(*name, CompletionKind::Function, range))).collect()
+    of_class.chain(added.map(|name| Proposal::new(*name, ProposalKind::Function, range))).collect()
 }
 
 /// The loops of the registry; those that work on the component's knowledge, or on any, first.
-pub(super) fn loop_classes(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn loop_classes(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
     let class = scene.component_around(element).and_then(|component| scene.class(component));
     let knowledge = class.and_then(|class| class.declaration().knowledge.as_ref()).map(|one| &one.name);
     let all = scene.registry.loops();
     all.map(|one| {
         let declaration = one.declaration();
         let fits = declaration.knowledge.is_none() || declaration.knowledge.as_ref() == knowledge;
-        Completion::new(one.name(), CompletionKind::Function, range)
+        Proposal::new(one.name(), ProposalKind::Function, range)
             .detail(declaration.doc.split('.').next().unwrap_or_default())
             .doc(describe::looping(one))
             .rank(if fits { 4 } else { 8 })
@@ -158,7 +158,7 @@ pub(super) fn loop_classes(scene: &Scene, element: usize, range: &Range<usize>) 
 }
 
 /// The services or references of the component that an element is in which nothing is said about yet.
-pub(super) fn parts(scene: &Scene, element: usize, side: Side, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn parts(scene: &Scene, element: usize, side: Side, range: &Range<usize>) -> Vec<Proposal> {
     let Some(component) = scene.component_around(element) else { return Vec::new() };
     let named = if side == Side::Service { &component.services } else { &component.references };
     let is_said = |name: &str| named.iter().any(|one| one.text == name && one.element != element);
@@ -167,14 +167,11 @@ pub(super) fn parts(scene: &Scene, element: usize, side: Side, range: &Range<usi
 }
 
 /// Services or references, each with its interface and how many targets it takes.
-pub(super) fn contracts<'s>(
-    all: impl Iterator<Item = Contract<'s>>,
-    range: &Range<usize>,
-) -> Vec<Completion> {
+pub(super) fn contracts<'s>(all: impl Iterator<Item = Contract<'s>>, range: &Range<usize>) -> Vec<Proposal> {
     all.map(|one| {
         let interface = one.interface.map(|interface| interface.name.as_str());
         let facts: Vec<&str> = interface.into_iter().chain(one.multiplicity).collect();
-        Completion::new(one.name, CompletionKind::Interface, range)
+        Proposal::new(one.name, ProposalKind::Interface, range)
             .detail(facts.join(", "))
             .rank(if one.is_of_host { 6 } else { 5 })
     })
@@ -182,7 +179,7 @@ pub(super) fn contracts<'s>(
 }
 
 /// The interfaces that classes declare; the one that the service or the reference has by its class comes first.
-pub(super) fn interfaces(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn interfaces(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let own = file.tree.elements[element].parent.and_then(|contract| {
         let name = &file.text[file.tree.value(&file.text, contract, "name")?];
@@ -194,7 +191,7 @@ pub(super) fn interfaces(scene: &Scene, element: usize, range: &Range<usize>) ->
     let all: BTreeSet<&str> =
         scene.registry.iter().flat_map(|class| interfaces_of(class.declaration())).collect();
     let rank = |name: &str| if own.is_some_and(|own: &String| own == name) { 0 } else { 5 };
-    all.iter().map(|name| Completion::new(*name, CompletionKind::Interface, range).rank(rank(name))).collect()
+    all.iter().map(|name| Proposal::new(*name, ProposalKind::Interface, range).rank(rank(name))).collect()
 }
 
 fn interfaces_of(class: &ClassDeclaration) -> impl Iterator<Item = &str> {
@@ -203,7 +200,7 @@ fn interfaces_of(class: &ClassDeclaration) -> impl Iterator<Item = &str> {
 }
 
 /// The composites that a file can name, with the prefix of their namespace. Where the file has none for it, one is declared at its root.
-pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let deployed = file.outline.deployables.iter().filter(|one| one.element != element);
     let deployed: Vec<usize> = deployed.filter_map(|one| scene.composite(0, one)).collect();
@@ -227,7 +224,7 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
             let leads = scene.composite(0, &meant) == Some(place);
             let shown = other.path.file_name().unwrap_or_default().to_string_lossy();
             let one = |written: String| {
-                Completion::new(written, CompletionKind::Module, range)
+                Proposal::new(written, ProposalKind::Module, range)
                     .detail(shown)
                     .doc(format!("`{namespace}`"))
             };
@@ -260,29 +257,29 @@ fn free_prefix(scene: &Scene, element: usize, namespace: &str) -> String {
 }
 
 /// The namespaces of the composites around a file.
-pub(super) fn namespaces(scene: &Scene, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn namespaces(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
     let others = scene.files.iter().skip(1).map(|other| other.outline.namespace.as_str());
     let others: BTreeSet<&str> = others.filter(|name| !name.is_empty()).collect();
-    others.into_iter().map(|name| Completion::new(name, CompletionKind::Module, range)).collect()
+    others.into_iter().map(|name| Proposal::new(name, ProposalKind::Module, range)).collect()
 }
 
 /// The name of a file, which its composite as a rule has as well.
-pub(super) fn of_file(scene: &Scene, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn of_file(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
     let stem = scene.file().path.file_stem().and_then(|stem| stem.to_str());
     let fits = stem.filter(|stem| !stem.contains(|c: char| c.is_whitespace() || "/&<\"'".contains(c)));
-    let one = |stem| Completion::new(stem, CompletionKind::Module, range).detail("the name of the file");
+    let one = |stem| Proposal::new(stem, ProposalKind::Module, range).detail("the name of the file");
     fits.map(one).into_iter().collect()
 }
 
 /// The names of what a service or a reference of the composite promotes.
-pub(super) fn promoted(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn promoted(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
     let ends = scene.file().outline.ends.iter().filter(|end| end.component.element == element);
     let names: BTreeSet<&str> = ends.filter_map(|end| Some(end.part.as_ref()?.text.as_str())).collect();
-    names.into_iter().map(|name| Completion::new(name, CompletionKind::Interface, range)).collect()
+    names.into_iter().map(|name| Proposal::new(name, ProposalKind::Interface, range)).collect()
 }
 
 /// `$name` of each property of the composite.
-pub(super) fn sources(scene: &Scene, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn sources(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
     of_composite(scene, 0, "$", range)
 }
 
@@ -291,7 +288,7 @@ pub(super) fn parameters(
     scene: &Scene,
     replicated: Option<&Component>,
     range: &Range<usize>,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     parameters_of(scene, 0, replicated, range)
 }
 
@@ -301,21 +298,21 @@ pub(super) fn parameters_of(
     file: usize,
     replicated: Option<&Component>,
     range: &Range<usize>,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let mut all = of_composite(scene, file, "", range);
     all.retain(|one| is_name(&one.label));
     all.extend(replicated.map(|_| {
-        Completion::new(INDEX, CompletionKind::Variable, range).detail("what replicas are counted by").rank(4)
+        Proposal::new(INDEX, ProposalKind::Variable, range).detail("what replicas are counted by").rank(4)
     }));
     all
 }
 
-fn of_composite(scene: &Scene, file: usize, sign: &str, range: &Range<usize>) -> Vec<Completion> {
+fn of_composite(scene: &Scene, file: usize, sign: &str, range: &Range<usize>) -> Vec<Proposal> {
     let of_file = |file: usize| scene.files[file].outline.properties.iter().map(move |one| (file, one));
     let all = scene.unit_of(file).iter().flat_map(|file| of_file(*file));
     all.map(|(file, one)| {
         let given = scene.value_of(file, one.element).unwrap_or_default();
-        Completion::new(format!("{sign}{}", one.text), CompletionKind::Constant, range).detail(given)
+        Proposal::new(format!("{sign}{}", one.text), ProposalKind::Constant, range).detail(given)
     })
     .collect()
 }

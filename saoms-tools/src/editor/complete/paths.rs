@@ -5,9 +5,9 @@ use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
-use super::CompletionKind;
+use super::ProposalKind;
 
-use super::Completion;
+use super::Proposal;
 use crate::editor::scene::Scene;
 use crate::editor::scene::outline::{Component, Implementation};
 
@@ -20,7 +20,7 @@ pub(super) fn complete(
     value: &Range<usize>,
     at: usize,
     fits: fn(&Path) -> bool,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let file = scene.file();
     let typed = &file.text[value.start..at];
     let inner = typed.rfind('/').map_or(0, |slash| slash + 1);
@@ -35,8 +35,8 @@ pub(super) fn complete(
                 return None;
             }
             match path.is_dir() {
-                true => Some(Completion::new(format!("{name}/"), CompletionKind::Folder, &range).rank(7)),
-                false => fits(&path).then(|| Completion::new(name, CompletionKind::File, &range)),
+                true => Some(Proposal::new(format!("{name}/"), ProposalKind::Folder, &range).rank(7)),
+                false => fits(&path).then(|| Proposal::new(name, ProposalKind::File, &range)),
             }
         })
         .collect()
@@ -61,18 +61,17 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
 }
 
 /// The libraries that are known by the classes that they bring, that of the component's class first, and those in the folder.
-pub(super) fn libraries(scene: &Scene, element: usize, value: &Range<usize>, at: usize) -> Vec<Completion> {
+pub(super) fn libraries(scene: &Scene, element: usize, value: &Range<usize>, at: usize) -> Vec<Proposal> {
     let class = scene.component_around(element).and_then(|one: &Component| match &one.implementation {
         Some(Implementation::Class(name)) => scene.registry.get(&name.text)?.origin(),
         _ => None,
     });
     let known: BTreeSet<&Path> = scene.registry.iter().filter_map(|one| one.origin()).collect();
-    let mut all: Vec<Completion> = known
+    let mut all: Vec<Proposal> = known
         .into_iter()
         .filter_map(|path| {
             let stem = path.file_stem()?.to_str()?;
-            let one =
-                Completion::new(stem.strip_prefix("lib").unwrap_or(stem), CompletionKind::Module, value);
+            let one = Proposal::new(stem.strip_prefix("lib").unwrap_or(stem), ProposalKind::Module, value);
             Some(one.detail(path.display().to_string()).rank(if class == Some(path) { 0 } else { 4 }))
         })
         .collect();

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::CompletionKind;
+use super::ProposalKind;
 
-use super::{Completion, names};
+use super::{Proposal, names};
 use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Named;
 use crate::editor::syntax::local;
@@ -22,7 +22,7 @@ const MOST_TEXTS: usize = 200;
 type Part = (usize, usize);
 
 /// What can stand at a place of a `source`: a property of the composite, or behind `/` and `[` the elements and attributes that there are in its value.
-pub(super) fn complete(scene: &Scene, value: Range<usize>, at: usize) -> Vec<Completion> {
+pub(super) fn complete(scene: &Scene, value: Range<usize>, at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
     if let Some(all) = texts(scene, &value, at) {
         return all;
@@ -56,7 +56,7 @@ fn around(scene: &Scene, paths: Vec<&str>) -> Option<Vec<Part>> {
 }
 
 /// What an attribute or an element can be equal to, where the quote of a text behind `=` is open.
-fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Completion>> {
+fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Proposal>> {
     let text = &scene.file().text;
     let typed = &text[value.start..at];
     let (open, quote) = open_quote(typed)?;
@@ -78,7 +78,7 @@ fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Completio
         // What would have to be written with references is for nobody.
         let is_plain = !text.is_empty() && !text.contains(['&', '<', '"', '\'', '\n']);
         let is_new = is_plain && seen.len() < MOST_TEXTS && seen.insert(text.to_owned());
-        is_new.then(|| Completion::new(text, CompletionKind::Value, &range))
+        is_new.then(|| Proposal::new(text, ProposalKind::Value, &range))
     };
     let mut all = Vec::new();
     if let Some(name) = last.strip_prefix('@') {
@@ -242,14 +242,14 @@ fn descendants(scene: &Scene, of: &[Part]) -> Vec<Part> {
 }
 
 /// The names of the elements and attributes in elements, the first text or value of each beside it.
-fn parts(scene: &Scene, of: &[Part], range: &Range<usize>) -> Vec<Completion> {
+fn parts(scene: &Scene, of: &[Part], range: &Range<usize>) -> Vec<Proposal> {
     let (mut all, mut seen) = (Vec::new(), BTreeSet::new());
     for (file, one) in children(scene, of) {
         let file = &scene.files[file];
         let name = file.tree.local(&file.text, one);
         if !name.is_empty() && seen.insert(name.to_owned()) {
             let text = file.tree.text(&file.text, one).map_or("", |at| &file.text[at]);
-            all.push(Completion::new(name, CompletionKind::Field, range).detail(text).rank(4));
+            all.push(Proposal::new(name, ProposalKind::Field, range).detail(text).rank(4));
         }
     }
     // A property that a value stands in is no part of that.
@@ -264,7 +264,7 @@ fn parts(scene: &Scene, of: &[Part], range: &Range<usize>) -> Vec<Completion> {
                 continue;
             }
             let value = attribute.value.clone().map_or("", |at| &file.text[at]);
-            all.push(Completion::new(shown, CompletionKind::Property, range).detail(value));
+            all.push(Proposal::new(shown, ProposalKind::Property, range).detail(value));
         }
     }
     all

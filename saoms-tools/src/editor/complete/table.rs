@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::CompletionKind;
-use saoms_lang::expression::{Value, render};
+use super::ProposalKind;
+use saoms_lang::expression::{ExpressionValue, render};
 
-use super::{Completion, names, value, values};
+use super::{Proposal, names, value, values};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 use crate::editor::scene::expressions::INDEX;
@@ -16,7 +16,7 @@ use crate::editor::syntax::trimmed;
 const MOST: i64 = 200;
 
 /// What can stand at a byte of the table of a component.
-pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec<Completion> {
+pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
     let lines = lines(text);
     let Some(line) = lines.iter().position(|line| line.last().is_some_and(|last| at <= last.whole.end))
@@ -30,7 +30,7 @@ pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec
     let head: Vec<&str> = lines[0].iter().map(|cell| text[cell.inside.clone()].trim()).collect();
     match (line, column) {
         (0, 0) => {
-            let one = |name: &str, what| Completion::new(name, CompletionKind::Field, &range).detail(what);
+            let one = |name: &str, what| Proposal::new(name, ProposalKind::Field, &range).detail(what);
             vec![one(INDEX, "lines are about replicas by their index"), one("name", "by their names")]
         }
         (0, _) => columns(scene, of, &head, column, &range),
@@ -93,9 +93,9 @@ fn columns(
     head: &[&str],
     column: usize,
     range: &Range<usize>,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let is_free = |name: &str| !head.iter().zip(0..).any(|(known, at)| *known == name && at != column);
-    let one = |name: &str| Completion::new(name, CompletionKind::Property, range);
+    let one = |name: &str| Proposal::new(name, ProposalKind::Property, range);
     let declared = names::declared_in(scene, of.0, of.1.name.element).into_iter();
     let declared = declared.filter(|(property, _)| is_free(&property.name)).map(|(property, preset)| {
         one(&property.name)
@@ -118,7 +118,7 @@ fn replicas(scene: &Scene, (file, component): (usize, &Component), by_name: bool
         text.parse().ok().or_else(|| scene.parameter_value(file, text)?.trim().parse().ok())
     };
     let (first, count) = (number("from").unwrap_or(1), number("count").unwrap_or(0));
-    let name = |index: i64| render(&component.name.text, &mut |_| Ok(Value::Integer(index))).ok();
+    let name = |index: i64| render(&component.name.text, &mut |_| Ok(ExpressionValue::Integer(index))).ok();
     (0..count.min(MOST))
         .filter_map(|step| {
             let index = first.checked_add(step)?;

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::CompletionKind;
-use saoms_lang::registry::TopicDeclaration;
+use super::ProposalKind;
+use saoms_lang::registry::ClassTopic;
 
-use super::Completion;
+use super::Proposal;
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Component;
 
 /// The names that can stand at a place of a value of `topicRename`.
-pub(super) fn complete(scene: &Scene, property: usize, value: Range<usize>, at: usize) -> Vec<Completion> {
+pub(super) fn complete(scene: &Scene, property: usize, value: Range<usize>, at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
     let before = &text[value.start..at];
     let pair = before.rfind("::").map_or(0, |found| found + 2);
@@ -32,8 +32,8 @@ pub(super) fn complete(scene: &Scene, property: usize, value: Range<usize>, at: 
     }
 }
 
-fn item(name: &str, topic: Option<&TopicDeclaration>, range: &Range<usize>) -> Completion {
-    let one = Completion::new(name, CompletionKind::Event, range);
+fn item(name: &str, topic: Option<&ClassTopic>, range: &Range<usize>) -> Proposal {
+    let one = Proposal::new(name, ProposalKind::Event, range);
     match topic {
         Some(topic) => {
             one.detail(format!("{} ({})", topic.message, topic.kind.name())).doc(describe::topic(topic))
@@ -43,13 +43,13 @@ fn item(name: &str, topic: Option<&TopicDeclaration>, range: &Range<usize>) -> C
 }
 
 /// The topics of a component of a file by their own names.
-fn own<'s>(scene: &'s Scene, of: (usize, &Component)) -> BTreeMap<&'s str, &'s TopicDeclaration> {
+fn own<'s>(scene: &'s Scene, of: (usize, &Component)) -> BTreeMap<&'s str, &'s ClassTopic> {
     let all = scene.topics(of).into_iter();
     all.map(|topic| (topic.declaration.name.as_str(), topic.declaration)).collect()
 }
 
 /// The topics of all components of the composite, and the names that they are given anew.
-fn all(scene: &Scene) -> BTreeMap<String, Option<&TopicDeclaration>> {
+fn all(scene: &Scene) -> BTreeMap<String, Option<&ClassTopic>> {
     let mut all = BTreeMap::new();
     for (file, component) in scene.components_of(0) {
         let own = own(scene, (file, component));

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::CompletionKind;
+use super::ProposalKind;
 use saoms_lang::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
 
-use super::Completion;
+use super::Proposal;
 use crate::editor::scene::Scene;
 
 /// The types that most properties have come first, with what they are.
@@ -18,7 +18,7 @@ const USUAL: [(&str, &str); 5] = [
 ];
 
 /// The types of XML Schema. Where the file has no prefix for them, one is declared at its root.
-pub(super) fn complete(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn complete(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let bound = file.tree.prefix_of(&file.text, element, XML_SCHEMA);
     let prefix = match bound {
@@ -32,7 +32,7 @@ pub(super) fn complete(scene: &Scene, element: usize, range: &Range<usize>) -> V
     let all = USUAL.iter().map(|(name, what)| (*name, *what, 1)).chain(others.map(|name| (*name, "", 5)));
     all.zip(0..)
         .map(|((name, what, rank), place)| {
-            let one = Completion::new(format!("{prefix}{name}"), CompletionKind::TypeParameter, range);
+            let one = Proposal::new(format!("{prefix}{name}"), ProposalKind::TypeParameter, range);
             let one = one.detail(what).rank(if rank == 1 { place } else { rank + 5 });
             match declaration {
                 Some(at) => one.also(at, format!(" xmlns:xsd=\"{XML_SCHEMA}\"")),
@@ -43,15 +43,15 @@ pub(super) fn complete(scene: &Scene, element: usize, range: &Range<usize>) -> V
 }
 
 /// The elements that stand in a property: one of them is its value.
-pub(super) fn elements(scene: &Scene, property: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn elements(scene: &Scene, property: usize, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let inside = file.tree.children(property).filter(|child| file.tree.local(&file.text, *child) != "value");
     let names = inside.map(|child| &file.text[file.tree.elements[child].name.clone()]);
-    names.map(|name| Completion::new(name, CompletionKind::Class, range)).collect()
+    names.map(|name| Proposal::new(name, ProposalKind::Class, range)).collect()
 }
 
 /// Environment variables: one named after the composite and the property, then those that there are.
-pub(super) fn variables(scene: &Scene, property: usize, range: &Range<usize>) -> Vec<Completion> {
+pub(super) fn variables(scene: &Scene, property: usize, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let name = file.tree.value(&file.text, property, "name").map(|at| &file.text[at]);
     let composite = file.outline.name.as_ref().map(|one| one.text.as_str());
@@ -59,8 +59,8 @@ pub(super) fn variables(scene: &Scene, property: usize, range: &Range<usize>) ->
         let joined = format!("{composite}_{name}").to_uppercase();
         joined.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
     });
-    let one = |name: &str| Completion::new(name, CompletionKind::Constant, range);
-    let mut all: Vec<Completion> =
+    let one = |name: &str| Proposal::new(name, ProposalKind::Constant, range);
+    let mut all: Vec<Proposal> =
         usual.iter().map(|name| one(name).detail("named after the property").rank(0)).collect();
     let present = std::env::vars_os().filter_map(|(name, _)| name.into_string().ok());
     let free = present.filter(|name| usual.as_ref() != Some(name) && !name.contains(['&', '<', '"', '\'']));

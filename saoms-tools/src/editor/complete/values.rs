@@ -6,7 +6,7 @@ use saoms_api::extension::DURATION_UNITS;
 use saoms_api::host::declaration::PropertyKind;
 use saoms_lang::registry::PropertyDeclaration;
 
-use super::{Completion, language, names, topics, value};
+use super::{Proposal, language, names, topics, value};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 use crate::editor::scene::symbol::Symbol;
@@ -14,7 +14,7 @@ use crate::editor::scene::topics::RENAME;
 use crate::editor::syntax::local;
 
 /// The values that a property of a component, or of a loop, can have.
-pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Completion> {
+pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     let Some(parent) = file.tree.elements[property].parent else { return Vec::new() };
     let Some(name) = file.tree.value(&file.text, property, "name") else { return Vec::new() };
@@ -46,19 +46,14 @@ pub(super) fn explained(
     preset: Option<&str>,
     typed: &str,
     range: &Range<usize>,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let (doc, expected) = (describe::property(one, preset), one.expected());
     let all = of_declared(one, typed, range).into_iter();
     all.map(|item| if item.detail.is_empty() { item.detail(&expected) } else { item }.doc(&doc)).collect()
 }
 
 /// The values that a property of the composite can have.
-pub(super) fn of_parameter(
-    scene: &Scene,
-    property: usize,
-    range: Range<usize>,
-    at: usize,
-) -> Vec<Completion> {
+pub(super) fn of_parameter(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     match file.tree.value(&file.text, property, "name") {
         Some(name) => as_used(scene, 0, &file.text[name], &range, at),
@@ -73,7 +68,7 @@ pub(super) fn as_used(
     name: &str,
     range: &Range<usize>,
     at: usize,
-) -> Vec<Completion> {
+) -> Vec<Proposal> {
     let Symbol::Parameter { file, name } = scene.parameter(file, name) else { return Vec::new() };
     let of = &scene.files[file];
     let declared = of.outline.properties.iter().find(|one| one.text == name);
@@ -98,9 +93,9 @@ fn taker(scene: &Scene, file: usize, property: usize) -> Option<&PropertyDeclara
 }
 
 /// What can be proposed from the declaration, behind what is typed.
-fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> Vec<Completion> {
+fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> Vec<Proposal> {
     let is_default = |text: &str| one.default.as_deref() == Some(text);
-    let mut all: Vec<Completion> = match one.kind {
+    let mut all: Vec<Proposal> = match one.kind {
         PropertyKind::Boolean => ["true", "false"].map(|word| value(word, range)).into(),
         PropertyKind::Duration => {
             let number = typed.trim_end_matches(|c: char| c.is_ascii_alphabetic()).trim();

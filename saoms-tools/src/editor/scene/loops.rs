@@ -1,7 +1,7 @@
 //! The loops of a component, as far as they can be known.
 
 use saoms_api::host::PropertyValue;
-use saoms_lang::registry::{Class, LoopClass};
+use saoms_lang::registry::{RegisteredClass, RegisteredLoop};
 
 use super::Scene;
 use super::outline::{Component, Loop};
@@ -33,7 +33,12 @@ impl Scene {
     }
 
     /// The value of the property that chooses a list of loops: what the composite gives, what the class's name presets, or the default.
-    fn choice<'s>(&'s self, class: &'s Class, file: usize, component: &Component) -> Option<&'s str> {
+    fn choice<'s>(
+        &'s self,
+        class: &'s RegisteredClass,
+        file: usize,
+        component: &Component,
+    ) -> Option<&'s str> {
         let declaration = class.declaration();
         let property = declaration.loops.property.as_deref()?;
         if let Some(given) = component.properties.iter().find(|one| one.text == property) {
@@ -46,7 +51,7 @@ impl Scene {
     }
 
     /// The loops of a component with what it adds: their classes.
-    pub(crate) fn loops(&self, of: (usize, &Component)) -> impl Iterator<Item = &LoopClass> {
+    pub(crate) fn loops(&self, of: (usize, &Component)) -> impl Iterator<Item = &RegisteredLoop> {
         let added = of.1.loops.iter().filter_map(move |one| self.class_of_loop(of, one));
         let all = self.default_loops(of).into_iter().map(|(_, class)| class.to_owned()).chain(added);
         let all: Vec<String> = all.collect();

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use saoms_lang::model::Version;
-use saoms_lang::registry::{Class, Registry};
+use saoms_lang::registry::{RegisteredClass, Registry};
 use saoms_lang::source::identity;
 
 use super::syntax::local;
@@ -51,7 +51,7 @@ pub struct Scene {
 
 /// Composites that are checked as one.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fleet {
+pub struct SceneFleet {
     /// The files of its composites, by their places in the scene.
     pub files: Vec<usize>,
     /// True if others elsewhere may use it, so that what it leaves open is no fault.
@@ -136,7 +136,7 @@ impl Scene {
 
     /// The fleets that the first file is part of, as a check of the whole folder has them: what the description of the contribution calls deployable is one, and
     /// every other composite that no composite names is one of its own. A file of values is part of those that take values from it.
-    pub fn fleets(&self) -> Vec<Fleet> {
+    pub fn fleets(&self) -> Vec<SceneFleet> {
         let (names, users) = self.naming();
         let described = self.files.iter().enumerate().flat_map(|(file, one)| {
             one.outline.deployables.iter().filter_map(move |name| self.composite(file, name))
@@ -159,16 +159,20 @@ impl Scene {
             return Vec::new();
         }
         let alone = reached(start.clone(), |place| users[place].clone()).into_iter().filter(is_alone);
-        let alone =
-            alone.map(|root| Fleet { files: vec![root], may_be_part: may_be_part || self.is_exported(root) });
-        let mut fleets: Vec<Fleet> = alone.collect();
+        let alone = alone
+            .map(|root| SceneFleet { files: vec![root], may_be_part: may_be_part || self.is_exported(root) });
+        let mut fleets: Vec<SceneFleet> = alone.collect();
         let deployed: Vec<usize> = deployed.into_iter().collect();
         let mut named = reached(deployed.clone(), |place| names[place].clone()).into_iter();
         if named.any(|one| start.contains(&one)) {
-            fleets.insert(0, Fleet { files: deployed, may_be_part: false });
+            fleets.insert(0, SceneFleet { files: deployed, may_be_part: false });
         }
         // Composites that go around in circles have nothing around them.
-        if fleets.is_empty() { vec![Fleet { files: vec![start[0]], may_be_part: false }] } else { fleets }
+        if fleets.is_empty() {
+            vec![SceneFleet { files: vec![start[0]], may_be_part: false }]
+        } else {
+            fleets
+        }
     }
 
     /// Whether the contribution gives a composite to others.
@@ -323,7 +327,7 @@ impl Scene {
     }
 
     /// The class of a component.
-    pub(crate) fn class(&self, component: &Component) -> Option<&Class> {
+    pub(crate) fn class(&self, component: &Component) -> Option<&RegisteredClass> {
         match component.implementation.as_ref()? {
             Implementation::Class(name) => self.registry.get(&name.text).map(AsRef::as_ref),
             Implementation::Composite(_) => None,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use saoms_lang::registry::TopicDeclaration;
+use saoms_lang::registry::ClassTopic;
 
 use super::Scene;
 use super::outline::{Component, Implementation};
@@ -19,7 +19,7 @@ const MOST: usize = 12;
 /// A topic of a component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Topic<'s> {
-    pub(crate) declaration: &'s TopicDeclaration,
+    pub(crate) declaration: &'s ClassTopic,
     pub(crate) is_published: bool,
 }
 

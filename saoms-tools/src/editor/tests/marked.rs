@@ -1,6 +1,6 @@
 //! Text with a cursor in, places and texts out.
 
-use crate::editor::navigate::{Target, definition, references};
+use crate::editor::navigate::{DefinitionTarget, definition, references};
 use crate::editor::rename::{prepare, rename};
 use crate::editor::scene::Scene;
 use crate::editor::scene::symbol::FileRange;
@@ -20,8 +20,8 @@ fn shown(scene: &Scene, place: &FileRange) -> String {
 pub(super) fn defined(marked: &str, others: &[(&str, &str)]) -> Vec<String> {
     let (scene, at) = scene(marked, others);
     let all = definition(&scene, at).into_iter().map(|goal| match goal {
-        Target::Range(place) => shown(&scene, &place),
-        Target::File(path) => path.display().to_string(),
+        DefinitionTarget::Range(place) => shown(&scene, &place),
+        DefinitionTarget::File(path) => path.display().to_string(),
     });
     all.collect()
 }

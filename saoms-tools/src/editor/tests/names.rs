@@ -1,5 +1,5 @@
 use super::marked::{defined, found, renamed};
-use crate::editor::navigate::{Target, definition};
+use crate::editor::navigate::{DefinitionTarget, definition};
 use crate::editor::symbols::{DocumentSymbol, document_symbols};
 use crate::editor::testing::{composite, scene_in, scene_of};
 
@@ -178,8 +178,10 @@ fn names_in_files_beside_composites_lead_to_what_they_mean() {
         definition(&scene, at)
             .into_iter()
             .map(|goal| match goal {
-                Target::Range(place) => scene.files[place.file].text[place.start..place.end].to_owned(),
-                Target::File(path) => path.display().to_string(),
+                DefinitionTarget::Range(place) => {
+                    scene.files[place.file].text[place.start..place.end].to_owned()
+                }
+                DefinitionTarget::File(path) => path.display().to_string(),
             })
             .collect::<Vec<String>>()
     };

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::measure::{GRID, Plan};
-use crate::graph::diagram::{Diagram, End, LinkKind};
+use crate::graph::diagram::{Diagram, DiagramEnd, LinkKind};
 
 /// What stands in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,14 +84,14 @@ impl Items {
                 all.components[component] = item;
             }
         }
-        let pin = |all: &Self, end: End, is_called: bool| match (end, is_called) {
-            (End::Component { component, port }, _) => {
+        let pin = |all: &Self, end: DiagramEnd, is_called: bool| match (end, is_called) {
+            (DiagramEnd::Component { component, port }, _) => {
                 Pin { item: all.components[component], offset: plans[component].port(port) }
             }
-            (End::Composite(place), true) => Pin { item: references[place], offset: GRID },
-            (End::Composite(place), false) => Pin { item: services[place], offset: GRID },
+            (DiagramEnd::Composite(place), true) => Pin { item: references[place], offset: GRID },
+            (DiagramEnd::Composite(place), false) => Pin { item: services[place], offset: GRID },
         };
-        let mut nets: HashMap<(LinkKind, End, bool), Vec<Pin>> = HashMap::new();
+        let mut nets: HashMap<(LinkKind, DiagramEnd, bool), Vec<Pin>> = HashMap::new();
         let mut order = Vec::new();
         for link in &diagram.links {
             let (from, to) = (pin(&all, link.from, false), pin(&all, link.to, true));

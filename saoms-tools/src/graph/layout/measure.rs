@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::{Layout, Point, layout};
-use crate::graph::diagram::{Component, Port, Setting};
+use crate::graph::diagram::{DiagramComponent, DiagramSetting, Port};
 use crate::graph::text::{end, short, width};
 
 /// All boxes and lines stand on a grid of so many pixels: two lines are one or well apart.
@@ -53,7 +53,7 @@ pub(in crate::graph) struct Plan {
 }
 
 impl Plan {
-    pub(in crate::graph) fn of(component: &Component, has_topics: bool) -> Self {
+    pub(in crate::graph) fn of(component: &DiagramComponent, has_topics: bool) -> Self {
         let label = component.label();
         let name_text = short(if label.is_empty() { "?" } else { &label }, 32);
         let class_text = end(&component.class, 36);
@@ -114,7 +114,7 @@ pub(in crate::graph) fn on_grid(length: i32) -> i32 {
 }
 
 /// Properties in rows that are at most so wide, unless one alone is wider; how wide and how high they are together.
-pub(in crate::graph) fn chips(settings: &[Setting], most: i32) -> (Vec<Chip>, i32, i32) {
+pub(in crate::graph) fn chips(settings: &[DiagramSetting], most: i32) -> (Vec<Chip>, i32, i32) {
     const GAP: i32 = 4;
     let mut chips: Vec<Chip> = Vec::with_capacity(settings.len());
     let (mut x, mut y, mut widest) = (0, 0, 0);

@@ -20,7 +20,7 @@ use items::{Items, Kind};
 use lines::Routes;
 use measure::{CHEVRON, Chip, GRID, NAME_SIZE, Plan, SMALL_SIZE, chips, on_grid};
 
-use super::diagram::{Diagram, End, LinkKind};
+use super::diagram::{Diagram, DiagramEnd, LinkKind};
 use super::text::{short, width};
 
 /// A place in pixels, from the upper left corner of the picture.
@@ -156,7 +156,7 @@ fn in_rows(diagram: &Diagram, plans: &[Rc<Plan>], rows: usize, is_whole: bool) -
         .links
         .iter()
         .filter_map(|link| match (link.from, link.to) {
-            (End::Component { component: from, .. }, End::Component { component: to, .. }) => {
+            (DiagramEnd::Component { component: from, .. }, DiagramEnd::Component { component: to, .. }) => {
                 Some((from, to))
             }
             _ => None,

@@ -5,7 +5,9 @@ use saoms_api::host::TopicKind;
 
 use super::measure::{CHEVRON, CHIP_HEIGHT, LABEL, NAME_SIZE, SMALL_SIZE};
 use super::{Layout, LineKind, Point, Rect, layout};
-use crate::graph::diagram::{Component, Diagram, End, Link, LinkKind, Port, Setting, State, Topic};
+use crate::graph::diagram::{
+    Diagram, DiagramComponent, DiagramEnd, DiagramLink, DiagramSetting, DiagramTopic, LinkKind, Port, State,
+};
 use crate::graph::text::width;
 
 /// What a picture is made of, in numbers: for each component how many properties, services and references it has.
@@ -22,18 +24,19 @@ fn ports(kind: &str, count: usize) -> Vec<Port> {
 /// `wires` are pairs of numbers, each of a reference or service, counted through all components.
 fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], promoted: usize) -> Diagram {
     let component =
-        |(place, (properties, services, references)): (usize, &(usize, usize, usize))| Component {
+        |(place, (properties, services, references)): (usize, &(usize, usize, usize))| DiagramComponent {
             replicas: None,
             name: format!("Component{place}"),
             class: "a.package.of.classes.with.a.long.name.Class".to_owned(),
             state: State::Known,
-            properties: names("p", *properties).map(|name| Setting { name, value: None }).collect(),
+            properties: names("p", *properties).map(|name| DiagramSetting { name, value: None }).collect(),
             services: ports("s", *services),
             references: ports("r", *references),
             inside: None,
         };
-    let ends = |port: fn(&(usize, usize, usize)) -> usize| -> Vec<End> {
-        let of = |(component, parts)| (0..port(parts)).map(move |port| End::Component { component, port });
+    let ends = |port: fn(&(usize, usize, usize)) -> usize| -> Vec<DiagramEnd> {
+        let of =
+            |(component, parts)| (0..port(parts)).map(move |port| DiagramEnd::Component { component, port });
         parts.iter().enumerate().flat_map(of).collect()
     };
     let (services, references) = (ends(|parts| parts.1), ends(|parts| parts.2));
@@ -41,7 +44,7 @@ fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], p
     if !services.is_empty() && !references.is_empty() {
         for (from, to) in wires {
             let (from, to) = (references[from % references.len()], services[to % services.len()]);
-            let link = Link { kind: LinkKind::Wire, from, to };
+            let link = DiagramLink { kind: LinkKind::Wire, from, to };
             if !links.contains(&link) {
                 links.push(link);
             }
@@ -50,14 +53,14 @@ fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], p
     let promoted = promoted.min(services.len()).min(references.len());
     for place in 0..promoted {
         let kind = LinkKind::Promotion;
-        links.push(Link { kind, from: End::Composite(place), to: services[place] });
-        links.push(Link { kind, from: references[place], to: End::Composite(place) });
+        links.push(DiagramLink { kind, from: DiagramEnd::Composite(place), to: services[place] });
+        links.push(DiagramLink { kind, from: references[place], to: DiagramEnd::Composite(place) });
     }
     let some = |from: usize, step: usize| {
         let count = parts.len();
         (0..count).filter(move |place| (place + from).is_multiple_of(step.max(1))).collect()
     };
-    let topic = |(place, (from, step)): (usize, &(usize, usize))| Topic {
+    let topic = |(place, (from, step)): (usize, &(usize, usize))| DiagramTopic {
         names: Vec::new(),
         name: format!("TOPIC{place}"),
         kind: TopicKind::Event,

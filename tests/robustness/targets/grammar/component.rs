@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use saoms_api::host::declaration::PropertyKind;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::load::vocabulary::{COMPONENT, LOOP};
-use saoms_lang::registry::{Class, PropertyDeclaration};
+use saoms_lang::registry::{PropertyDeclaration, RegisteredClass};
 
 use super::{Writer, values};
 
@@ -137,7 +137,7 @@ fn property(writer: &mut Writer<'_, '_>, declared: &PropertyDeclaration, place: 
     }
 }
 
-fn references(writer: &mut Writer<'_, '_>, class: &Class) {
+fn references(writer: &mut Writer<'_, '_>, class: &RegisteredClass) {
     for reference in &class.declaration().references {
         if writer.choices.once_in(6) {
             continue;

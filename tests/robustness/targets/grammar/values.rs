@@ -1,7 +1,7 @@
 //! Values of attributes and of properties, most of them right.
 
 use saoms_api::host::declaration::PropertyKind;
-use saoms_lang::diagnostic::{Level, codes};
+use saoms_lang::diagnostic::{SeverityLevel, codes};
 use saoms_lang::load::vocabulary::Holds;
 use saoms_lang::registry::{PropertyDeclaration, Registry};
 
@@ -131,7 +131,7 @@ pub(super) fn held(choices: &mut Choices<'_>, holds: Holds, registry: &Registry)
         Holds::Condition => expression::condition(choices, 3),
         Holds::Variable => choices.of(&["SAOMS_ROBUSTNESS", "HOME", "9", "A=B"]).to_owned(),
         Holds::Code => codes::ALL[choices.below(codes::ALL.len())].id.to_owned(),
-        Holds::Level => Level::ALL[choices.below(Level::ALL.len())].name().to_owned(),
+        Holds::Level => SeverityLevel::ALL[choices.below(SeverityLevel::ALL.len())].name().to_owned(),
         Holds::Text => {
             choices.of(&["xsd:string", "xsd:int", "xsd:boolean", "because", "t:x", "W/R1"]).to_owned()
         }

@@ -14,8 +14,8 @@ use crate::check::unfolding::replica::{Instance, all_complex_texts};
 use crate::check::unfolding::replica_plan::{condition, tell};
 use crate::check::unfolding::{MOST_MEMBERS, Unfolding};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::expression::{Fault, render};
-use crate::model::{Component, Composite, Origin};
+use crate::expression::{ExpressionFault, render};
+use crate::model::{ComponentElement, Composite, Origin};
 use crate::source::Text;
 
 /// True if a component is there.
@@ -121,7 +121,12 @@ impl<'a> Unfolding<'a> {
     }
 
     /// Reports faults in the texts of a replica.
-    pub(crate) fn faults(&self, names: &Names, faults: Vec<(Text, Fault)>, report: &mut Report<'_>) {
+    pub(crate) fn faults(
+        &self,
+        names: &Names,
+        faults: Vec<(Text, ExpressionFault)>,
+        report: &mut Report<'_>,
+    ) {
         for faults in faults.chunk_by(|(one, _), (other, _)| one.location == other.location) {
             let parts = report.parts(&faults[0].0);
             for (text, fault) in faults {
@@ -133,7 +138,7 @@ impl<'a> Unfolding<'a> {
     /// True if complex values of a replicated component have faults, which are reported.
     pub(crate) fn complex(
         &self,
-        component: &Component,
+        component: &ComponentElement,
         instance: &Instance,
         report: &mut Report<'_>,
     ) -> bool {
@@ -154,7 +159,7 @@ impl<'a> Unfolding<'a> {
     }
 
     /// True if the fleet is as large as one can be. That is reported.
-    pub(crate) fn is_beyond(&mut self, component: &Component, report: &mut Report<'_>) -> bool {
+    pub(crate) fn is_beyond(&mut self, component: &ComponentElement, report: &mut Report<'_>) -> bool {
         let is_beyond = self.fleet.members.len() >= MOST_MEMBERS;
         if is_beyond && !std::mem::replace(&mut self.is_full, true) {
             let message =

@@ -21,7 +21,7 @@ use crate::check::values::raw::{Raw, beside_source, raw};
 use crate::check::values::shared_values::SharedValues;
 use crate::check::values::value_type::{self, Match, Typed};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::model::{Component, Composite, Property};
+use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
 
@@ -55,7 +55,7 @@ struct Declared<'a> {
     /// True if one of them has no name, which is reported.
     has_nameless: bool,
     /// The component that the composite implements.
-    owner: Option<&'a Component>,
+    owner: Option<&'a ComponentElement>,
 }
 
 struct Parameter<'a> {
@@ -414,7 +414,7 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
 }
 
 /// True if the component that a composite implements gives this property under a misspelt name, which is reported.
-pub(crate) fn is_misspelt(name: &str, owner: &Component, is_declared: impl Fn(&str) -> bool) -> bool {
+pub(crate) fn is_misspelt(name: &str, owner: &ComponentElement, is_declared: impl Fn(&str) -> bool) -> bool {
     let unknown = owner.properties.iter().filter(|given| !is_declared(&given.name));
     unknown.take(MOST_MISSPELT).any(|given| nearest(&given.name, [name]).is_some())
 }

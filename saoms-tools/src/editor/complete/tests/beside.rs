@@ -8,7 +8,7 @@ use crate::editor::testing::scene_in;
 fn inside(name: &str, marked: &str, composites: &[(&str, &str)]) -> Vec<String> {
     let (scene, at) = scene_in(name, marked, composites);
     let mut all = complete(&scene, at);
-    all.sort_by_key(Completion::order);
+    all.sort_by_key(Proposal::order);
     all.into_iter().map(|one| one.label).collect()
 }
 

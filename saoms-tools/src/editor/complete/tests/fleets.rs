@@ -95,7 +95,7 @@ fn files_beside_are_found_folder_by_folder() {
         let at = marked.find('|').unwrap();
         let scene = scene_at(&folder.path().join("f.composite"), &marked.replacen('|', "", 1));
         let mut all = complete(&scene, at);
-        all.sort_by_key(Completion::order);
+        all.sort_by_key(Proposal::order);
         all.into_iter().map(|one| one.label).collect::<Vec<_>>()
     };
     let property =

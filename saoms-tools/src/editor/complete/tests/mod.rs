@@ -14,7 +14,7 @@ fn proposed(marked: &str) -> Vec<String> {
 fn proposed_among(marked: &str, others: &[(&str, &str)]) -> Vec<String> {
     let (scene, at) = scene(marked, others);
     let mut all = complete(&scene, at);
-    all.sort_by_key(Completion::order);
+    all.sort_by_key(Proposal::order);
     all.into_iter().map(|one| one.label).collect()
 }
 
@@ -210,7 +210,7 @@ fn composites_of_other_files_are_known() {
 
 #[test]
 fn what_is_typed_is_looked_for_in_the_labels() {
-    let one = Completion::new("property Period-Ä", CompletionKind::Value, &(0..0));
+    let one = Proposal::new("property Period-Ä", ProposalKind::Value, &(0..0));
     for typed in ["", "<", "<pper", "PERIOD", "period-ä", "-"] {
         assert!(one.clone().matching(typed).is_some(), "{typed}");
     }
@@ -219,9 +219,9 @@ fn what_is_typed_is_looked_for_in_the_labels() {
     }
     // What begins so comes before what holds it, and that before what has its letters.
     let labels = ["chargeX", "moreRest", "restart", "saoms.Restless"];
-    let one = |label: &str| Completion::new(label, CompletionKind::Value, &(0..0)).matching("re");
-    let mut all: Vec<Completion> = labels.into_iter().filter_map(one).collect();
-    all.sort_by_key(Completion::order);
+    let one = |label: &str| Proposal::new(label, ProposalKind::Value, &(0..0)).matching("re");
+    let mut all: Vec<Proposal> = labels.into_iter().filter_map(one).collect();
+    all.sort_by_key(Proposal::order);
     let sorted: Vec<&str> = all.iter().map(|one| one.label.as_str()).collect();
     assert_eq!(sorted, ["restart", "saoms.Restless", "moreRest", "chargeX"]);
 }
