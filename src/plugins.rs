@@ -64,7 +64,7 @@ pub(crate) fn usable(problems: &[PluginFault]) -> Result<(), Exit> {
     if problems.iter().any(|one| one.is_error) { Err(Exit::WrongInput) } else { Ok(()) }
 }
 
-/// Where plugins are looked for.
+/// The places where plugins are looked for.
 pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     let path = env::var_os(SEARCH_PATH).unwrap_or_default();
     let mut folders: Vec<PathBuf> =

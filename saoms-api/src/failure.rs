@@ -2,7 +2,7 @@ use std::fmt;
 
 use crate::Finding;
 
-/// Why a component cannot go on, in words for the person who runs the fleet.
+/// The reason why a component cannot go on, in words for the person who runs the fleet.
 ///
 /// The host adds the component's name and the time. What happens next is the `restart` policy of the composite.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl From<CallError> for Failure {
     }
 }
 
-/// Why a call through a reference brought no reply.
+/// The reason why a call through a reference brought no reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CallError {
     /// The reference is not wired to a service.

@@ -48,7 +48,7 @@ impl Place {
         self.property.as_deref()
     }
 
-    /// Which value, and which bytes of it; `None` for all of the property.
+    /// The index of the value, and the bytes of it; `None` for all of the property.
     pub fn value_part(&self) -> Option<(usize, Range<usize>)> {
         self.part.clone()
     }

@@ -108,7 +108,7 @@ impl Folded {
     }
 }
 
-/// Which letters occur, without case; other characters share bits.
+/// The set of letters that occur, without case; other characters share bits.
 fn letters(name: &str) -> u64 {
     let bit = |letter: u32| 1 << (letter % 64);
     if name.is_ascii() {

@@ -92,7 +92,7 @@ pub type Operation = u32;
 
 /// A call as it travels from caller to provider: typed values within one build of the program, bytes across a boundary.
 pub trait ServiceCall {
-    /// Which operation is called.
+    /// The operation that is called.
     fn operation(&self) -> Operation;
     /// The arguments (an `Option` of a tuple) and the reply (an `Option`), for a provider that shares the Rust types.
     fn typed(&mut self) -> Option<(&mut dyn Any, &mut dyn Any)>;

@@ -84,7 +84,7 @@ pub fn parse_duration(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Why a text is no duration.
+/// A fault of a text that is not a duration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WrongDuration {
     /// A duration with a minus.

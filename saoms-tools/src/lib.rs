@@ -1,4 +1,4 @@
-//! What people and editors ask of composites beside a check and a run: pictures, one layout, XML schemas.
+//! Tools for composites beside a check and a run: pictures, one layout, XML schemas, answers for editors.
 
 pub mod editor;
 pub mod format;

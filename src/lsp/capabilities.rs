@@ -1,4 +1,4 @@
-//! What the two sides of a session can do.
+//! Capabilities of the two sides of a session.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use super::uri;
 
-/// What the editor can do, and where it works.
+/// The capabilities of the editor, and the folders that it has open.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Client {
     /// The folders that it has open.

@@ -19,10 +19,10 @@ use super::diagnostics::{Reported, reported};
 use super::registries::Registries;
 use crate::output::eprint;
 
-/// How long nothing has to change before a check starts.
+/// The time without a change before a check starts.
 const QUIET: Duration = Duration::from_millis(120);
 
-/// What is to be checked.
+/// A request for a check.
 #[derive(Debug)]
 pub(super) struct Job {
     /// Rises with each change.
@@ -30,18 +30,18 @@ pub(super) struct Job {
     pub(super) open: OpenTexts,
     /// The files that are open.
     pub(super) paths: Vec<PathBuf>,
-    /// Whether files came or went.
+    /// True if files came or went.
     pub(super) looks_anew: bool,
 }
 
-/// What came of it: all that is wrong, by file. Files without a fault are not among them.
+/// The result of a check: all diagnostics by file. Files without a fault are not among them.
 #[derive(Debug)]
 pub(super) struct Outcome {
     pub(super) generation: u64,
     pub(super) files: BTreeMap<PathBuf, Vec<Reported>>,
 }
 
-/// What a file is.
+/// The kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sort {
     Composite,
@@ -161,7 +161,7 @@ impl Checker {
     }
 }
 
-/// What is wrong with the description of a contribution, and with the names of the composites there.
+/// Diagnostics of the description of a contribution, and of the names of the composites there.
 fn contribution(
     description: &Path,
     job: &Job,

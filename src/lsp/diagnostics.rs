@@ -19,7 +19,7 @@ use super::uri;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Reported {
     pub(super) shown: lsp_types::Diagnostic,
-    /// What the code means, for hovering.
+    /// The meaning of the code, for hovering.
     pub(super) meaning: String,
     /// The code, where a composite can say that it is no fault.
     pub(super) can_be_allowed: Option<&'static str>,

@@ -18,7 +18,7 @@ use super::position::offset_in;
 use super::server::{Refusal, Server};
 
 impl<W: Write> Server<W> {
-    /// What can be done about the diagnostics that a range touches, the likeliest first; then about all of the file.
+    /// Fixes for the diagnostics that a range touches, the likeliest first; then fixes for all of the file.
     pub(super) fn fixes(&mut self, params: &CodeActionParams) -> Result<Vec<CodeActionOrCommand>, Refusal> {
         let uri = &params.text_document.uri;
         let Some(document) = self.documents.get(uri.as_str()) else { return Ok(Vec::new()) };
@@ -81,7 +81,7 @@ impl<W: Write> Server<W> {
         }
     }
 
-    /// What the codes of the diagnostics mean that are shown at a place. Those of a text before the last change may be elsewhere by now.
+    /// Meanings of the codes of the diagnostics that are shown at a place. Those of a text before the last change may be elsewhere by now.
     pub(super) fn reported_at(&self, uri: &Uri, at: Position) -> impl Iterator<Item = String> {
         let shown = self.documents.get(uri.as_str()).and_then(|document| {
             let shown = self.shown.get(&document.path)?;
@@ -95,7 +95,7 @@ impl<W: Write> Server<W> {
     }
 }
 
-/// Whether actions of a kind are asked for: all are where none is named, or the empty one.
+/// True if actions of a kind are asked for: all are where none is named, or the empty one.
 fn is_wanted(params: &CodeActionParams, kind: &CodeActionKind) -> bool {
     params.context.only.as_ref().is_none_or(|kinds| {
         kinds.iter().any(|asked| {
@@ -105,7 +105,7 @@ fn is_wanted(params: &CodeActionParams, kind: &CodeActionKind) -> bool {
     })
 }
 
-/// What the only suggestions of diagnostics come to, where they change this file alone and do not meet: the diagnostics, and the edits.
+/// The diagnostics with one suggestion, and the edits of these, where they change this file alone and do not overlap.
 fn mended<'r>(all: &'r [Reported], path: &Path) -> (Vec<&'r Reported>, Vec<TextEdit>) {
     let (mut mended, mut edits): (Vec<&Reported>, Vec<TextEdit>) = (Vec::new(), Vec::new());
     for one in all {
@@ -121,7 +121,7 @@ fn mended<'r>(all: &'r [Reported], path: &Path) -> (Vec<&'r Reported>, Vec<TextE
     (mended, edits)
 }
 
-/// Whether two ranges touch.
+/// True if two ranges touch.
 fn overlap(one: Range, other: Range) -> bool {
     one.start <= other.end && other.start <= one.end
 }

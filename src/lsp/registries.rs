@@ -84,13 +84,13 @@ impl Registries {
         registry
     }
 
-    /// What is wrong with plugins and was not asked for before.
+    /// Faults of plugins that nobody asked for before.
     pub(super) fn new_problems(&self) -> Vec<PluginFault> {
         std::mem::take(&mut self.known.lock().unwrap_or_else(PoisonError::into_inner).problems)
     }
 }
 
-/// What is wrong with plugins is told apart from the diagnostics of a check, see [`Registries::new_problems`].
+/// Faults of plugins are reported apart from the diagnostics of a check, see [`Registries::new_problems`].
 impl ClassPath for Registries {
     fn classes(&self, files: &[PathBuf]) -> Classes {
         let first = files.first().map_or(Path::new(""), PathBuf::as_path);

@@ -15,7 +15,7 @@ const LONGEST: u64 = 1 << 30;
 const LONGEST_HEADER: u64 = 4096;
 const LENGTH: &str = "content-length:";
 
-/// What came in.
+/// An incoming message.
 #[derive(Debug)]
 pub(super) enum Incoming {
     /// A message.
@@ -102,7 +102,7 @@ pub(super) fn write(output: &mut impl Write, message: &impl Serialize) -> io::Re
 mod tests {
     use super::*;
 
-    /// What is read from this input, a line each.
+    /// The messages read from this input, a line each.
     fn reads(input: &str) -> Vec<String> {
         let mut input = input.as_bytes();
         let mut all = Vec::new();

@@ -30,7 +30,7 @@ use super::rpc::{self, Incoming};
 use super::uri;
 use crate::Exit;
 
-/// What can happen to a session.
+/// An event of a session.
 #[derive(Debug)]
 pub(super) enum Event {
     /// Something came in.
@@ -41,7 +41,7 @@ pub(super) enum Event {
     Checked(Outcome),
 }
 
-/// Where a session is.
+/// The phase of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     New,
@@ -74,11 +74,11 @@ pub(super) struct Server<W> {
     pub(super) registries: Arc<Registries>,
     jobs: Sender<Job>,
     newest: Arc<AtomicU64>,
-    /// What is wrong, by file, as it was shown last: with the URI and the version that it was shown for.
+    /// The diagnostics by file as they were shown last, with the URI and the version that they were shown for.
     pub(super) shown: BTreeMap<PathBuf, Shown>,
 }
 
-/// What was shown of a file.
+/// The diagnostics that are shown of a file.
 #[derive(Debug)]
 pub(super) struct Shown {
     uri: String,
@@ -87,7 +87,7 @@ pub(super) struct Shown {
 }
 
 impl Shown {
-    /// Whether it was found in this version of the text.
+    /// True if it was found in this version of the text.
     pub(super) fn is_of(&self, version: i32) -> bool {
         self.version == Some(version)
     }

@@ -21,7 +21,7 @@ use crate::{Failure, Value};
 /// /// What a loop remembers for others to see.
 /// #[derive(Default, Entries)]
 /// struct Saving {
-///     /// Whether the robot spares its battery.
+///     /// True if the robot spares its battery.
 ///     #[entry]
 ///     saving: bool,
 ///     /// What it has spared so far.

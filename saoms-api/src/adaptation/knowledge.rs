@@ -23,7 +23,7 @@ use crate::{Effector, Entries, Entry, Extras, Failure, Field, Value};
 ///     /// How bright it is around the lamp.
 ///     #[entry(unit = "lx")]
 ///     brightness: f64,
-///     /// Whether the lamp is on.
+///     /// True if the lamp is on.
 ///     #[entry(effector)]
 ///     is_on: bool,
 ///     #[extras]

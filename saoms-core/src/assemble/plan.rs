@@ -35,7 +35,7 @@ pub struct Replacement {
     pub current: usize,
     /// Its number in the wanted fleet.
     pub wanted: usize,
-    /// Why it cannot stay.
+    /// The reasons against keeping it.
     pub differences: Vec<Difference>,
 }
 

@@ -37,7 +37,7 @@ pub struct JournalDocument {
     pub is_report: bool,
 }
 
-/// Why a file could not be read as a journal.
+/// A fault of a file that is no journal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JournalReadError {
     /// A part of it is malformed.

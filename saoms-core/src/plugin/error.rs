@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use saoms_abi::{SECTION, VERSION};
 use saoms_api::boundary::API;
 
-/// Why a library cannot be used.
+/// A fault of a library that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "each field is named in the message of its variant")]
 pub enum PluginError {

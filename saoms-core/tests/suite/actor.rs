@@ -61,10 +61,10 @@ pub(crate) struct Script {
     /// In each call.
     #[property(default = "")]
     called: String,
-    /// Which topics it publishes.
+    /// The topics that it publishes.
     #[property(default = "")]
     publishes: String,
-    /// Which topics it subscribes to.
+    /// The topics that it subscribes to.
     #[property(default = "")]
     subscribes: String,
 }

@@ -1,4 +1,4 @@
-//! Where the classes come from that composites can name.
+//! Sources of the classes that composites can name.
 
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -6,7 +6,7 @@ use std::rc::Rc;
 use crate::model::LibraryLink;
 use crate::registry::Registry;
 
-/// Where the classes of a fleet are looked for: a registry, or one with the plugins around the composites.
+/// The source of the classes of a fleet: a registry, or one with the plugins around the composites.
 pub trait ClassPath {
     /// The classes for a fleet in these files. Texts in memory are not among them.
     fn classes(&self, files: &[PathBuf]) -> Classes;

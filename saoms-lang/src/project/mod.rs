@@ -205,7 +205,7 @@ impl Project {
 
     /// As [`compile`](Self::compile) for the diagnostics alone, which needs less: the output is the number of components.
     ///
-    /// What [`wiring`](Self::wiring) asks for is told of assemblies only.
+    /// The result of [`wiring`](Self::wiring) is reported of assemblies only.
     pub fn check(&self, classes: &impl ClassPath) -> Compilation<usize> {
         self.load(classes).check()
     }

@@ -28,12 +28,12 @@ impl RegisteredClass {
         &self.name
     }
 
-    /// Whether the name is a further one, not that of the declaration.
+    /// True if the name is a further one, not that of the declaration.
     pub fn is_alias(&self) -> bool {
         self.name != self.declaration.name
     }
 
-    /// What it declares.
+    /// The declaration.
     pub fn declaration(&self) -> &Arc<ClassDeclaration> {
         &self.declaration
     }
@@ -68,7 +68,7 @@ impl RegisteredClass {
     }
 }
 
-/// Where the code of a class comes from.
+/// The source of the code of a class.
 pub trait Provider: fmt::Debug + Send + Sync {
     /// As [`RegisteredClass::construct`].
     ///

@@ -1,4 +1,4 @@
-//! What classes say about themselves, read from the text of their declarations (see [`saoms_api::host::declaration`]).
+//! Declarations of classes, read from text (see [`saoms_api::host::declaration`]).
 
 use std::sync::LazyLock;
 
@@ -17,10 +17,10 @@ pub struct ClassDeclaration {
     /// The name that composite files use.
     #[serde(rename = "class")]
     pub name: String,
-    /// What the class is for.
+    /// The purpose of the class.
     #[serde(default)]
     pub doc: String,
-    /// Whether components of it are executed.
+    /// Periodic or passive.
     pub kind: ClassKind,
     /// Further names.
     #[serde(default)]
@@ -40,7 +40,7 @@ pub struct ClassDeclaration {
     /// The references it can call through.
     #[serde(default)]
     pub references: Vec<ReferenceDeclaration>,
-    /// What its loops work on; `None` for a class without loops.
+    /// The knowledge of its loops; `None` for a class without loops.
     pub knowledge: Option<KnowledgeDeclaration>,
     /// The loops that its components have unless a composite says otherwise.
     #[serde(default)]
@@ -50,7 +50,7 @@ pub struct ClassDeclaration {
     pub extends: Vec<String>,
 }
 
-/// Whether components of a class are executed.
+/// The kind of a class: periodic or passive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ClassKind {
@@ -80,7 +80,7 @@ pub struct PropertyDeclaration {
     /// Its type.
     #[serde(rename = "type", deserialize_with = "property_kind")]
     pub kind: PropertyKind,
-    /// What it is for.
+    /// The purpose.
     #[serde(default)]
     pub doc: String,
     /// Its unit, where it has one.
@@ -96,16 +96,16 @@ pub struct PropertyDeclaration {
     pub exclusive_max: Option<String>,
     /// The value that counts where the composite gives none.
     pub default: Option<String>,
-    /// Whether the composite has to give a value.
+    /// True if the composite has to give a value.
     #[serde(default)]
     pub required: bool,
     /// The texts that are allowed; empty where all are.
     #[serde(default)]
     pub allowed: Vec<String>,
-    /// Whether the text must not be empty.
+    /// True if the text must not be empty.
     #[serde(default)]
     pub non_empty: bool,
-    /// Whether it takes any number of values.
+    /// True if it takes any number of values.
     #[serde(default)]
     pub many: bool,
     /// The word that it shares with all properties of the fleet that must not have its value, too.
@@ -119,7 +119,7 @@ impl PropertyDeclaration {
     /// Reads one value and checks it.
     ///
     /// # Errors
-    /// What was found and what was expected, in one line.
+    /// An error says what was found and what was expected, in one line.
     pub fn check(&self, text: &str) -> Result<Scalar, String> {
         self.with_rule(|rule| rule.check(text))
     }
@@ -132,12 +132,12 @@ impl PropertyDeclaration {
         self.with_rule(|rule| rule.allows(text))
     }
 
-    /// Whether it is a number or a duration.
+    /// True if it is a number or a duration.
     pub(crate) fn is_number(&self) -> bool {
         matches!(self.kind, PropertyKind::Integer | PropertyKind::Float | PropertyKind::Duration)
     }
 
-    /// What is expected, as in `a whole number from 1 to 99 [%]`.
+    /// The expected value in words, as in `a whole number from 1 to 99 [%]`.
     pub fn expected(&self) -> String {
         if self.kind == PropertyKind::Complex {
             let names: Vec<&str> = self.properties.iter().map(|inner| inner.name.as_str()).collect();
@@ -177,7 +177,7 @@ pub struct ClassTopic {
     pub message: String,
     /// The schema of the message type: two ends agree when these are equal.
     pub schema: Value,
-    /// Whether those that publish it need nobody who reads it.
+    /// True if those that publish it need nobody who reads it.
     #[serde(default)]
     pub optional: bool,
 }
@@ -198,10 +198,10 @@ pub struct ReferenceDeclaration {
     pub name: String,
     /// Its interface.
     pub interface: InterfaceDeclaration,
-    /// Whether a component works without a target for it: multiplicity `0..` rather than `1..`.
+    /// True if a component works without a target for it: multiplicity `0..` rather than `1..`.
     #[serde(default)]
     pub optional: bool,
-    /// Whether it takes any number of targets: multiplicity `..n` rather than `..1`.
+    /// True if it takes any number of targets: multiplicity `..n` rather than `..1`.
     #[serde(default)]
     pub many: bool,
 }
@@ -229,7 +229,7 @@ static TASK_SERVICE: LazyLock<ServiceDeclaration> = LazyLock::new(|| ServiceDecl
 });
 
 impl ClassDeclaration {
-    /// Whether components of it are executed in each period.
+    /// True if components of it are executed in each period.
     pub fn is_periodic(&self) -> bool {
         self.kind == ClassKind::Periodic
     }
@@ -248,7 +248,7 @@ impl ClassDeclaration {
 }
 
 impl ServiceDeclaration {
-    /// Whether the host serves it, not the component.
+    /// True if the host serves it, not the component.
     pub fn is_of_host(&self) -> bool {
         std::ptr::eq(self, &*TASK_SERVICE)
     }

@@ -1,23 +1,23 @@
-//! What a registry refuses.
+//! Errors of a registry.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Why a class cannot be registered. The fault is the program's or the plugin's, not that of a composite.
+/// The reason why a class cannot be registered. The fault is the program's or the plugin's, not that of a composite.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RegistryError {
     /// The declaration is no JSON of the right shape, or contradicts itself.
     Malformed {
         /// The class, or the start of the declaration where it has no readable name.
         class: String,
-        /// What is wrong.
+        /// The fault.
         message: String,
     },
     /// The declaration of a loop is no JSON of the right shape, or contradicts itself.
     MalformedLoop {
         /// The loop, or the start of the declaration where it has no readable name.
         name: String,
-        /// What is wrong.
+        /// The fault.
         message: String,
     },
     /// The declaration is of another version of the contract.
@@ -31,14 +31,14 @@ pub enum RegistryError {
     NameTaken {
         /// The name.
         name: String,
-        /// What has it.
+        /// The holder of the name.
         first: Holder,
-        /// What was to get it.
+        /// The one that was to get it.
         second: Holder,
     },
 }
 
-/// What a name stands for.
+/// The holder of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
     /// As "class `a.Eye`".

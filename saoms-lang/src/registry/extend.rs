@@ -8,7 +8,7 @@ use super::{ClassDeclaration, ClassKind, DefaultLoops};
 /// So long a line of classes that extend each other is none that anybody wrote.
 const LONGEST: usize = 32;
 
-/// What a declaration says that it extends: the declaration of that class.
+/// The declaration of a class that another one extends.
 #[derive(Deserialize)]
 struct Head<'a> {
     #[serde(borrow)]

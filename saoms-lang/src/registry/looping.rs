@@ -1,4 +1,4 @@
-//! What loops and what they work on say about themselves, read from the text of declarations (see [`saoms_api::host::declaration`]).
+//! Declarations of loops and of their knowledge, read from text (see [`saoms_api::host::declaration`]).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -19,7 +19,7 @@ pub struct LoopDeclaration {
     /// The name that composite files use.
     #[serde(rename = "loop")]
     pub name: String,
-    /// What the loop is for.
+    /// The purpose of the loop.
     #[serde(default)]
     pub doc: String,
     /// The name of the knowledge that it works on; `None` for any that has its entries.
@@ -48,18 +48,18 @@ pub struct LoopDeclaration {
 }
 
 impl LoopDeclaration {
-    /// What it is called within a component unless the composite gives another name: what follows the last dot of its name.
+    /// The name within a component unless the composite gives another one: the text behind the last dot.
     pub fn short_name(&self) -> &str {
         simple(&self.name)
     }
 }
 
-/// What the loops of a class work on.
+/// The knowledge that the loops of a class share.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct KnowledgeDeclaration {
     /// The name by which loops say that they work on it.
     pub name: String,
-    /// What it is.
+    /// The type of the knowledge in words.
     #[serde(default)]
     pub doc: String,
     /// Its entries in order.
@@ -77,12 +77,12 @@ pub struct KnowledgeEntry {
     pub of: Value,
     /// The kind of single value that it is; `None` for a compound one.
     pub value: Option<String>,
-    /// What it means.
+    /// The meaning.
     #[serde(default)]
     pub doc: String,
     /// Its unit, where it has one.
     pub unit: Option<String>,
-    /// Whether of the loops of a component only one may change it.
+    /// True if only one of the loops of a component may change it.
     #[serde(default)]
     pub effector: bool,
 }
@@ -131,7 +131,7 @@ impl RegisteredLoop {
         &self.declaration.name
     }
 
-    /// What it declares.
+    /// The declaration.
     pub fn declaration(&self) -> &LoopDeclaration {
         &self.declaration
     }
@@ -161,7 +161,7 @@ impl RegisteredLoop {
     }
 }
 
-/// Where the code of a loop comes from.
+/// The source of the code of a loop.
 pub trait LoopProvider: fmt::Debug + Send + Sync {
     /// As [`RegisteredLoop::construct`].
     ///

@@ -42,11 +42,11 @@ use near::{near, simple};
 ///
 /// ```
 /// use saoms_api::host::Registration;
-/// use saoms_api::{RegisteredClass, Component, Failure};
+/// use saoms_api::{Class, Component, Failure};
 /// use saoms_lang::registry::Registry;
 ///
 /// /// Stands around.
-/// #[derive(RegisteredClass)]
+/// #[derive(Class)]
 /// #[class(name = "example.Lamp", passive)]
 /// struct Lamp;
 ///
@@ -210,7 +210,7 @@ impl Registry {
         Ok(())
     }
 
-    /// What a name stands for.
+    /// The holder of a name.
     fn holder(&self, name: &str) -> Option<Holder> {
         let class = self.classes.get(name);
         let class = class.map(|class| Holder::new("class", &class.declaration.name, class.origin()));
@@ -249,12 +249,12 @@ impl Registry {
         self.classes.values()
     }
 
-    /// How many names there are.
+    /// The number of names.
     pub fn len(&self) -> usize {
         self.classes.len()
     }
 
-    /// Whether there is no class.
+    /// True if there is no class.
     pub fn is_empty(&self) -> bool {
         self.classes.is_empty()
     }
@@ -271,7 +271,7 @@ impl Registry {
         near(name, self.loops.keys().map(|name| (name.as_str(), false)))
     }
 
-    /// Whether each list of loops that a class has by default can work together, as far as they are known.
+    /// Checks that each list of loops that a class has by default can work together, as far as they are known.
     fn check_loops(&self, class: &ClassDeclaration) -> Result<(), String> {
         for (value, names) in class.loops.all() {
             let known = || names.iter().filter_map(|name| self.loops.get(name));

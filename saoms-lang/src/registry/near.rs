@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{nearest, nearest_few};
 
-/// How many names are offered.
+/// The number of names that are offered.
 const OFFERED: usize = 3;
 /// A part of a name is looked for in others if it has at least so many letters.
 const TELLING: usize = 4;
@@ -57,7 +57,7 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
     kept
 }
 
-/// What follows the last dot: the class without its package.
+/// The class without its package: the text behind the last dot.
 pub(super) fn simple(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
 }

@@ -9,7 +9,7 @@ use super::{
     RegistryError, error, extend, validate,
 };
 
-/// What every version of a declaration has.
+/// The part that every version of a declaration has.
 #[derive(serde::Deserialize)]
 struct Head {
     contract: u32,

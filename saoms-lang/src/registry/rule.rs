@@ -31,7 +31,7 @@ impl RegisteredRule {
         self.prevents_start
     }
 
-    /// What it finds in a fleet.
+    /// Its findings in a fleet.
     ///
     /// # Errors
     /// The rule is at fault: it panicked, or its library cannot be loaded.
@@ -45,7 +45,7 @@ impl RegisteredRule {
     }
 }
 
-/// Where the code of a rule comes from.
+/// The source of the code of a rule.
 pub trait RuleProvider: fmt::Debug + Send + Sync {
     /// As [`RegisteredRule::check`].
     ///

@@ -1,4 +1,4 @@
-//! Whether loops can work together in one component.
+//! Teams: rules for loops that work together in one component.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ pub struct Team<'a> {
     entries: HashMap<&'a str, (&'a KnowledgeEntry, Option<usize>)>,
 }
 
-/// Why a loop cannot work in a team. Loops are named by their places.
+/// The reason why a loop cannot work in a team. Loops are named by their places.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TeamFault<'a> {
     /// It works on another knowledge than that of the class.

@@ -125,7 +125,7 @@ fn read_text(text: &str) -> String {
     error.unwrap_err().to_string()
 }
 
-/// What `change` makes of a good declaration.
+/// The error of a good declaration after `change`.
 fn refused(change: impl FnOnce(&mut Value)) -> String {
     let mut declaration: Value = serde_json::from_str(Eye::DECLARATION).unwrap();
     change(&mut declaration);
@@ -199,7 +199,7 @@ fn saver() -> Value {
     })
 }
 
-/// What a registry says of two loops and a class that has them.
+/// The error of a registry about two loops and a class that has them.
 fn refused_loops(change: impl FnOnce(&mut Value, &mut Value, &mut Value)) -> String {
     let (mut class, mut driver, mut saver) = (loops(), driver(), saver());
     change(&mut class, &mut driver, &mut saver);

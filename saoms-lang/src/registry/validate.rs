@@ -34,7 +34,7 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
     Ok(())
 }
 
-/// What the entries, and the loops that are named, can get wrong.
+/// Checks the entries and the loops that are named.
 fn loops(class: &ClassDeclaration) -> Result<(), String> {
     match &class.knowledge {
         Some(knowledge) => entries(&knowledge.entries)?,

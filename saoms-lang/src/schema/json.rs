@@ -22,7 +22,7 @@ impl Schema {
     /// The bytes of a message that is given as JSON.
     ///
     /// # Errors
-    /// Where it is no such message: a field is missing, unknown or of another type, or a number is out of its range.
+    /// The value is no such message: a field is missing, unknown or of another type, or a number is out of its range.
     pub fn encode(&self, value: &Value) -> Result<Vec<u8>, SchemaError> {
         let mut writer = Writer::new();
         write_message(self, value, &mut writer)?;

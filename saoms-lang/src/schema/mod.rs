@@ -65,7 +65,7 @@ enum Number {
     Float64,
 }
 
-/// Why a text is no schema, or a value no message of one.
+/// A fault of a text that is no schema, or of a value that is no message of one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SchemaError(String);
 
@@ -113,7 +113,7 @@ impl Schema {
     /// True if these bytes are such a message.
     ///
     /// # Errors
-    /// What is wrong, and at which byte.
+    /// An error says the fault, and the byte.
     pub fn check(&self, bytes: &[u8]) -> Result<(), DecodeError> {
         let mut reader = Reader::new(bytes)?;
         read::skip_message(self, &mut reader)?;

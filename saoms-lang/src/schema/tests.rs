@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::Schema;
 
-/// What it is about.
+/// The subject.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 enum Kind {
     #[default]

@@ -1,4 +1,4 @@
-//! What stands between elements: comments, instructions and white space.
+//! Gaps between elements: comments, instructions and white space.
 
 /// A comment, an instruction or a CDATA section, and how many lines end before it; without a text what is at the end.
 pub(super) struct Item<'a> {
@@ -39,12 +39,12 @@ impl<'a> Iterator for Gap<'a> {
     }
 }
 
-/// Whether there is nothing but white space.
+/// True if there is nothing but white space.
 pub(super) fn is_blank(text: &str) -> bool {
     text.chars().all(is_space)
 }
 
-/// How many lines end in the text: with LF, CR LF, or a CR alone.
+/// The number of line ends in the text: LF, CR LF, or a CR alone.
 fn line_ends(text: &str) -> usize {
     text.matches('\n').count() + text.matches('\r').count() - text.matches("\r\n").count()
 }

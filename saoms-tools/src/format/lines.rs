@@ -12,9 +12,9 @@ const DEEPEST: usize = 40;
 pub(super) struct Lines<'w> {
     out: &'w mut dyn Write,
     line_end: &'static str,
-    /// Whether nothing but the mark at the start is written yet.
+    /// True if nothing but the mark at the start is written yet.
     pub(super) is_empty: bool,
-    /// What came of writing; after a failure nothing more is written.
+    /// The result of writing; after a failure nothing more is written.
     result: Result,
 }
 

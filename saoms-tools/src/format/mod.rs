@@ -43,7 +43,7 @@ pub fn format(document: &Document, width: usize) -> String {
     Formatted { document, width }.to_string()
 }
 
-/// What [`format()`] gives, made while it is shown: of a file with deep elements it is many times as long.
+/// A formatted text, made while it is written: of a file with deep elements it is many times as long.
 #[derive(Clone, Copy, Debug)]
 pub struct Formatted<'d> {
     /// The document.
@@ -148,7 +148,7 @@ impl<'a> Writer<'a, '_> {
     }
 }
 
-/// Whether white space in the content means nothing, so that each part gets a line of its own.
+/// True if white space in the content means nothing, so that each part gets a line of its own.
 fn is_laid_out(element: Element<'_>) -> bool {
     if element.has_text() || has_section(element) || is_preserved(element) {
         return false;
@@ -158,7 +158,7 @@ fn is_laid_out(element: Element<'_>) -> bool {
         || (Version::from_namespace(element.namespace()).is_some() && !WITH_TEXT.contains(&local))
 }
 
-/// Whether a CDATA section stands directly in the element.
+/// True if a CDATA section stands directly in the element.
 fn has_section(element: Element<'_>) -> bool {
     let text = element.document().text();
     let Span { start, end } = element.content_span();
@@ -171,7 +171,7 @@ fn has_section(element: Element<'_>) -> bool {
     })
 }
 
-/// Whether `xml:space` asks for white space as it is.
+/// True if `xml:space` asks for white space as it is.
 fn is_preserved(element: Element<'_>) -> bool {
     element.attribute_in(XML_NAMESPACE, "space").is_some_and(|space| space.value() == "preserve")
 }

@@ -1,4 +1,4 @@
-//! What there is to draw.
+//! Diagrams: the parts of a picture.
 
 use saoms_api::host::TopicKind;
 
@@ -21,7 +21,7 @@ pub struct Diagram {
     pub links: Vec<DiagramLink>,
     /// The topics of its components, in the order of their first use.
     pub topics: Vec<DiagramTopic>,
-    /// How many wires are left out: of those that autowire makes there can be as many as the product of all ends, and those to components that are not
+    /// The number of wires that are left out: of those that autowire makes there can be as many as the product of all ends, and those to components that are not
     /// there have a box each.
     pub left_out: usize,
 }
@@ -33,9 +33,9 @@ pub struct DiagramComponent {
     pub name: String,
     /// The fewest and the most replicas in one of the composites that it is in, where it is replicated and that is known.
     pub replicas: Option<(usize, usize)>,
-    /// What it is an instance of: a class, or a kind of implementation; empty where the file says nothing.
+    /// The name of its class, or the kind of its implementation; empty where the file says nothing.
     pub class: String,
-    /// What is known of that.
+    /// The knowledge about the class.
     pub state: State,
     /// Its properties.
     pub properties: Vec<DiagramSetting>,
@@ -43,7 +43,7 @@ pub struct DiagramComponent {
     pub services: Vec<Port>,
     /// Its references.
     pub references: Vec<Port>,
-    /// What is inside, when a composite implements it.
+    /// The diagram inside, when a composite implements it.
     pub inside: Option<Box<Diagram>>,
 }
 
@@ -59,20 +59,20 @@ impl DiagramComponent {
 }
 
 impl Diagram {
-    /// How many wires are left out of it and of what is inside.
+    /// The number of wires that are left out of it and of the diagrams inside.
     pub fn all_left_out(&self) -> usize {
         let inside = self.components.iter().filter_map(|component| component.inside.as_deref());
         self.left_out + inside.map(Self::all_left_out).sum::<usize>()
     }
 
-    /// Whether this is so of it, or of what is inside one of its components.
+    /// True if this is so of the diagram, or of one inside its components.
     pub(super) fn any(&self, is_so: &dyn Fn(&Self) -> bool) -> bool {
         let mut inside = self.components.iter().filter_map(|component| component.inside.as_deref());
         is_so(self) || inside.any(|inside| inside.any(is_so))
     }
 }
 
-/// What is known of a component.
+/// The knowledge about a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// Its class is registered, or its implementation is of another kind.
@@ -99,9 +99,9 @@ pub struct Port {
     pub name: String,
     /// Its interface, where that is known.
     pub interface: Option<String>,
-    /// Whether a reference takes several targets, where that is said.
+    /// True for a reference that takes several targets; `None` where the file does not say it.
     pub many: Option<bool>,
-    /// Where a composite implements its component: the place among the services or references of that with its name.
+    /// The place among the services or references of the composite that implements its component.
     pub inside: Option<usize>,
 }
 
@@ -115,7 +115,7 @@ impl Port {
 /// A wire or a promotion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DiagramLink {
-    /// Which of both.
+    /// A wire or a promotion.
     pub kind: LinkKind,
     /// The side that calls: a reference of a component, or a service of the composite.
     pub from: DiagramEnd,
@@ -123,7 +123,7 @@ pub struct DiagramLink {
     pub to: DiagramEnd,
 }
 
-/// Whether a link is a wire or a promotion.
+/// The kind of a link: a wire or a promotion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LinkKind {
     /// From a component's reference to a component's service.

@@ -9,12 +9,12 @@ pub(super) struct Groups {
     nodes: Vec<Node>,
 }
 
-/// What stands before, between and behind the numbers of names, one step further with each number.
+/// A trie of the texts before, between and behind the numbers of names, one step further with each number.
 #[derive(Default)]
 struct Node {
     /// By the text that comes next.
     next: HashMap<String, usize>,
-    /// How long these are.
+    /// The lengths of these texts.
     lengths: BTreeSet<usize>,
     /// The group whose name ends here.
     group: Option<usize>,

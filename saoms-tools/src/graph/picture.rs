@@ -19,7 +19,7 @@ impl fmt::Display for Picture<'_> {
     }
 }
 
-/// Where a picture goes. After a fault it takes nothing more, and the fault is told at the end.
+/// The output of a picture. After a fault it takes nothing more, and the fault is reported at the end.
 pub(super) struct Sink<'a> {
     to: &'a mut dyn Write,
     result: fmt::Result,

@@ -7,7 +7,7 @@ use super::diagram::{Diagram, Port};
 /// The service that periodic components have without naming it.
 const TASK_SERVICE: &str = "TaskInterface";
 
-/// Which ports of a component.
+/// The kind of a port of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Side {
     Services,
@@ -27,7 +27,7 @@ impl Side {
 /// Ports of a component that are gone through without an index.
 const FEW: usize = 8;
 
-/// What the ports are found by, of those components that have many.
+/// The index of ports by name, for components that have many.
 #[derive(Default)]
 pub(super) struct Ports {
     sides: HashMap<(usize, Side), Index>,

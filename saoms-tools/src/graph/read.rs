@@ -18,7 +18,7 @@ const MOST_DEEP: usize = 12;
 const MOST_INSIDE: usize = 5_000;
 
 impl Diagram {
-    /// What there is to draw of the composites of a contribution that were asked for, as the one fleet that they are together, with what they
+    /// The diagram of the composites of a contribution that were asked for, as the one fleet that they are together, with what they
     /// include, and with what is inside the components that composites implement. Classes that are not registered are drawn with what the file says of them;
     /// components that are named and not there are drawn as missing.
     /// Of replicated components there is one box, with how many `census` has; what is not in it is left out.
@@ -120,9 +120,9 @@ struct Reader<'c> {
     open: Vec<usize>,
     /// The components that they implement.
     around: Vec<Origin>,
-    /// How often what is being read is there.
+    /// The number of copies of what is being read.
     times: usize,
-    /// How many more components there may be inside others.
+    /// The number of further components that there may be inside others.
     left: usize,
 }
 

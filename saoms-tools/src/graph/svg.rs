@@ -54,7 +54,7 @@ fn draw(diagram: &Diagram, text: &mut Sink<'_>) {
     out.text.push_str("</svg>\n");
 }
 
-/// Where the lines are from the sides of a component that join what is inside to it.
+/// The distance from the side of a component to the lines that join its inner parts to it.
 const TIE: i32 = 4;
 /// The names of one rail that its tooltip has.
 const MOST_NAMES: usize = 40;
@@ -264,7 +264,7 @@ impl Out<'_, '_> {
         self.text.push_str("</g>\n");
     }
 
-    /// What components do with topics: all of one topic in one path, as a fleet has very many.
+    /// The marks of topics: all of one topic in one path, as a fleet has very many.
     fn marks(&mut self, marks: &[Mark], colors: &[&str]) {
         let mut paths = vec![(String::new(), String::new()); colors.len()];
         for mark in marks {

@@ -107,7 +107,7 @@ fn autowire_finds_services_of_the_same_interface() {
     );
 }
 
-/// What composites promote has the interface of what it stands for, so that autowire finds it, and is wired around them alone.
+/// A promoted service has the interface of the inner one, so that autowire finds it, and is wired around its composite alone.
 #[test]
 fn autowire_finds_what_composites_promote() {
     let interface = "<interface.java interface='a.I'/>";

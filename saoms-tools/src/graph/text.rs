@@ -1,4 +1,4 @@
-//! How wide texts are, and what of them is shown.
+//! Widths of texts, and texts cut to a width.
 
 use super::diagram::Diagram;
 use saoms_lang::syntax::escaped;
@@ -54,7 +54,7 @@ pub(super) fn end(text: &str, most: usize) -> String {
     format!("…{}", rest.trim_start_matches('.'))
 }
 
-/// What a picture says of the wires that it does not have.
+/// The note of a picture about wires that are left out.
 pub(super) fn left_out(diagram: &Diagram) -> Option<String> {
     match diagram.all_left_out() {
         0 => None,

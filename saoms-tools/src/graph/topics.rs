@@ -1,4 +1,4 @@
-//! Which components publish and read which topics.
+//! Topics with the components that publish and read them.
 
 use std::collections::HashMap;
 
@@ -49,7 +49,7 @@ pub(super) fn join(diagram: &mut Diagram, is_repeated: bool) {
 /// The name before renaming, who publishes, and who reads.
 type Sameness = (Vec<String>, Vec<usize>, Vec<usize>);
 
-/// What names start and end with, with `*` between.
+/// The common start and end of names, with `*` between.
 fn common(names: &[String]) -> String {
     let [first, others @ ..] = names else { return String::new() };
     let (mut start, mut end) = (first.len(), first.len());

@@ -55,11 +55,11 @@ struct Linker<'d> {
     groups: Groups,
     ports: Ports,
     seen: HashSet<DiagramLink>,
-    /// What has a link already.
+    /// The ends that have a link already.
     linked: HashSet<DiagramEnd>,
-    /// How many more components may be drawn as missing.
+    /// The number of further components that may be drawn as missing.
     left: usize,
-    /// Whether there is something around the composite.
+    /// True if the composite is inside a component.
     is_inside: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What XSD 1.1 can say and XSD 1.0 cannot: which properties the components of a class have, and which values those take.
+//! Assertions, which XSD 1.0 lacks: the properties of the components of a class, and the values that they take.
 //!
 //! Each rule of a class is an assertion (XPath 2.0) over `component`, true for components of every other class.
 

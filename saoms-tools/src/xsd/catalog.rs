@@ -1,4 +1,4 @@
-//! Which file describes which namespace.
+//! A catalog of the files that describe namespaces.
 
 use super::XsdSchema;
 use super::node::{Documented, NewElement};

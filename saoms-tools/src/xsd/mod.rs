@@ -38,7 +38,7 @@ pub struct XsdSchema {
 /// A version of XML Schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Xsd {
-    /// What every editor reads.
+    /// The version that every editor reads.
     V1_0,
     /// With assertions: each component has the properties of its class, with values that these take.
     V1_1,

@@ -2,7 +2,7 @@
 
 pub(super) use saoms_lang::syntax::NewElement;
 
-/// What elements of schemas have beside others.
+/// Documentation of elements of schemas.
 pub(super) trait Documented {
     /// With documentation, which has to be the first inside; with none where the text is empty.
     fn doc(self, text: &str) -> Self;

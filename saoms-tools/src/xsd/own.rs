@@ -1,4 +1,4 @@
-//! What SAOMS adds to SCA, and the names and types that all schemas share.
+//! The additions of SAOMS to SCA, and the names and types that all schemas share.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use saoms_lang::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 const DOC: &str =
     "What SAOMS adds to SCA, and the names that its classes and plugins bring. Written by `saoms schema`.";
 
-/// What attributes mean that are not written. With these as defaults every component has what tells it from others of its name, so that `xs:unique` holds for those
+/// Values of attributes that are not written. With these as defaults every component has what tells it from others of its name, so that `xs:unique` holds for those
 /// without a condition, too. They stand on the declarations: libxml2 does not know defaults of references to these.
 pub(super) const DEFAULTS: [(&str, &str); 2] = [("if", "true"), ("from", "1")];
 
@@ -158,7 +158,7 @@ fn restricted(base: &'static str, facets: impl IntoIterator<Item = NewElement>) 
     Simple(restriction(base, facets))
 }
 
-/// What a simple type is made of.
+/// A simple type.
 struct Simple(NewElement);
 
 impl Simple {

@@ -48,7 +48,7 @@ const OTHER_ROOTS: &[(&str, &str)] = &[
     ("definitions", "Policies. What is inside is not described here."),
 ];
 
-/// What can be named once only within an element, and by which attributes: of two components of one name another condition or another first index decides.
+/// The kinds of elements with unique names within their parent, and the attributes that make the name: of two components of one name another condition or another first index decides.
 const UNIQUE: &[(&Kind, &str, &[&str])] = &[
     (&COMPOSITE, "component", &["@name", "@saoms:if", "@saoms:from"]),
     (&COMPOSITE, "property", &["@name"]),

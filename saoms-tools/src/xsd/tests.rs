@@ -8,7 +8,7 @@ use super::*;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::load::vocabulary::{COMPOSITE, Kind, children};
 
-/// How a lamp shines.
+/// The way a lamp shines.
 #[derive(Clone, Copy, PropertyField)]
 enum Shining {
     /// All the time.
@@ -23,7 +23,7 @@ struct LampProperties {
     /// More than <nothing> & "less" than the sun.
     #[property(default = 5.0, range = 0.5..=10.0, unit = "lx")]
     brightness: f64,
-    /// How it shines.
+    /// The way it shines.
     shining: Shining,
 }
 
@@ -87,7 +87,7 @@ fn classes_properties_and_values_are_names_with_what_there_is_to_say_about_them(
     assert_eq!(values("Value")["blinking"], "A value of `shining`");
 }
 
-/// What a schema says that an element of this type can hold, and which attributes it can have.
+/// The elements that an element of a type can hold by a schema, and its attributes.
 type Shape<'a> = (Vec<&'a str>, Vec<&'a str>);
 
 fn shapes<'a>(document: &'a Document<'_>) -> HashMap<&'a str, Shape<'a>> {

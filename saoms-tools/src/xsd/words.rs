@@ -22,7 +22,7 @@ pub(super) struct Words {
     pub(super) values: Names,
 }
 
-/// What is said about names, each text with those of whom it is said.
+/// Texts about names, each with the names that it is about.
 type Said = BTreeMap<String, Vec<(String, Vec<String>)>>;
 
 impl Words {

@@ -43,7 +43,7 @@ pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) fleet: FleetArguments,
 
-    /// How diagnostics are shown: for people on standard error, or as one JSON object on standard output (on standard
+    /// The format of diagnostics: for people on standard error, or as one JSON object on standard output (on standard
     /// error once a fleet runs)
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub(crate) format: Format,

@@ -47,7 +47,7 @@ fn fixes(id: i32) -> Event {
     ask(id, "textDocument/codeAction", params)
 }
 
-/// What a check of this text finds.
+/// The event of a check of this text.
 fn checked(generation: u64, text: &str) -> Event {
     let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new(), copies: false }));
     let newest = Arc::new(AtomicU64::new(generation));
@@ -60,7 +60,7 @@ fn checked(generation: u64, text: &str) -> Event {
     Event::Checked(outcome)
 }
 
-/// What the server says when all this happens, a line each, and how it ends.
+/// The messages of the server to these events, a line each, and the end of the session.
 fn session(events: Vec<Event>) -> (Vec<String>, Exit) {
     let (sender, receiver) = mpsc::channel();
     let (jobs, _asked) = mpsc::channel();

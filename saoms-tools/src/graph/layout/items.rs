@@ -1,4 +1,4 @@
-//! What stands in columns, and what joins it: components, parts of the composite at its borders, and lines that pass by.
+//! Items of columns and the links between them: components, parts of the composite at its borders, and lines that pass by.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::measure::{GRID, Plan};
 use crate::graph::diagram::{Diagram, DiagramEnd, LinkKind};
 
-/// What stands in a column.
+/// An item of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Component(usize),

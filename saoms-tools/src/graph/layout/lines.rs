@@ -9,7 +9,7 @@ use super::route::{self, Strand};
 use super::{Line, LineKind, Point, Sides};
 use crate::graph::diagram::{Diagram, LinkKind};
 
-/// What a strand is part of.
+/// The owner of a strand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Owner {
     Net(LinkKind),
@@ -94,12 +94,12 @@ impl Routes {
         Self { channels, tracks, backs: items.backs.iter().map(|back| back.kind).collect() }
     }
 
-    /// How many lanes there are above the columns.
+    /// The number of lanes above the columns.
     pub(super) fn lanes(&self) -> i32 {
         self.backs.len() as i32
     }
 
-    /// Where columns and channels start, and where the last column ends.
+    /// The starts of columns and channels, and the end of the last column.
     pub(super) fn columns(&self, widths: &[i32]) -> (Vec<i32>, Vec<i32>, i32) {
         let mut x = 0;
         let (mut lefts, mut channels) = (Vec::new(), Vec::new());
@@ -187,7 +187,7 @@ fn parts(route: &Route, x: i32, sides: &Sides<'_>, kind: LineKind) -> Line {
     line
 }
 
-/// How far the lines from each start go: to which track, or past all of them.
+/// The furthest track that the lines from each start reach, or one past all of them.
 fn furthest(routes: &[Route]) -> HashMap<Pin, usize> {
     let mut all: HashMap<Pin, usize> = HashMap::new();
     for route in routes {
@@ -200,7 +200,7 @@ fn furthest(routes: &[Route]) -> HashMap<Pin, usize> {
     all
 }
 
-/// Where another line of the same reference goes on.
+/// The points where another line of the same reference goes on.
 fn forks(route: &Route, furthest: &HashMap<Pin, usize>, x: i32, origin: Point) -> Vec<Point> {
     let Some(track) = route.strand.track else { return Vec::new() };
     let lines = route.left.iter().zip(&route.strand.left);

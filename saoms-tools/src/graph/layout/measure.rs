@@ -29,12 +29,12 @@ pub(in crate::graph) struct Chip {
     pub(in crate::graph) text: String,
 }
 
-/// How a component is drawn; all places are from the upper left corner of all of it.
+/// The drawing of a component; all places are from its upper left corner.
 #[derive(Clone, Debug)]
 pub(in crate::graph) struct Plan {
     pub(in crate::graph) width: i32,
     pub(in crate::graph) height: i32,
-    /// Where the body starts: properties stick out of it.
+    /// The start of the body: properties stick out of it.
     pub(in crate::graph) body: i32,
     /// The lines of name and class.
     pub(in crate::graph) name: i32,
@@ -46,7 +46,7 @@ pub(in crate::graph) struct Plan {
     pub(in crate::graph) chips: Vec<Chip>,
     /// The first service and the first reference.
     first: i32,
-    /// Where the line to topics leaves on the left.
+    /// The height of the line to topics on the left.
     pub(in crate::graph) topics: Option<i32>,
     /// The picture of what is inside, and where it starts.
     pub(in crate::graph) inside: Option<(Rc<Layout>, Point)>,

@@ -1,4 +1,4 @@
-//! Where everything stands in a picture.
+//! Layout: places for everything in a picture.
 //!
 //! Components stand in columns, each to the right of what calls it; lines run between columns on tracks of their own;
 //! topics are rails below all columns, to which each component has one line.
@@ -39,7 +39,7 @@ pub(super) struct Rect {
     pub(super) height: i32,
 }
 
-/// What a line stands for.
+/// The meaning of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineKind {
     Wire,
@@ -83,7 +83,7 @@ pub(super) struct Rail {
     pub(super) to: i32,
 }
 
-/// What a component does with a topic, where its line meets the rail.
+/// The mark where the line of a component meets the rail of a topic: it publishes, subscribes or both.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     pub(super) at: Point,
@@ -99,7 +99,7 @@ pub(super) struct Layout {
     pub(super) height: i32,
     /// The box of the composite.
     pub(super) frame: Rect,
-    /// How far its name is below the usual place, below its properties.
+    /// The distance of its name below the usual place, below its properties.
     pub(super) name: i32,
     /// Its properties.
     pub(super) chips: Vec<Chip>,
@@ -244,7 +244,7 @@ pub(super) fn border(name: &str) -> String {
     short(name, 40)
 }
 
-/// Where items start and end.
+/// The left and right ends of items.
 struct Sides<'a> {
     items: &'a Items,
     layout: &'a Layout,
@@ -254,7 +254,7 @@ struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    /// Where lines on the right of an item start: those that pass by at its left end, so that they are whole.
+    /// The start of lines on the right of an item: lines that pass by start at its left end, so that they are whole.
     fn start(&self, item: usize) -> i32 {
         let (left, right) = self.of(item);
         if self.items.items[item].kind == Kind::Pass { left } else { right }

@@ -1,11 +1,11 @@
-//! How high each item stands: on a line with what it is joined to, as far as its neighbours leave room.
+//! Heights of items: each stands on a line with what it is joined to, as far as its neighbours leave room.
 
 use super::items::{Items, Kind};
 use super::measure::GRID;
 
 /// Times that all columns are gone through, to the right and back.
 const SWEEPS: usize = 3;
-/// What an item weighs that is joined to nothing in the column that is looked at: it gives way.
+/// The weight of an item without a line to the current column: others push it aside.
 const LIGHT: f64 = 0.01;
 
 pub(super) fn place(all: &mut Items) {
@@ -41,7 +41,7 @@ pub(super) fn place(all: &mut Items) {
     all.items.iter_mut().for_each(|item| item.y -= top);
 }
 
-/// Where the items of a column stand when there is no more room than they need.
+/// The heights of the items of a column without room to spare.
 fn stacked(all: &Items, column: &[usize]) -> Vec<i32> {
     let mut y = 0;
     let mut before: Option<Kind> = None;

@@ -2,7 +2,7 @@
 
 use super::measure::GRID;
 
-/// What belongs together in one channel: ends at its left and right, and a place far above or below that it leads to.
+/// A route in one channel: ends at its left and right, and a place far above or below that it leads to.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Strand {
     pub(super) left: Vec<i32>,
@@ -10,7 +10,7 @@ pub(super) struct Strand {
     pub(super) far: Option<i32>,
     /// Its place in the channel; `None` for one that is straight.
     pub(super) track: Option<usize>,
-    /// How much lower it goes to the right than its end there is: where another line would be in the way.
+    /// The distance below its right end at which it runs where another line would be in the way.
     pub(super) nudge: i32,
 }
 
@@ -44,7 +44,7 @@ impl Strand {
 
 /// Gives each strand of a channel its track; how many there are.
 ///
-/// Where a line from the left and one to the right are at the same height, the first must turn away before the other one
+/// If a line from the left and one to the right are at the same height, the first must turn away before the other one
 /// comes. Circles of such are cut anywhere, and the second line goes beside the first one there.
 pub(super) fn tracks(strands: &mut [Strand]) -> usize {
     let mut order: Vec<usize> = (0..strands.len()).filter(|&strand| !strands[strand].is_straight()).collect();

@@ -10,7 +10,7 @@ use crate::graph::diagram::{
 };
 use crate::graph::text::width;
 
-/// What a picture is made of, in numbers: for each component how many properties, services and references it has.
+/// The parts of a picture: for each component the numbers of its properties, services and references.
 type Parts = Vec<(usize, usize, usize)>;
 
 fn names(kind: &str, count: usize) -> impl Iterator<Item = String> {
