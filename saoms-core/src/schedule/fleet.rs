@@ -8,18 +8,16 @@ use std::time::Duration;
 
 use saoms_api::{Level, Time};
 
-use super::change::{self, ChangeError, Changed};
-use super::clock::Clock;
+use super::change::{self, ChangeError, Changed, StartError, Takeover};
 use super::drive;
 use super::engine::RunPhase;
+use super::engine::lifecycle::Request;
+use super::engine::slot::NEVER;
 use super::inject::{self, InjectError, Injection};
-use super::lifecycle::Request;
-use super::realtime;
+use super::os::clock::Clock;
+use super::os::realtime;
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
-use super::slot::NEVER;
-use super::start::StartError;
-use super::takeover::Takeover;
 use crate::journal::ComponentName;
 use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;

@@ -9,36 +9,21 @@
 //!
 //! The entry point is [`Fleet`]. A component sees only its [`Context`](saoms_api::Context).
 
-mod body;
-mod call;
 mod change;
-mod clock;
+mod component;
 mod drive;
-mod ending;
 mod engine;
 mod fleet;
-mod host;
 mod inject;
-mod lifecycle;
 mod names;
-mod overrun;
-mod pulse;
-mod queue;
-mod realtime;
+mod os;
 mod settings;
 mod shared;
-mod slot;
-mod start;
-mod sys;
-mod takeover;
 #[cfg(test)]
 mod tests;
-mod trace;
 
-pub use change::{ChangeError, Changed};
+pub use change::{ChangeError, Changed, StartError, Takeover};
 pub use fleet::{Fleet, Handle, Hold, UnknownComponent};
 pub use inject::{InjectError, InjectedContent, Injection};
-pub use realtime::RealtimeError;
+pub use os::realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
-pub use start::StartError;
-pub use takeover::Takeover;

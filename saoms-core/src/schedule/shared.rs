@@ -5,12 +5,12 @@ use std::time::Duration;
 use saoms_api::Time;
 use saoms_api::extension::RunSummary;
 
-use super::clock::Clock;
+use super::drive::pulse::Pulse;
 use super::engine::Engine;
 use super::names::SlotNames;
-use super::pulse::Pulse;
+use super::os::clock::Clock;
+use super::os::sys::Gate;
 use super::settings::Settings;
-use super::sys::Gate;
 use crate::journal::RecordQueue;
 use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunProgress};
 use crate::report::Sections;

@@ -2,9 +2,9 @@ use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
-use super::queue::Queue;
-use super::slot::Apart;
-use super::sys::{self, Gate};
+use super::engine::queue::Queue;
+use super::engine::slot::Apart;
+use super::os::sys::{self, Gate};
 use saoms_api::host::contain::{contained, install_hook};
 
 #[test]

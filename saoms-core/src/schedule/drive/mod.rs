@@ -1,6 +1,7 @@
 //! The threads that drive the engine: one does the timer's work, in real time a spare one watches it, and workers run
 //! components that took too long.
 
+pub(super) mod pulse;
 mod real;
 mod supervise;
 mod virtual_time;
@@ -15,11 +16,11 @@ use std::thread;
 
 use saoms_api::Level;
 
-use super::ending::EndCause;
-use super::engine::Engine;
-use super::settings::{ClockKind, nanos};
-use super::shared::Shared;
-use super::sys;
+use crate::schedule::engine::Engine;
+use crate::schedule::engine::ending::EndCause;
+use crate::schedule::os::sys;
+use crate::schedule::settings::{ClockKind, nanos};
+use crate::schedule::shared::Shared;
 
 pub(super) use supervise::wait_until;
 

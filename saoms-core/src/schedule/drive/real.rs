@@ -3,13 +3,13 @@ use std::sync::atomic::{Ordering, fence};
 
 use saoms_api::Level;
 
-use super::super::engine::{Engine, Next, RunPhase};
-use super::super::realtime::TIMER_PRIORITY;
-use super::super::settings::nanos;
-use super::super::shared::Shared;
-use super::super::slot::NEVER;
-use super::super::sys;
 use super::{announce_end, heed_stop, prepare_thread, workers};
+use crate::schedule::engine::slot::NEVER;
+use crate::schedule::engine::{Engine, Next, RunPhase};
+use crate::schedule::os::realtime::TIMER_PRIORITY;
+use crate::schedule::os::sys;
+use crate::schedule::settings::nanos;
+use crate::schedule::shared::Shared;
 
 /// Maximum time that the timer may be busy without a pause; beyond it the fleet overloads the machine.
 const BUSY: u64 = 500_000_000;

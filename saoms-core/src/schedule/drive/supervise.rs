@@ -3,16 +3,16 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::host::format_duration;
 
-use super::super::ending::EndCause;
-use super::super::engine::{Engine, RunPhase};
-use super::super::settings::nanos;
-use super::super::shared::Shared;
-use super::super::sys;
 use super::{announce_end, heed_stop, spawn_timer};
+use crate::schedule::engine::ending::EndCause;
+use crate::schedule::engine::{Engine, RunPhase};
+use crate::schedule::os::sys;
+use crate::schedule::settings::nanos;
+use crate::schedule::shared::Shared;
 
 /// Waits until `reached` holds or the run has ended. Meanwhile abandons components that do not end in time, and in
 /// virtual time those that do not return at all.
-pub(in super::super) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engine) -> bool) {
+pub(crate) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engine) -> bool) {
     let mut stuck = Stuck { piece: 0, since: sys::monotonic() };
     loop {
         let ticket = shared.end.ticket();

@@ -3,12 +3,12 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::extension::RunSummary;
 
-use super::super::ending::EndCause;
-use super::super::engine::{Engine, Next, RunPhase};
-use super::super::shared::Shared;
-use super::super::slot::NEVER;
-use super::super::sys;
 use super::{announce_end, heed_stop};
+use crate::schedule::engine::ending::EndCause;
+use crate::schedule::engine::slot::NEVER;
+use crate::schedule::engine::{Engine, Next, RunPhase};
+use crate::schedule::os::sys;
+use crate::schedule::shared::Shared;
 
 /// Time of the run, in nanoseconds, after which a run without an end is reported: one hour.
 const ENDLESS: u64 = 3_600_000_000_000;

@@ -4,14 +4,14 @@ use std::sync::atomic::{Ordering, fence};
 
 use saoms_api::Level;
 
-use super::super::engine::Engine;
-use super::super::realtime::{SPARE_PRIORITY, TIMER_PRIORITY};
-use super::super::settings::nanos;
-use super::super::shared::Shared;
-use super::super::slot::NEVER;
-use super::super::sys;
 use super::{prepare_thread, real, spawn_thread};
 use crate::observe::Occurrence;
+use crate::schedule::engine::Engine;
+use crate::schedule::engine::slot::NEVER;
+use crate::schedule::os::realtime::{SPARE_PRIORITY, TIMER_PRIORITY};
+use crate::schedule::os::sys;
+use crate::schedule::settings::nanos;
+use crate::schedule::shared::Shared;
 
 /// Starts the spare thread that watches the thread with the timer's work.
 pub(super) fn spawn(shared: &Arc<Shared>) -> io::Result<()> {

@@ -2,10 +2,10 @@ use std::sync::{Arc, MutexGuard};
 
 use saoms_api::Level;
 
-use super::super::engine::{Engine, RunPhase};
-use super::super::shared::{Shared, relock};
-use super::super::sys;
 use super::spawn_thread;
+use crate::schedule::engine::{Engine, RunPhase};
+use crate::schedule::os::sys;
+use crate::schedule::shared::{Shared, relock};
 
 /// Maximum number of idle worker threads.
 const IDLE_WORKERS: usize = 4;

@@ -5,14 +5,14 @@ use saoms_api::host::{Invocation, ServiceCall, cdr};
 use saoms_api::{CallError, Failure};
 
 use super::body::{Body, Job, Part};
-use super::engine::Engine;
-use super::lifecycle::Request;
-use super::shared::Shared;
-use super::slot::NEVER;
+use crate::schedule::engine::Engine;
+use crate::schedule::engine::lifecycle::Request;
+use crate::schedule::engine::slot::NEVER;
+use crate::schedule::shared::Shared;
 
 /// Calls through a reference of a component whose code runs on this thread. The provider's code runs on the same
 /// thread, as in a function call: it is taken out of the engine meanwhile, and is busy for all others.
-pub(super) fn call(
+pub(crate) fn call(
     shared: &Arc<Shared>,
     caller: &Part,
     reference: u32,

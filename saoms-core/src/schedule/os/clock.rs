@@ -5,7 +5,7 @@ use super::sys;
 
 /// The time of a run in nanoseconds since its start, from the machine's clock or from a number that jumps.
 #[derive(Debug)]
-pub(super) enum Clock {
+pub(crate) enum Clock {
     /// The machine's monotonic clock: `start` is the start of the run on it, `zero` the local date of its zero. Until
     /// the start the time is zero.
     Real { start: AtomicU64, zero: u64 },
@@ -14,28 +14,28 @@ pub(super) enum Clock {
 }
 
 impl Clock {
-    pub(super) fn real() -> Clock {
+    pub(crate) fn real() -> Clock {
         let zero = sys::local_date().saturating_sub(sys::monotonic());
         Clock::Real { start: AtomicU64::new(u64::MAX), zero }
     }
 
-    pub(super) fn simulated() -> Clock {
+    pub(crate) fn simulated() -> Clock {
         Clock::Virtual { now: AtomicU64::new(0) }
     }
 
-    pub(super) fn is_virtual(&self) -> bool {
+    pub(crate) fn is_virtual(&self) -> bool {
         matches!(self, Clock::Virtual { .. })
     }
 
     /// Starts the run: now is zero.
-    pub(super) fn start(&self) {
+    pub(crate) fn start(&self) {
         if let Clock::Real { start, .. } = self {
             start.store(sys::monotonic(), Ordering::Relaxed);
         }
     }
 
     #[inline]
-    pub(super) fn now(&self) -> u64 {
+    pub(crate) fn now(&self) -> u64 {
         match self {
             Clock::Real { start, .. } => sys::monotonic().saturating_sub(start.load(Ordering::Relaxed)),
             Clock::Virtual { now } => now.load(Ordering::Relaxed),
@@ -43,7 +43,7 @@ impl Clock {
     }
 
     /// A time of the run on the machine's clock.
-    pub(super) fn on_machine(&self, time: u64) -> u64 {
+    pub(crate) fn on_machine(&self, time: u64) -> u64 {
         match self {
             Clock::Real { start, .. } => start.load(Ordering::Relaxed).saturating_add(time),
             Clock::Virtual { .. } => time,
@@ -52,7 +52,7 @@ impl Clock {
 
     /// The local date and time of day since 1970-01-01 00:00. It does not follow changes of the machine's date during
     /// the run, so that it never jumps.
-    pub(super) fn date(&self) -> Option<Duration> {
+    pub(crate) fn date(&self) -> Option<Duration> {
         match self {
             Clock::Real { zero, .. } => Some(Duration::from_nanos(zero.saturating_add(sys::monotonic()))),
             Clock::Virtual { .. } => None,
@@ -60,7 +60,7 @@ impl Clock {
     }
 
     /// Lets virtual time jump.
-    pub(super) fn jump(&self, time: u64) {
+    pub(crate) fn jump(&self, time: u64) {
         if let Clock::Virtual { now } = self {
             now.store(time, Ordering::Relaxed);
         }

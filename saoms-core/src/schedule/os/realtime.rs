@@ -6,9 +6,9 @@ use super::sys;
 
 /// The priority of the timer among real-time threads: in the middle, below what Linux uses for its own interrupt
 /// threads.
-pub(super) const TIMER_PRIORITY: i32 = 49;
+pub(crate) const TIMER_PRIORITY: i32 = 49;
 /// Priority of the spare thread: above the timer, so that it runs when the timer's thread spins.
-pub(super) const SPARE_PRIORITY: i32 = 50;
+pub(crate) const SPARE_PRIORITY: i32 = 50;
 
 /// Error: real-time scheduling is not possible. The message names the missing permission.
 #[derive(Debug)]
@@ -51,7 +51,7 @@ impl std::error::Error for RealtimeError {
 }
 
 /// Locks the memory of the process, and makes sure that its threads may become real-time threads.
-pub(super) fn enter() -> Result<(), RealtimeError> {
+pub(crate) fn enter() -> Result<(), RealtimeError> {
     let scheduling = |source| RealtimeError { what: What::Scheduling, source };
     let memory = |source| RealtimeError { what: What::Memory, source };
     let thread = sys::thread_id();
@@ -69,7 +69,7 @@ pub(super) fn enter() -> Result<(), RealtimeError> {
 /// Keeps the processors out of their deep idle states as long as the file is open: waking from those takes tens of
 /// microseconds, most of the lateness of a few tasks. This is the kernel's interface for it
 /// (Documentation/power/pm_qos_interface.rst).
-pub(super) fn keep_awake() -> io::Result<File> {
+pub(crate) fn keep_awake() -> io::Result<File> {
     let mut file = fs::OpenOptions::new().write(true).open("/dev/cpu_dma_latency")?;
     file.write_all(&0_i32.to_ne_bytes())?;
     Ok(file)

@@ -5,56 +5,56 @@ use saoms_api::host::{DynComponent, Invocation, SharedMessage};
 use saoms_api::{CallError, Cause, Chance, Context, Failure, Work};
 
 use super::host::ComponentHost;
-use super::shared::Shared;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
+use crate::schedule::shared::Shared;
 use saoms_api::host::contain::contained;
 use saoms_lang::assembly::ComponentSpec;
 use saoms_lang::schema::Schema;
 
 /// The part of a component that leaves the engine while the component's code runs, so that the engine stays free for
 /// others.
-pub(super) struct Body {
-    pub(super) instance: Option<Box<dyn DynComponent>>,
+pub(crate) struct Body {
+    pub(crate) instance: Option<Box<dyn DynComponent>>,
     /// The messages of the present period, one list for each subscription.
-    pub(super) inboxes: Vec<Vec<SharedMessage>>,
-    pub(super) part: Part,
+    pub(crate) inboxes: Vec<Vec<SharedMessage>>,
+    pub(crate) part: Part,
 }
 
 /// The part of a body that the component's context works with.
-pub(super) struct Part {
-    pub(super) index: u32,
-    pub(super) name: Arc<str>,
-    pub(super) publishers: Vec<TopicId>,
+pub(crate) struct Part {
+    pub(crate) index: u32,
+    pub(crate) name: Arc<str>,
+    pub(crate) publishers: Vec<TopicId>,
     /// Schemas of the topics on which messages were sent as bytes.
-    pub(super) schemas: Vec<(TopicId, Arc<Schema>)>,
-    pub(super) subscriptions: Vec<TopicReader>,
+    pub(crate) schemas: Vec<(TopicId, Arc<Schema>)>,
+    pub(crate) subscriptions: Vec<TopicReader>,
     /// Subscriptions of a failed instance, for the instance that replaces it.
-    pub(super) kept: Vec<TopicReader>,
-    pub(super) outbox: Vec<(TopicId, SharedMessage)>,
-    pub(super) chance: Chance,
-    pub(super) cancelled: Arc<AtomicBool>,
-    pub(super) vote: Option<Work>,
+    pub(crate) kept: Vec<TopicReader>,
+    pub(crate) outbox: Vec<(TopicId, SharedMessage)>,
+    pub(crate) chance: Chance,
+    pub(crate) cancelled: Arc<AtomicBool>,
+    pub(crate) vote: Option<Work>,
     /// In virtual time, the time at which the present code runs.
-    pub(super) now: u64,
-    pub(super) due: u64,
-    pub(super) execution: u64,
-    pub(super) period: u64,
-    pub(super) initializing: bool,
+    pub(crate) now: u64,
+    pub(crate) due: u64,
+    pub(crate) execution: u64,
+    pub(crate) period: u64,
+    pub(crate) initializing: bool,
     /// The fault of the present execution.
-    pub(super) fault: Option<TaskFaultKind>,
+    pub(crate) fault: Option<TaskFaultKind>,
     /// Records for the journal.
-    pub(super) recorder: Recorder,
+    pub(crate) recorder: Recorder,
     /// Specification of the component; the targets of its wires are slot numbers.
-    pub(super) spec: Arc<ComponentSpec>,
+    pub(crate) spec: Arc<ComponentSpec>,
     /// True if the instance is part of a change that is not committed: its messages are held back.
-    pub(super) held: bool,
+    pub(crate) held: bool,
 }
 
 /// Jobs of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Job {
+pub(crate) enum Job {
     /// Construct and initialize.
     Start,
     /// Execute once.
@@ -64,7 +64,7 @@ pub(super) enum Job {
 }
 
 impl Body {
-    pub(super) fn new(
+    pub(crate) fn new(
         index: u32,
         spec: Arc<ComponentSpec>,
         name: Arc<str>,
@@ -97,7 +97,7 @@ impl Body {
 
     /// Performs a job, and contains panics of the component's code. A failure or a shutdown drops the instance.
     #[inline]
-    pub(super) fn perform(&mut self, shared: &Arc<Shared>, job: Job) -> Result<(), Failure> {
+    pub(crate) fn perform(&mut self, shared: &Arc<Shared>, job: Job) -> Result<(), Failure> {
         self.part.recorder.begin(Cause::default());
         let result = match job {
             Job::Execute => {
@@ -134,7 +134,7 @@ impl Body {
 
     /// Serves a call to one of the component's services, for a caller with this cause. The outer error is a panic,
     /// which drops the instance.
-    pub(super) fn serve(
+    pub(crate) fn serve(
         &mut self,
         shared: &Arc<Shared>,
         invocation: &mut Invocation<'_>,
@@ -149,7 +149,7 @@ impl Body {
     }
 
     #[inline]
-    pub(super) fn call<T>(
+    pub(crate) fn call<T>(
         &mut self,
         shared: &Arc<Shared>,
         code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> T,
@@ -163,7 +163,7 @@ impl Body {
     }
 
     /// Drops the instance. A panic of its destructor is contained, too.
-    pub(super) fn discard(&mut self) {
+    pub(crate) fn discard(&mut self) {
         if let Some(instance) = self.instance.take() {
             // A panic here is ignored: the failure or the shutdown before it has been reported.
             let _ = contained(|| drop(instance));
@@ -186,7 +186,7 @@ fn commit_fault(fault: TaskFaultKind) -> Result<(), Failure> {
 }
 
 impl Part {
-    pub(super) fn is_cancelled(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 }

@@ -1,115 +1,23 @@
-//! Changes of a fleet: components end, start and are replaced by a plan, or everything stays as it was.
-//!
-//! The start of a fleet is the change from an empty one. New instances initialize on the caller's thread, providers
-//! before those that call them, while those that they replace and those that end are out of the engine, as if they
-//! served a call: the timer never waits. Messages of new instances are held back until all have initialized; then the
-//! change is committed at one instant, and the old instances shut down.
-
-use std::fmt;
 use std::sync::{Arc, MutexGuard};
 use std::time::{Duration, Instant};
 
 use saoms_api::Failure;
-use saoms_lang::assembly::{Assembly, ComponentSpec};
+use saoms_lang::assembly::ComponentSpec;
 
-use super::body::{Body, Job};
-use super::engine::{Engine, RunPhase};
-use super::lifecycle::Request;
-use super::shared::Shared;
-use super::slot::{NEVER, Slot, SlotState, TaskPolicy, Wish};
 use super::takeover::{Predecessor, Refusal, Takeover};
-use super::trace::TraceStep;
+use super::{ChangeError, Changed, as_members};
 use crate::assemble::{ChangePlan, Difference, providers_first};
-use crate::journal::ComponentName;
 use crate::observe::Occurrence;
+use crate::schedule::component::body::{Body, Job};
+use crate::schedule::engine::slot::{SlotState, Wish};
+use crate::schedule::engine::{Engine, RunPhase};
+use crate::schedule::shared::Shared;
 
 /// Maximum time that a change waits for running code.
 const WAIT: Duration = Duration::from_millis(500);
 
-/// A change that was made, by the paths of components.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Changed {
-    /// Components that joined the fleet.
-    pub added: Vec<String>,
-    /// Components that ended.
-    pub removed: Vec<String>,
-    /// Components with new instances.
-    pub replaced: Vec<(String, Takeover)>,
-}
-
-/// Error of a change that was not made. The fleet is as it was.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ChangeError {
-    /// A component cannot end or be replaced now: its code runs, or it refused. A later try may succeed.
-    NotNow {
-        /// Its path.
-        component: String,
-        /// The reason.
-        why: String,
-    },
-    /// A new instance of a component cannot be constructed, initialized or restored.
-    Failed {
-        /// Its path.
-        component: String,
-        /// Its class.
-        class: String,
-        /// Its failure.
-        failure: Failure,
-    },
-    /// The fleet has no such component.
-    Unknown(String),
-    /// The run ends.
-    Ending,
-}
-
-impl fmt::Display for ChangeError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            ChangeError::NotNow { component, why } => write!(formatter, "component `{component}`: {why}"),
-            ChangeError::Failed { component, class, failure } => {
-                write!(formatter, "component `{component}` of class `{class}` could not start: {failure}")
-            }
-            ChangeError::Unknown(component) => write!(formatter, "the fleet has no component `{component}`"),
-            ChangeError::Ending => formatter.write_str("the run ends"),
-        }
-    }
-}
-
-impl std::error::Error for ChangeError {}
-
-/// Changes the fleet to that of an assembly.
-pub(super) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, ChangeError> {
-    let _one_at_a_time = shared.lock_changes();
-    let current = shared.lock().specs();
-    let wanted: Vec<_> = wanted.components.into_iter().map(|spec| Some(Arc::new(spec))).collect();
-    let plan = ChangePlan::between(&as_members(&current), &as_members(&wanted));
-    Change::new(shared).make(&plan, wanted)
-}
-
-/// Replaces one component by one of this specification, even if nothing differs. Its task settings stay.
-pub(super) fn replace(shared: &Arc<Shared>, spec: ComponentSpec) -> Result<Takeover, ChangeError> {
-    let _one_at_a_time = shared.lock_changes();
-    let mut wanted = shared.lock().specs();
-    let same = |known: &Option<Arc<ComponentSpec>>| known.as_ref().is_some_and(|one| one.path == spec.path);
-    let Some((number, known)) = wanted.iter_mut().enumerate().find(|(_, known)| same(known)) else {
-        return Err(ChangeError::Unknown(spec.path));
-    };
-    let task = known.as_ref().and_then(|known| known.task.clone());
-    *known = Some(Arc::new(ComponentSpec { task, ..spec }));
-    let differences = Vec::new();
-    let replace = vec![crate::assemble::Replacement { current: number, wanted: number, differences }];
-    let others = (0..wanted.len()).filter(|one| *one != number && wanted[*one].is_some());
-    let keep = others.map(|one| (one, one)).collect();
-    let changed = Change::new(shared).make(&ChangePlan { replace, keep, ..ChangePlan::default() }, wanted)?;
-    Ok(changed.replaced.first().map_or(Takeover::Awaited, |(_, done)| *done))
-}
-
-fn as_members(specs: &[Option<Arc<ComponentSpec>>]) -> Vec<Option<&ComponentSpec>> {
-    specs.iter().map(Option::as_deref).collect()
-}
-
 /// A change that is being made.
-struct Change<'a> {
+pub(super) struct Change<'a> {
     shared: &'a Arc<Shared>,
     /// Numbers of new components, in the order of the fleet that is wanted.
     added: Vec<u32>,
@@ -134,7 +42,7 @@ enum Fate {
 }
 
 impl<'a> Change<'a> {
-    fn new(shared: &'a Arc<Shared>) -> Change<'a> {
+    pub(super) fn new(shared: &'a Arc<Shared>) -> Change<'a> {
         Change {
             shared,
             added: Vec::new(),
@@ -146,7 +54,7 @@ impl<'a> Change<'a> {
         }
     }
 
-    fn make(
+    pub(super) fn make(
         mut self,
         plan: &ChangePlan,
         mut wanted: Vec<Option<Arc<ComponentSpec>>>,
@@ -441,180 +349,4 @@ fn retargeted(spec: Arc<ComponentSpec>, numbers: &[u32]) -> Arc<ComponentSpec> {
         target.component = number(target.component);
     }
     Arc::new(spec)
-}
-
-impl Engine {
-    /// The specifications of the fleet by their numbers.
-    fn specs(&self) -> Vec<Option<Arc<ComponentSpec>>> {
-        self.slots.iter().map(|slot| slot.is_member().then(|| Arc::clone(&slot.spec))).collect()
-    }
-
-    /// The time at which a change happens.
-    fn time_of_change(&self, shared: &Shared) -> u64 {
-        if self.phase == RunPhase::Starting { 0 } else { shared.clock.now() }
-    }
-
-    /// The numbers of new components. A removed component that returns gets its number again.
-    fn number<'s>(&self, specs: impl Iterator<Item = &'s Arc<ComponentSpec>>) -> Vec<u32> {
-        let mut next = self.slots.len() as u32;
-        let number = |spec: &Arc<ComponentSpec>| {
-            let known = self.numbers.get(spec.path.as_str()).copied();
-            known.filter(|number| !self.slots[*number as usize].is_member()).unwrap_or_else(|| {
-                next += 1;
-                next - 1
-            })
-        };
-        specs.map(number).collect()
-    }
-
-    /// Makes slots for new components.
-    fn prepare(&mut self, shared: &Shared, specs: impl Iterator<Item = Arc<ComponentSpec>>, numbers: &[u32]) {
-        let mut names = Vec::new();
-        for (spec, &number) in specs.zip(numbers) {
-            if let Some(slot) = self.slots.get_mut(number as usize) {
-                slot.revive(spec);
-                continue;
-            }
-            if let Some(records) = &self.records {
-                records.join(ComponentName::of(&spec), self.phase != RunPhase::Starting);
-            }
-            let slot = Slot::new(number, spec);
-            names.push(Arc::clone(&slot.name));
-            self.numbers.insert(Arc::clone(&slot.name), number);
-            self.slots.push(slot);
-        }
-        shared.names.add(names);
-        if self.phase == RunPhase::Starting {
-            self.journal_capacity /= self.slots.len().max(1);
-        }
-    }
-
-    /// Takes a body out, as for a call.
-    fn take(&mut self, number: u32) -> Option<Box<Body>> {
-        let body = self.slots[number as usize].body.take()?;
-        self.out += 1;
-        Some(body)
-    }
-
-    /// Gives a body back.
-    fn put_back(&mut self, number: u32, body: Box<Body>) {
-        if self.is_abandoned(number) {
-            // It was abandoned, and its destructor may block as its code did: it is leaked.
-            std::mem::forget(body);
-            return;
-        }
-        self.came_back();
-        self.slots[number as usize].body = Some(body);
-    }
-
-    /// Gives back the body of a component that goes on as before.
-    fn return_unchanged(&mut self, number: u32, body: Box<Body>, now: u64) {
-        self.slots[number as usize].held = false;
-        self.put_back(number, body);
-        if self.slots[number as usize].is_alive() {
-            self.resume(number, now);
-        }
-    }
-
-    /// Removes a component from the fleet.
-    fn forget(&mut self, number: u32) {
-        let slot = &mut self.slots[number as usize];
-        if slot.state != SlotState::Abandoned {
-            slot.state = SlotState::Removed;
-            (slot.entry, slot.wish, slot.vote) = (NEVER, Wish::None, None);
-        }
-    }
-
-    fn take_vote(&mut self, number: u32, now: u64) {
-        let body = self.slots[number as usize].body.as_mut();
-        if let Some(vote) = body.and_then(|body| body.part.vote.take()) {
-            self.note_vote(number, vote, now);
-        }
-    }
-
-    /// Adds a new component to the fleet: its messages are delivered, and its first execution is scheduled.
-    fn join(&mut self, number: u32, now: u64) {
-        let slot = &mut self.slots[number as usize];
-        (slot.joined, slot.held) = (true, false);
-        let is_active = slot.state == SlotState::Active;
-        let Some(mut body) = slot.body.take() else { return };
-        body.part.held = false;
-        if is_active {
-            self.deliver(&mut body.part, now);
-            self.step(now, number, TraceStep::Started);
-            self.tell(now, number, Occurrence::Started);
-        }
-        let slot = &mut self.slots[number as usize];
-        slot.body = Some(body);
-        if is_active && slot.policy.periodic {
-            slot.due = now.saturating_add(slot.policy.delay);
-            let when = slot.due.min(slot.until);
-            match slot.wish {
-                Wish::None => self.enqueue(number, when),
-                Wish::Leave | Wish::Return { .. } => self.resume(number, now),
-            }
-        } else if std::mem::take(&mut slot.waiting) {
-            self.enqueue(number, now);
-        }
-    }
-
-    fn commit_takeover(&mut self, number: u32, predecessor: Predecessor, done: Takeover, now: u64) {
-        let Some(mut body) = self.slots[number as usize].body.take() else { return };
-        body.inherit(&mut self.bus, predecessor);
-        self.release(number, &mut body, now);
-        self.deliver(&mut body.part, now);
-        let vote = body.part.vote.take();
-        let slot = &mut self.slots[number as usize];
-        let period = slot.policy.period;
-        slot.renew(Arc::clone(&body.part.spec));
-        body.part.period = slot.policy.period;
-        slot.body = Some(body);
-        slot.held = false;
-        slot.statistics.replaced += 1;
-        self.tell(now, number, Occurrence::Replaced { continued: done == Takeover::Continued });
-        if let Some(vote) = vote {
-            self.note_vote(number, vote, now);
-        }
-        let slot = &mut self.slots[number as usize];
-        // A new period counts from the last execution.
-        if let Some(last) = slot.last_due.filter(|_| slot.policy.period != period) {
-            slot.due = last.saturating_add(slot.policy.period).max(now);
-            if slot.entry != NEVER {
-                let when = slot.due.min(slot.until);
-                self.enqueue(number, when);
-            }
-        }
-        self.resume(number, now);
-    }
-
-    /// Sets the specification that a component which does not run has from its next start on.
-    fn await_spec(&mut self, number: u32, spec: Arc<ComponentSpec>, now: u64) {
-        let slot = &mut self.slots[number as usize];
-        slot.renew(Arc::clone(&spec));
-        let has_failed = slot.state == SlotState::Failed;
-        if let Some(body) = &mut slot.body {
-            (body.part.spec, body.part.period) = (spec, slot.policy.period);
-        }
-        if has_failed {
-            self.request(number, Request::Schedule { lasting: NEVER }, now);
-        }
-    }
-}
-
-impl Slot {
-    /// Sets a new specification.
-    fn renew(&mut self, spec: Arc<ComponentSpec>) {
-        self.policy = TaskPolicy::of(&spec);
-        self.spec = spec;
-    }
-
-    /// Reuses the slot of a removed component that returns.
-    fn revive(&mut self, spec: Arc<ComponentSpec>) {
-        self.renew(Arc::clone(&spec));
-        (self.state, self.held) = (SlotState::Idle, true);
-        (self.due, self.last_due, self.until) = (NEVER, None, NEVER);
-        if let Some(body) = &mut self.body {
-            (body.part.spec, body.part.period, body.part.held) = (spec, self.policy.period, true);
-        }
-    }
 }

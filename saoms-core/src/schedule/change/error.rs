@@ -3,8 +3,47 @@ use std::io;
 
 use saoms_api::Failure;
 
-use super::change::ChangeError;
-use super::realtime::RealtimeError;
+use crate::schedule::os::realtime::RealtimeError;
+
+/// Error of a change that was not made. The fleet is as it was.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ChangeError {
+    /// A component cannot end or be replaced now: its code runs, or it refused. A later try may succeed.
+    NotNow {
+        /// Its path.
+        component: String,
+        /// The reason.
+        why: String,
+    },
+    /// A new instance of a component cannot be constructed, initialized or restored.
+    Failed {
+        /// Its path.
+        component: String,
+        /// Its class.
+        class: String,
+        /// Its failure.
+        failure: Failure,
+    },
+    /// The fleet has no such component.
+    Unknown(String),
+    /// The run ends.
+    Ending,
+}
+
+impl fmt::Display for ChangeError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ChangeError::NotNow { component, why } => write!(formatter, "component `{component}`: {why}"),
+            ChangeError::Failed { component, class, failure } => {
+                write!(formatter, "component `{component}` of class `{class}` could not start: {failure}")
+            }
+            ChangeError::Unknown(component) => write!(formatter, "the fleet has no component `{component}`"),
+            ChangeError::Ending => formatter.write_str("the run ends"),
+        }
+    }
+}
+
+impl std::error::Error for ChangeError {}
 
 /// Error of a fleet that did not start. No part of it runs.
 #[derive(Debug)]

@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Heartbeat of the thread with the timer's work: its present state, written without locks and system calls, for the
 /// watching thread.
 #[derive(Debug)]
-pub(super) struct Pulse {
+pub(crate) struct Pulse {
     /// Counts the pieces of component code begun; a watcher that sees the same number twice sees the same piece.
     begun: AtomicU64,
     /// Start of the present piece, on the machine's clock; 0 is none.
@@ -16,13 +16,13 @@ pub(super) struct Pulse {
 
 /// State of the timer at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Present {
+pub(crate) struct Present {
     /// The number of the piece of component code that runs, or was the last to run.
-    pub(super) piece: u64,
+    pub(crate) piece: u64,
     /// Start of the piece, if it runs.
-    pub(super) since: Option<u64>,
+    pub(crate) since: Option<u64>,
     /// Time at which the timer woke or has to wake.
-    pub(super) next: u64,
+    pub(crate) next: u64,
 }
 
 impl Default for Pulse {
@@ -39,7 +39,7 @@ impl Default for Pulse {
 impl Pulse {
     /// Component code begins.
     #[inline]
-    pub(super) fn begin(&self, now: u64) {
+    pub(crate) fn begin(&self, now: u64) {
         // Only the thread with the timer's work writes, so that no read-modify-write is needed.
         self.begun.store(self.begun.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
         self.since.store(now.max(1), Ordering::Release);
@@ -47,17 +47,17 @@ impl Pulse {
 
     /// Component code has ended.
     #[inline]
-    pub(super) fn end(&self) {
+    pub(crate) fn end(&self) {
         self.since.store(0, Ordering::Release);
     }
 
     /// The timer is about to sleep, or has just woken and is awake from now on.
-    pub(super) fn awake_at(&self, time: u64) {
+    pub(crate) fn awake_at(&self, time: u64) {
         self.next.store(time, Ordering::Release);
     }
 
     /// The present state of the timer.
-    pub(super) fn present(&self) -> Present {
+    pub(crate) fn present(&self) -> Present {
         let since = self.since.load(Ordering::Acquire);
         Present {
             piece: self.begun.load(Ordering::Acquire),
@@ -66,18 +66,18 @@ impl Pulse {
         }
     }
 
-    pub(super) fn begun(&self) -> u64 {
+    pub(crate) fn begun(&self) -> u64 {
         self.begun.load(Ordering::Acquire)
     }
 
     /// The watcher is about to sleep.
-    pub(super) fn watch_from(&self, until: u64) {
+    pub(crate) fn watch_from(&self, until: u64) {
         self.watch.store(until, Ordering::SeqCst);
     }
 
     /// True if the watcher would wake too late for a piece that begins now, so that it has to be woken.
     #[inline]
-    pub(super) fn unwatched(&self, now: u64, budget: u64) -> bool {
+    pub(crate) fn unwatched(&self, now: u64, budget: u64) -> bool {
         now.saturating_add(budget) < self.watch.load(Ordering::Relaxed)
     }
 }

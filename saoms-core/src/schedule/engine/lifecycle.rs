@@ -1,20 +1,20 @@
 use std::sync::atomic::Ordering;
 
-use saoms_api::{Failure, Work};
+use saoms_api::Failure;
 
-use super::body::{Body, Job};
 use super::ending::EndCause;
-use super::engine::{Engine, RunPhase};
-use super::settings::nanos;
 use super::slot::{NEVER, SlotState, Wish};
 use super::trace::TraceStep;
+use super::{Engine, RunPhase};
 use crate::observe::Occurrence;
+use crate::schedule::component::body::{Body, Job};
+use crate::schedule::settings::nanos;
 use saoms_lang::assembly::Restart;
 
 /// Requests about a periodic component, at any time and from any thread. They take effect after the code that runs at
 /// present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Request {
+pub(crate) enum Request {
     /// Schedule it for this number of nanoseconds.
     Schedule { lasting: u64 },
     /// Unschedule it.
@@ -23,7 +23,7 @@ pub(super) enum Request {
 
 impl Engine {
     /// Notes a request.
-    pub(super) fn request(&mut self, index: u32, request: Request, now: u64) {
+    pub(crate) fn request(&mut self, index: u32, request: Request, now: u64) {
         let running = matches!(self.phase, RunPhase::Starting | RunPhase::Running);
         if !running || !self.slots[index as usize].policy.periodic {
             return;
@@ -91,7 +91,7 @@ impl Engine {
     }
 
     /// Schedules the next job of a component that is alive and whose code has just returned.
-    pub(super) fn resume(&mut self, index: u32, now: u64) {
+    pub(crate) fn resume(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         if self.phase == RunPhase::Stopping {
             self.ending.push_back(index);
@@ -110,7 +110,7 @@ impl Engine {
     }
 
     /// Handles the return of a component's initialization.
-    pub(super) fn started(&mut self, index: u32, now: u64) {
+    pub(crate) fn started(&mut self, index: u32, now: u64) {
         self.release_kept(index, now);
         let slot = &mut self.slots[index as usize];
         slot.state = SlotState::Active;
@@ -135,7 +135,7 @@ impl Engine {
     }
 
     /// Handles the end of a component's shutdown.
-    pub(super) fn left(&mut self, index: u32, now: u64) {
+    pub(crate) fn left(&mut self, index: u32, now: u64) {
         self.leave_topics(index, now);
         self.step(now, index, TraceStep::Left);
         let slot = &mut self.slots[index as usize];
@@ -156,7 +156,7 @@ impl Engine {
     }
 
     /// Handles the failure of a component in any job, by its policy.
-    pub(super) fn fail(&mut self, index: u32, body: &mut Body, job: Job, failure: Failure, now: u64) {
+    pub(crate) fn fail(&mut self, index: u32, body: &mut Body, job: Job, failure: Failure, now: u64) {
         // The journal keeps its records of the time before the failure.
         self.record(&mut body.part);
         let unsent = body.part.outbox.len();
@@ -232,18 +232,6 @@ impl Engine {
         }
     }
 
-    /// Removes the vote of a component that does not take part any more.
-    pub(super) fn forget_vote(&mut self, index: u32, now: u64) {
-        if self.phase != RunPhase::Running {
-            return;
-        }
-        if let Some(vote) = self.slots[index as usize].vote.take() {
-            self.votes.voters -= 1;
-            self.votes.done -= usize::from(vote == Work::Done);
-            self.end_if_done(now);
-        }
-    }
-
     /// Removes a failed instance from its topics, but keeps its read positions for the next instance.
     fn keep_subscriptions(&mut self, body: &mut Body) {
         for topic in body.part.publishers.drain(..) {
@@ -254,7 +242,7 @@ impl Engine {
     }
 
     /// Removes a component from all topics.
-    pub(super) fn leave_topics(&mut self, index: u32, now: u64) {
+    pub(crate) fn leave_topics(&mut self, index: u32, now: u64) {
         if let Some(mut body) = self.slots[index as usize].body.take() {
             self.keep_subscriptions(&mut body);
             self.release(index, &mut body, now);
@@ -270,7 +258,7 @@ impl Engine {
         }
     }
 
-    pub(super) fn release(&mut self, index: u32, body: &mut Body, now: u64) {
+    pub(crate) fn release(&mut self, index: u32, body: &mut Body, now: u64) {
         for kept in body.part.kept.drain(..) {
             let topic = self.bus.topic_of(&kept);
             let lost = self.bus.unsubscribe(kept);

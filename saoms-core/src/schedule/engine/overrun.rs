@@ -2,7 +2,7 @@ use saoms_lang::assembly::Overrun;
 
 /// The decision about an execution that is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Decision {
+pub(crate) enum Decision {
     /// It starts. The next one is due at `next`; `missed` ones are left out.
     Execute { next: u64, missed: u64 },
     /// The component stops, because `missed` executions would be left out.
@@ -14,7 +14,7 @@ pub(super) enum Decision {
 /// An execution is overrun when the next one is due before it starts. Executions that would be due from `limit` on, the
 /// end of the run, are not missed.
 #[inline]
-pub(super) fn decide(overrun: Overrun, due: u64, now: u64, period: u64, limit: u64) -> Decision {
+pub(crate) fn decide(overrun: Overrun, due: u64, now: u64, period: u64, limit: u64) -> Decision {
     let late = now.saturating_sub(due);
     let next = due.saturating_add(period);
     if late < period {

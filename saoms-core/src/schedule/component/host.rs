@@ -7,20 +7,20 @@ use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
 
 use super::body::Part;
-use super::inject::{OUTSIDE, OUTSIDE_NAME};
-use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
 use crate::report::Sections;
+use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
+use crate::schedule::shared::Shared;
 use saoms_lang::assembly::{ComponentSpec, TaskSettings, Wire};
 use saoms_lang::registry::{ClassDeclaration, ClassTopic, LoopDeclaration};
 use saoms_lang::schema::Schema;
 
 /// The host of a component while its code runs.
-pub(super) struct ComponentHost<'a> {
-    pub(super) shared: &'a Arc<Shared>,
-    pub(super) part: &'a mut Part,
+pub(crate) struct ComponentHost<'a> {
+    pub(crate) shared: &'a Arc<Shared>,
+    pub(crate) part: &'a mut Part,
 }
 
 /// Maximum number of targets of one reference that a handle can address.

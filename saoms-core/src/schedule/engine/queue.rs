@@ -3,22 +3,22 @@ use std::collections::BinaryHeap;
 
 /// Queue of due times: a heap of absolute times. Equal times are in document order.
 #[derive(Debug, Default)]
-pub(super) struct Queue {
+pub(crate) struct Queue {
     heap: BinaryHeap<Reverse<(u64, u32)>>,
 }
 
 impl Queue {
-    pub(super) fn push(&mut self, when: u64, component: u32) {
+    pub(crate) fn push(&mut self, when: u64, component: u32) {
         self.heap.push(Reverse((when, component)));
     }
 
     /// The earliest time in the queue.
-    pub(super) fn earliest(&self) -> Option<u64> {
+    pub(crate) fn earliest(&self) -> Option<u64> {
         self.heap.peek().map(|Reverse((when, _))| *when)
     }
 
     /// Takes the first entry, if it is due.
-    pub(super) fn pop_due(&mut self, now: u64) -> Option<(u64, u32)> {
+    pub(crate) fn pop_due(&mut self, now: u64) -> Option<(u64, u32)> {
         let Reverse((when, _)) = *self.heap.peek()?;
         if when > now {
             return None;
@@ -26,16 +26,16 @@ impl Queue {
         self.heap.pop().map(|Reverse(entry)| entry)
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.heap.len()
     }
 
     /// Removes the entries that are not valid any more.
-    pub(super) fn retain(&mut self, mut holds: impl FnMut(u64, u32) -> bool) {
+    pub(crate) fn retain(&mut self, mut holds: impl FnMut(u64, u32) -> bool) {
         self.heap.retain(|Reverse((when, component))| holds(*when, *component));
     }
 
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.heap.clear();
     }
 }

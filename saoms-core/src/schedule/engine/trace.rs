@@ -9,14 +9,14 @@ use crate::journal::Head;
 /// in CDR, a record of the journal as its digest, its loop and its cause. Two runs with the same digest did the same,
 /// on any machines.
 #[derive(Debug, Default)]
-pub(super) struct Trace {
+pub(crate) struct Trace {
     hash: u64,
     bytes: Vec<u8>,
 }
 
 /// Changes in the life of a component, as the trace counts them.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum TraceStep {
+pub(crate) enum TraceStep {
     Started = 1,
     Left = 2,
     Failed = 3,
@@ -24,11 +24,11 @@ pub(super) enum TraceStep {
 }
 
 impl Trace {
-    pub(super) fn step(&mut self, time: u64, component: u32, step: TraceStep) {
+    pub(crate) fn step(&mut self, time: u64, component: u32, step: TraceStep) {
         self.effect(time, component, step as u64);
     }
 
-    pub(super) fn message(&mut self, time: u64, component: u32, topic: u64, message: &SharedMessage) {
+    pub(crate) fn message(&mut self, time: u64, component: u32, topic: u64, message: &SharedMessage) {
         self.effect(time, component, topic);
         message.encode_into(&mut self.bytes);
         let (words, rest) = self.bytes.as_chunks::<8>();
@@ -41,7 +41,7 @@ impl Trace {
         self.hash = fold(self.hash, self.bytes.len() as u64);
     }
 
-    pub(super) fn record(&mut self, head: &Head) {
+    pub(crate) fn record(&mut self, head: &Head) {
         self.effect(head.time, head.component, head.fingerprint);
         self.hash = fold(fold(self.hash, u64::from(head.place)), head.cause.0);
     }
@@ -51,7 +51,7 @@ impl Trace {
     }
 
     /// The digest so far, as 16 hexadecimal digits.
-    pub(super) fn digits(&self) -> String {
+    pub(crate) fn digits(&self) -> String {
         format!("{:016x}", self.hash)
     }
 }

@@ -5,10 +5,10 @@ use saoms_api::host::contain::contained;
 use saoms_api::{Failure, Saved};
 use saoms_lang::assembly::ComponentSpec;
 
-use super::body::{Body, Part};
-use super::shared::Shared;
 use crate::bus::{Bus, TopicId, TopicReader};
 use crate::journal::Recorder;
+use crate::schedule::component::body::{Body, Part};
+use crate::schedule::shared::Shared;
 
 /// The outcome of a replacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub enum Takeover {
 
 /// Reasons of a takeover that was refused. The earlier instance goes on.
 #[derive(Debug)]
-pub(super) enum Refusal {
+pub(crate) enum Refusal {
     /// It may be possible later.
     NotNow(String),
     /// The new instance cannot be constructed, initialized or restored.
@@ -32,7 +32,7 @@ pub(super) enum Refusal {
 }
 
 /// The earlier instance after a takeover, kept until the change is committed.
-pub(super) struct Predecessor {
+pub(crate) struct Predecessor {
     instance: Box<dyn DynComponent>,
     ties: Ties,
 }
@@ -48,7 +48,7 @@ struct Ties {
 impl Body {
     /// Replaces the present instance: the new one is constructed, the present one [saves](saoms_api::Component::save)
     /// its state, and the new one initializes and restores it. After an error the present one stays.
-    pub(super) fn take_over(
+    pub(crate) fn take_over(
         &mut self,
         shared: &Arc<Shared>,
         spec: Arc<ComponentSpec>,
@@ -88,7 +88,7 @@ impl Body {
 
     /// Commits the takeover: the new instance gets the read positions of the earlier one; its other subscriptions are
     /// released.
-    pub(super) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) {
+    pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) {
         let Predecessor { instance, ties } = predecessor;
         let Ties { publishers, mut subscriptions, .. } = ties;
         let queue = self.part.spec.task.as_ref().map(|task| task.queue);
@@ -114,7 +114,7 @@ impl Body {
     }
 
     /// Undoes the takeover: the new instance is dropped.
-    pub(super) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) {
+    pub(crate) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) {
         self.discard();
         self.instance = Some(predecessor.instance);
         let part = &mut self.part;

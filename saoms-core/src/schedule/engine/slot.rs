@@ -3,64 +3,64 @@ use std::sync::atomic::AtomicBool;
 
 use saoms_api::Work;
 
-use super::body::Body;
 use super::overrun::{self, Decision};
-use super::settings::nanos;
 use crate::journal::Ring;
 use crate::report::Lateness;
+use crate::schedule::component::body::Body;
+use crate::schedule::settings::nanos;
 use saoms_lang::assembly::{ComponentSpec, Loss, Overrun, Restart};
 
 /// A time that never comes.
-pub(super) const NEVER: u64 = u64::MAX;
+pub(crate) const NEVER: u64 = u64::MAX;
 
 /// State of one component in the engine.
-pub(super) struct Slot {
+pub(crate) struct Slot {
     /// Body of the component; absent while its code runs.
-    pub(super) body: Option<Box<Body>>,
-    pub(super) state: SlotState,
+    pub(crate) body: Option<Box<Body>>,
+    pub(crate) state: SlotState,
     /// Specification of the component, the same as in its body.
-    pub(super) spec: Arc<ComponentSpec>,
+    pub(crate) spec: Arc<ComponentSpec>,
     /// True if its instance is part of a change that is not committed: it is not executed.
-    pub(super) held: bool,
+    pub(crate) held: bool,
     /// True if it has ever joined the fleet.
-    pub(super) joined: bool,
+    pub(crate) joined: bool,
     /// The time of its entry in the queue: an entry with another time does not hold any more.
-    pub(super) entry: u64,
+    pub(crate) entry: u64,
     /// Due time of the next execution.
-    pub(super) due: u64,
+    pub(crate) due: u64,
     /// Due time of the last execution.
-    pub(super) last_due: Option<u64>,
+    pub(crate) last_due: Option<u64>,
     /// Time at which it is unscheduled automatically.
-    pub(super) until: u64,
+    pub(crate) until: u64,
     /// Executions of the present instance.
-    pub(super) execution: u64,
+    pub(crate) execution: u64,
     /// Request that came while its code ran.
-    pub(super) wish: Wish,
+    pub(crate) wish: Wish,
     /// True if it became due while it served a call.
-    pub(super) waiting: bool,
+    pub(crate) waiting: bool,
     /// True if it is queued for the worker threads.
-    pub(super) queued: bool,
+    pub(crate) queued: bool,
     /// True if messages were lost in its last period.
-    pub(super) dropping: bool,
-    pub(super) apart: Apart,
-    pub(super) policy: TaskPolicy,
-    pub(super) vote: Option<Work>,
-    pub(super) statistics: Statistics,
-    pub(super) journal: Ring,
+    pub(crate) dropping: bool,
+    pub(crate) apart: Apart,
+    pub(crate) policy: TaskPolicy,
+    pub(crate) vote: Option<Work>,
+    pub(crate) statistics: Statistics,
+    pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
-    pub(super) condemned: Option<String>,
-    pub(super) name: Arc<str>,
-    pub(super) cancelled: Arc<AtomicBool>,
+    pub(crate) condemned: Option<String>,
+    pub(crate) name: Arc<str>,
+    pub(crate) cancelled: Arc<AtomicBool>,
     /// Number of instances so far.
-    pub(super) instances: u64,
-    pub(super) restarts: u32,
+    pub(crate) instances: u64,
+    pub(crate) restarts: u32,
     /// True if the next instance replaces a failed one.
-    pub(super) restarting: bool,
+    pub(crate) restarting: bool,
 }
 
 /// States of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SlotState {
+pub(crate) enum SlotState {
     /// It does not take part: not scheduled yet, or unscheduled.
     Idle,
     /// It will be constructed and initialized when its entry in the queue is due.
@@ -79,7 +79,7 @@ pub(super) enum SlotState {
 
 /// Request that came while the component's code was running.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wish {
+pub(crate) enum Wish {
     /// Nothing.
     None,
     /// Unschedule it.
@@ -90,12 +90,12 @@ pub(super) enum Wish {
 
 /// State of a component that runs on a worker thread, because it held up the others.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Apart {
-    pub(super) now: bool,
+pub(crate) struct Apart {
+    pub(crate) now: bool,
     /// Executions within the budget since it runs on a worker thread.
-    pub(super) well: u32,
+    pub(crate) well: u32,
     /// Number of such executions that bring it back to the timer; doubles each time.
-    pub(super) needed: u32,
+    pub(crate) needed: u32,
 }
 
 /// Initial number of executions within the budget that bring a component back to the timer.
@@ -104,13 +104,13 @@ const WELL_BEHAVED_AT_MOST: u32 = 1 << 20;
 
 impl Apart {
     /// Moves it to a worker thread, because it held up the others.
-    pub(super) fn send_away(&mut self) {
+    pub(crate) fn send_away(&mut self) {
         let needed = if self.needed == 0 { WELL_BEHAVED } else { self.needed.saturating_mul(2) };
         *self = Apart { now: true, well: 0, needed: needed.min(WELL_BEHAVED_AT_MOST) };
     }
 
     /// Counts an execution on a worker thread, within the budget or not.
-    pub(super) fn ran(&mut self, slow: bool) {
+    pub(crate) fn ran(&mut self, slow: bool) {
         self.well = if slow { 0 } else { self.well + 1 };
         self.now = self.well < self.needed;
     }
@@ -118,20 +118,20 @@ impl Apart {
 
 /// Task settings of the composite in the engine's units.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TaskPolicy {
-    pub(super) periodic: bool,
-    pub(super) on_startup: bool,
-    pub(super) interrupt: bool,
-    pub(super) period: u64,
-    pub(super) delay: u64,
-    pub(super) deadline: u64,
-    pub(super) overrun: Overrun,
-    pub(super) restart: Restart,
-    pub(super) loss: Loss,
+pub(crate) struct TaskPolicy {
+    pub(crate) periodic: bool,
+    pub(crate) on_startup: bool,
+    pub(crate) interrupt: bool,
+    pub(crate) period: u64,
+    pub(crate) delay: u64,
+    pub(crate) deadline: u64,
+    pub(crate) overrun: Overrun,
+    pub(crate) restart: Restart,
+    pub(crate) loss: Loss,
 }
 
 impl TaskPolicy {
-    pub(super) fn of(spec: &ComponentSpec) -> TaskPolicy {
+    pub(crate) fn of(spec: &ComponentSpec) -> TaskPolicy {
         match &spec.task {
             Some(task) => TaskPolicy {
                 periodic: true,
@@ -161,21 +161,21 @@ impl TaskPolicy {
 
 /// Statistics of a component for the report.
 #[derive(Debug, Default)]
-pub(super) struct Statistics {
-    pub(super) executions: u64,
-    pub(super) missed: u64,
-    pub(super) deadline_misses: u64,
-    pub(super) slow: u64,
-    pub(super) failures: u64,
-    pub(super) replaced: u32,
-    pub(super) dropped: u64,
-    pub(super) sent: u64,
-    pub(super) received: u64,
-    pub(super) late: Lateness,
+pub(crate) struct Statistics {
+    pub(crate) executions: u64,
+    pub(crate) missed: u64,
+    pub(crate) deadline_misses: u64,
+    pub(crate) slow: u64,
+    pub(crate) failures: u64,
+    pub(crate) replaced: u32,
+    pub(crate) dropped: u64,
+    pub(crate) sent: u64,
+    pub(crate) received: u64,
+    pub(crate) late: Lateness,
 }
 
 impl Slot {
-    pub(super) fn new(index: u32, spec: Arc<ComponentSpec>) -> Slot {
+    pub(crate) fn new(index: u32, spec: Arc<ComponentSpec>) -> Slot {
         let name: Arc<str> = Arc::from(spec.path.as_str());
         let policy = TaskPolicy::of(&spec);
         let cancelled = Arc::new(AtomicBool::new(false));
@@ -212,17 +212,17 @@ impl Slot {
 
     /// The decision about its execution that is due.
     #[inline]
-    pub(super) fn decide(&self, now: u64, limit: u64) -> Decision {
+    pub(crate) fn decide(&self, now: u64, limit: u64) -> Decision {
         overrun::decide(self.policy.overrun, self.due, now, self.policy.period, limit)
     }
 
     /// True if it is part of the fleet, or is about to be.
-    pub(super) fn is_member(&self) -> bool {
+    pub(crate) fn is_member(&self) -> bool {
         self.state != SlotState::Removed
     }
 
     /// True if it is scheduled, or about to be.
-    pub(super) fn is_scheduled(&self) -> bool {
+    pub(crate) fn is_scheduled(&self) -> bool {
         match self.state {
             SlotState::Starting | SlotState::Active => self.wish != Wish::Leave,
             SlotState::Leaving => matches!(self.wish, Wish::Return { .. }),
@@ -231,7 +231,7 @@ impl Slot {
     }
 
     /// True if its instance is initialized and not shut down.
-    pub(super) fn is_alive(&self) -> bool {
+    pub(crate) fn is_alive(&self) -> bool {
         matches!(self.state, SlotState::Active | SlotState::Leaving)
     }
 }

@@ -1,0 +1,200 @@
+use std::sync::Arc;
+
+use saoms_lang::assembly::ComponentSpec;
+
+use super::takeover::{Predecessor, Takeover};
+use crate::journal::ComponentName;
+use crate::observe::Occurrence;
+use crate::schedule::component::body::Body;
+use crate::schedule::engine::lifecycle::Request;
+use crate::schedule::engine::slot::{NEVER, Slot, SlotState, TaskPolicy, Wish};
+use crate::schedule::engine::trace::TraceStep;
+use crate::schedule::engine::{Engine, RunPhase};
+use crate::schedule::shared::Shared;
+
+impl Engine {
+    /// The specifications of the fleet by their numbers.
+    pub(super) fn specs(&self) -> Vec<Option<Arc<ComponentSpec>>> {
+        self.slots.iter().map(|slot| slot.is_member().then(|| Arc::clone(&slot.spec))).collect()
+    }
+
+    /// The time at which a change happens.
+    pub(super) fn time_of_change(&self, shared: &Shared) -> u64 {
+        if self.phase == RunPhase::Starting { 0 } else { shared.clock.now() }
+    }
+
+    /// The numbers of new components. A removed component that returns gets its number again.
+    pub(super) fn number<'s>(&self, specs: impl Iterator<Item = &'s Arc<ComponentSpec>>) -> Vec<u32> {
+        let mut next = self.slots.len() as u32;
+        let number = |spec: &Arc<ComponentSpec>| {
+            let known = self.numbers.get(spec.path.as_str()).copied();
+            known.filter(|number| !self.slots[*number as usize].is_member()).unwrap_or_else(|| {
+                next += 1;
+                next - 1
+            })
+        };
+        specs.map(number).collect()
+    }
+
+    /// Makes slots for new components.
+    pub(super) fn prepare(
+        &mut self,
+        shared: &Shared,
+        specs: impl Iterator<Item = Arc<ComponentSpec>>,
+        numbers: &[u32],
+    ) {
+        let mut names = Vec::new();
+        for (spec, &number) in specs.zip(numbers) {
+            if let Some(slot) = self.slots.get_mut(number as usize) {
+                slot.revive(spec);
+                continue;
+            }
+            if let Some(records) = &self.records {
+                records.join(ComponentName::of(&spec), self.phase != RunPhase::Starting);
+            }
+            let slot = Slot::new(number, spec);
+            names.push(Arc::clone(&slot.name));
+            self.numbers.insert(Arc::clone(&slot.name), number);
+            self.slots.push(slot);
+        }
+        shared.names.add(names);
+        if self.phase == RunPhase::Starting {
+            self.journal_capacity /= self.slots.len().max(1);
+        }
+    }
+
+    /// Takes a body out, as for a call.
+    pub(super) fn take(&mut self, number: u32) -> Option<Box<Body>> {
+        let body = self.slots[number as usize].body.take()?;
+        self.out += 1;
+        Some(body)
+    }
+
+    /// Gives a body back.
+    pub(super) fn put_back(&mut self, number: u32, body: Box<Body>) {
+        if self.is_abandoned(number) {
+            // It was abandoned, and its destructor may block as its code did: it is leaked.
+            std::mem::forget(body);
+            return;
+        }
+        self.came_back();
+        self.slots[number as usize].body = Some(body);
+    }
+
+    /// Gives back the body of a component that goes on as before.
+    pub(super) fn return_unchanged(&mut self, number: u32, body: Box<Body>, now: u64) {
+        self.slots[number as usize].held = false;
+        self.put_back(number, body);
+        if self.slots[number as usize].is_alive() {
+            self.resume(number, now);
+        }
+    }
+
+    /// Removes a component from the fleet.
+    pub(super) fn forget(&mut self, number: u32) {
+        let slot = &mut self.slots[number as usize];
+        if slot.state != SlotState::Abandoned {
+            slot.state = SlotState::Removed;
+            (slot.entry, slot.wish, slot.vote) = (NEVER, Wish::None, None);
+        }
+    }
+
+    pub(super) fn take_vote(&mut self, number: u32, now: u64) {
+        let body = self.slots[number as usize].body.as_mut();
+        if let Some(vote) = body.and_then(|body| body.part.vote.take()) {
+            self.note_vote(number, vote, now);
+        }
+    }
+
+    /// Adds a new component to the fleet: its messages are delivered, and its first execution is scheduled.
+    pub(super) fn join(&mut self, number: u32, now: u64) {
+        let slot = &mut self.slots[number as usize];
+        (slot.joined, slot.held) = (true, false);
+        let is_active = slot.state == SlotState::Active;
+        let Some(mut body) = slot.body.take() else { return };
+        body.part.held = false;
+        if is_active {
+            self.deliver(&mut body.part, now);
+            self.step(now, number, TraceStep::Started);
+            self.tell(now, number, Occurrence::Started);
+        }
+        let slot = &mut self.slots[number as usize];
+        slot.body = Some(body);
+        if is_active && slot.policy.periodic {
+            slot.due = now.saturating_add(slot.policy.delay);
+            let when = slot.due.min(slot.until);
+            match slot.wish {
+                Wish::None => self.enqueue(number, when),
+                Wish::Leave | Wish::Return { .. } => self.resume(number, now),
+            }
+        } else if std::mem::take(&mut slot.waiting) {
+            self.enqueue(number, now);
+        }
+    }
+
+    pub(super) fn commit_takeover(
+        &mut self,
+        number: u32,
+        predecessor: Predecessor,
+        done: Takeover,
+        now: u64,
+    ) {
+        let Some(mut body) = self.slots[number as usize].body.take() else { return };
+        body.inherit(&mut self.bus, predecessor);
+        self.release(number, &mut body, now);
+        self.deliver(&mut body.part, now);
+        let vote = body.part.vote.take();
+        let slot = &mut self.slots[number as usize];
+        let period = slot.policy.period;
+        slot.renew(Arc::clone(&body.part.spec));
+        body.part.period = slot.policy.period;
+        slot.body = Some(body);
+        slot.held = false;
+        slot.statistics.replaced += 1;
+        self.tell(now, number, Occurrence::Replaced { continued: done == Takeover::Continued });
+        if let Some(vote) = vote {
+            self.note_vote(number, vote, now);
+        }
+        let slot = &mut self.slots[number as usize];
+        // A new period counts from the last execution.
+        if let Some(last) = slot.last_due.filter(|_| slot.policy.period != period) {
+            slot.due = last.saturating_add(slot.policy.period).max(now);
+            if slot.entry != NEVER {
+                let when = slot.due.min(slot.until);
+                self.enqueue(number, when);
+            }
+        }
+        self.resume(number, now);
+    }
+
+    /// Sets the specification that a component which does not run has from its next start on.
+    pub(super) fn await_spec(&mut self, number: u32, spec: Arc<ComponentSpec>, now: u64) {
+        let slot = &mut self.slots[number as usize];
+        slot.renew(Arc::clone(&spec));
+        let has_failed = slot.state == SlotState::Failed;
+        if let Some(body) = &mut slot.body {
+            (body.part.spec, body.part.period) = (spec, slot.policy.period);
+        }
+        if has_failed {
+            self.request(number, Request::Schedule { lasting: NEVER }, now);
+        }
+    }
+}
+
+impl Slot {
+    /// Sets a new specification.
+    pub(super) fn renew(&mut self, spec: Arc<ComponentSpec>) {
+        self.policy = TaskPolicy::of(&spec);
+        self.spec = spec;
+    }
+
+    /// Reuses the slot of a removed component that returns.
+    pub(super) fn revive(&mut self, spec: Arc<ComponentSpec>) {
+        self.renew(Arc::clone(&spec));
+        (self.state, self.held) = (SlotState::Idle, true);
+        (self.due, self.last_due, self.until) = (NEVER, None, NEVER);
+        if let Some(body) = &mut self.body {
+            (body.part.spec, body.part.period, body.part.held) = (spec, self.policy.period, true);
+        }
+    }
+}

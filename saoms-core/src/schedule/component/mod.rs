@@ -1,0 +1,5 @@
+//! One component between the engine and its own code: its body, the host of its context, and calls to others.
+
+pub(super) mod body;
+mod call;
+mod host;

@@ -1,0 +1,91 @@
+use std::sync::Arc;
+
+use saoms_api::Time;
+use saoms_api::host::SharedMessage;
+use saoms_lang::assembly::Loss;
+
+use super::{Engine, RunPhase};
+use crate::bus::TopicId;
+use crate::fault::MessageFaultKind;
+use crate::observe::{News, Occurrence, SentMessage};
+use crate::schedule::component::body::Part;
+use crate::schedule::settings::nanos;
+
+impl Engine {
+    /// Takes over the journal records of a component.
+    #[inline]
+    pub(crate) fn record(&mut self, part: &mut Part) {
+        let recorder = &mut part.recorder;
+        if recorder.is_empty() {
+            return;
+        }
+        if let Some(trace) = &mut self.trace {
+            for head in recorder.batch.heads() {
+                trace.record(head);
+            }
+        }
+        if let Some(records) = &self.records {
+            records.put(part.index, recorder);
+        }
+        self.slots[part.index as usize].journal.take(recorder, self.journal_capacity);
+    }
+
+    /// Publishes the messages of an outbox, and takes over its records. At the end of a run messages have no reader any
+    /// more, so that no queue can overflow.
+    #[inline]
+    pub(crate) fn deliver(&mut self, part: &mut Part, now: u64) {
+        self.record(part);
+        self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
+        for (topic, message) in part.outbox.drain(..) {
+            if let Some(trace) = &mut self.trace {
+                trace.message(now, part.index, self.bus.name_hash(topic), &message);
+            }
+            if let Some(observers) = self.bus.observers(topic) {
+                let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(&part.name));
+                let sent = SentMessage { topic, component, message: message.clone() };
+                self.news.push(News::Sent(sent, Arc::clone(observers)));
+            }
+            if self.phase == RunPhase::Running {
+                if self.faults.is_empty() {
+                    self.bus.publish(topic, message);
+                } else {
+                    self.publish_with_faults(topic, message, now);
+                }
+            }
+        }
+    }
+
+    /// Publishes a message, or applies its injected fault.
+    #[cold]
+    fn publish_with_faults(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
+        match self.faults.of_message(self.bus.name(topic), Time::from_nanos(now)) {
+            Some(MessageFaultKind::Lost) => {}
+            Some(MessageFaultKind::Late(time)) => {
+                let when = now.saturating_add(nanos(time));
+                self.injections.hold_up(when, topic, message);
+                self.wake |= when < self.roles.asleep_until;
+            }
+            Some(MessageFaultKind::Duplicated) => {
+                self.bus.publish(topic, message.clone());
+                self.bus.publish(topic, message);
+            }
+            None => self.bus.publish(topic, message),
+        }
+    }
+
+    /// Counts messages that did not fit into a queue.
+    pub(crate) fn dropped(&mut self, index: u32, topic: &Arc<str>, count: u64, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        if slot.statistics.dropped == 0 && slot.policy.loss == Loss::Fail {
+            self.reasons.push(format!(
+                "component `{}` lost messages of topic `{topic}`, whose queue was full: read faster, give it a longer `queue`, \
+                 or accept loss",
+                slot.name
+            ));
+        }
+        slot.statistics.dropped += count;
+        if !std::mem::replace(&mut slot.dropping, true) {
+            self.tell(now, index, Occurrence::Dropped { topic: Arc::clone(topic), count });
+        }
+    }
+}

@@ -1,0 +1,78 @@
+use std::sync::atomic::Ordering;
+
+use super::slot::SlotState;
+use super::{Engine, RunPhase};
+use crate::assemble::ChangePlan;
+use crate::observe::Occurrence;
+use crate::schedule::os::sys;
+
+/// Causes of the end of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EndCause {
+    /// All voters see no work left.
+    Done,
+    /// The time given for the run is over.
+    Elapsed,
+    /// A stop was requested.
+    Interrupted,
+    /// No component is left that could go on.
+    Lost,
+    /// No component is scheduled, and in virtual time none ever will be.
+    Idle,
+}
+
+impl Engine {
+    /// Begins the end of the run: every component that is alive is asked to end early and will shut down.
+    pub(crate) fn begin_stop(&mut self, cause: EndCause, now: u64) {
+        if self.phase != RunPhase::Running {
+            return;
+        }
+        self.phase = RunPhase::Stopping;
+        self.cause = Some(cause);
+        self.ended = (now, sys::monotonic());
+        self.queue.clear();
+        self.injections.clear();
+        self.roles.work.clear();
+        self.wake = true;
+        for slot in &mut self.slots {
+            slot.queued = false;
+            slot.cancelled.store(true, Ordering::Relaxed);
+        }
+        // The end of a run is the change to a fleet without components.
+        let members: Vec<_> = self.slots.iter().map(|slot| slot.is_member().then_some(&*slot.spec)).collect();
+        self.ending =
+            ChangePlan::between(&members, &[]).remove.into_iter().map(|number| number as u32).collect();
+    }
+
+    /// Ends the run after a fault of the engine itself.
+    pub(crate) fn break_down(&mut self) {
+        self.phase = RunPhase::Ended;
+        self.reasons.push("a fault of the program itself, told on standard error, ended the run".to_owned());
+    }
+
+    /// The next component that has to shut down. A component whose code runs follows when the code returns.
+    pub(crate) fn next_to_end(&mut self) -> Option<u32> {
+        while let Some(index) = self.ending.pop_front() {
+            let slot = &mut self.slots[index as usize];
+            if slot.body.is_some() && slot.is_alive() {
+                slot.state = SlotState::Leaving;
+                return Some(index);
+            }
+        }
+        None
+    }
+
+    /// Gives up the components whose code does not return. `why` completes "component X".
+    pub(crate) fn abandon(&mut self, only: Option<u32>, why: &str, now: u64) {
+        for index in 0..self.slots.len() as u32 {
+            let slot = &mut self.slots[index as usize];
+            let stuck = slot.body.is_none() && slot.state != SlotState::Abandoned;
+            if stuck && only.is_none_or(|only| only == index) {
+                slot.state = SlotState::Abandoned;
+                self.reasons.push(format!("component `{}` {why}", slot.name));
+                self.came_back();
+                self.tell(now, index, Occurrence::Abandoned);
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use saoms_api::{Chance, Failure, Time};
+
+use super::overrun::Decision;
+use super::slot::{SlotState, Wish};
+use super::{Engine, RunPhase};
+use crate::hash::fold;
+use crate::observe::Occurrence;
+use crate::schedule::component::body::{Body, Job};
+
+impl Engine {
+    /// The job of a component that is due.
+    pub(crate) fn job(&mut self, index: u32, now: u64) -> Option<Job> {
+        let slot = &mut self.slots[index as usize];
+        match slot.state {
+            SlotState::Starting => Some(Job::Start),
+            SlotState::Leaving => Some(Job::Shutdown),
+            SlotState::Active if now >= slot.until => {
+                slot.state = SlotState::Leaving;
+                Some(Job::Shutdown)
+            }
+            SlotState::Active if now < slot.due => {
+                let when = slot.due.min(slot.until);
+                self.enqueue(index, when);
+                None
+            }
+            SlotState::Active => match slot.decide(now, self.limit) {
+                Decision::Stop { missed } => {
+                    self.condemn(index, missed, now);
+                    Some(Job::Shutdown)
+                }
+                Decision::Execute { .. } => Some(Job::Execute),
+            },
+            SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => None,
+        }
+    }
+
+    /// Stops a component whose executions could not start in time, as its `overrun` demands.
+    fn condemn(&mut self, index: u32, missed: u64, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        slot.statistics.missed += missed;
+        slot.state = SlotState::Leaving;
+        slot.wish = Wish::None;
+        let what = Occurrence::Overrun { missed };
+        slot.condemned = Some(format!("component `{}` {what}", slot.name));
+        self.tell(now, index, what);
+    }
+
+    /// Takes a component's body for a job.
+    pub(crate) fn begin(&mut self, index: u32, job: Job, now: u64) -> Option<Box<Body>> {
+        let slot = &mut self.slots[index as usize];
+        let mut body = slot.body.take()?;
+        self.out += 1;
+        body.part.now = now;
+        match job {
+            Job::Execute => self.begin_execution(index, &mut body, now),
+            Job::Shutdown => body.part.due = now,
+            Job::Start => {
+                let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
+                slot.instances += 1;
+                slot.execution = 0;
+                slot.cancelled.store(false, Ordering::Relaxed);
+                body.part.chance = Chance::for_component(seed, &slot.name);
+                body.part.due = now;
+                body.part.execution = 0;
+            }
+        }
+        Some(body)
+    }
+
+    fn begin_execution(&mut self, index: u32, body: &mut Body, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        let (due, part) = (slot.due, &mut body.part);
+        if self.real {
+            slot.statistics.late.record(now.saturating_sub(due));
+        }
+        if let Decision::Execute { next, missed } = slot.decide(now, self.limit) {
+            slot.due = next;
+            slot.statistics.missed += missed;
+        }
+        slot.last_due = Some(due);
+        part.due = due;
+        if !self.faults.is_empty() {
+            part.fault = self.faults.take_of_execution(&slot.name, Time::from_nanos(now));
+        }
+        part.execution = slot.execution;
+        slot.execution += 1;
+        slot.statistics.executions += 1;
+        // Only the holder of the lock writes.
+        self.executions.store(self.executions.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+        let mut lost = None;
+        for (subscription, inbox) in part.subscriptions.iter_mut().zip(&mut body.inboxes) {
+            let missing = self.bus.collect(subscription, inbox);
+            slot.statistics.received += inbox.len() as u64;
+            if missing > 0 {
+                let (topic, before) = lost.unwrap_or((self.bus.topic_of(subscription), 0));
+                lost = Some((topic, before + missing));
+            }
+        }
+        match lost {
+            None => slot.dropping = false,
+            Some((topic, count)) => {
+                let topic = Arc::clone(self.bus.name(topic));
+                self.dropped(index, &topic, count, now);
+            }
+        }
+    }
+
+    /// Gives a component's body back after a job.
+    pub(crate) fn finish(
+        &mut self,
+        index: u32,
+        mut body: Box<Body>,
+        job: Job,
+        result: Result<(), Failure>,
+        started: u64,
+        ended: u64,
+    ) {
+        if self.is_abandoned(index) {
+            // It was abandoned, and its destructor may block as its code did: it is leaked.
+            std::mem::forget(body);
+            return;
+        }
+        self.came_back();
+        let slot = &mut self.slots[index as usize];
+        if job == Job::Execute && self.real {
+            let slow = ended.saturating_sub(started) > self.budget;
+            slot.statistics.slow += u64::from(slow);
+            if slot.apart.now {
+                slot.apart.ran(slow);
+            }
+            if ended > body.part.due.saturating_add(slot.policy.deadline) {
+                slot.statistics.deadline_misses += 1;
+            }
+        }
+        match result {
+            Err(failure) => {
+                self.fail(index, &mut body, job, failure, ended);
+                self.slots[index as usize].body = Some(body);
+            }
+            Ok(()) => {
+                let held = body.part.held;
+                if !held {
+                    self.deliver(&mut body.part, ended);
+                }
+                let vote = body.part.vote.take_if(|_| !held);
+                if job == Job::Start {
+                    body.inboxes.resize_with(body.part.subscriptions.len(), Vec::new);
+                }
+                self.slots[index as usize].body = Some(body);
+                if let Some(vote) = vote {
+                    self.vote(index, vote, ended);
+                }
+                match job {
+                    Job::Execute => self.executed(index, ended),
+                    Job::Start => self.started(index, ended),
+                    Job::Shutdown => self.left(index, ended),
+                }
+            }
+        }
+    }
+
+    /// Notes that a body has returned. At the end of a run the timer may wait for it.
+    pub(crate) fn came_back(&mut self) {
+        self.out -= 1;
+        self.has_returned |= self.awaited > 0;
+        self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
+    }
+
+    fn executed(&mut self, index: u32, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        slot.waiting = false;
+        if self.phase == RunPhase::Running && slot.wish == Wish::None {
+            let when = slot.due.min(slot.until).max(now);
+            self.enqueue(index, when);
+        } else {
+            self.resume(index, now);
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The state of a run and every change to it. The engine runs no component code and starts no thread.
+
+mod delivery;
+pub(super) mod ending;
+mod execution;
+pub(super) mod lifecycle;
+mod overrun;
+pub(super) mod queue;
+mod report;
+pub(super) mod slot;
+pub(super) mod trace;
+mod votes;
+
+use std::collections::{HashMap, VecDeque};
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+
+use saoms_api::{Failure, Time};
+
+use self::ending::EndCause;
+use self::queue::Queue;
+use self::slot::{NEVER, Slot, SlotState};
+use self::trace::{Trace, TraceStep};
+use self::votes::VoteTally;
+use super::component::body::Job;
+use super::inject::Injections;
+use super::settings::{ClockKind, Settings, nanos};
+use crate::bus::Bus;
+use crate::fault::Faults;
+use crate::journal::{OutsideRing, RecordQueue};
+use crate::observe::{News, Occurrence, RunEvent};
+
+/// The state of a run: due times, states of components, topics. It runs no component code itself; a driving thread
+/// takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the
+/// body back with [`finish`](Engine::finish).
+pub(crate) struct Engine {
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) queue: Queue,
+    pub(crate) bus: Bus,
+    pub(crate) phase: RunPhase,
+    pub(crate) roles: Roles,
+    /// Events for the observers, delivered when the lock is free.
+    pub(crate) news: Vec<News>,
+    /// True if the sleeping timer has to be woken.
+    pub(crate) wake: bool,
+    pub(crate) trace: Option<Trace>,
+    /// Records for the observers of the journal; `None` without such observers.
+    pub(crate) records: Option<Arc<RecordQueue>>,
+    /// Number of records that are kept for each component.
+    pub(crate) journal_capacity: usize,
+    /// Records that did not reach those observers.
+    pub(crate) lost_records: u64,
+    /// Executions of all components.
+    pub(crate) executions: Arc<AtomicU64>,
+    /// Number of bodies whose code runs.
+    pub(crate) out: usize,
+    /// Number of threads that wait for a body to return, and whether one has returned.
+    pub(crate) awaited: usize,
+    pub(crate) has_returned: bool,
+    /// Components that still have to shut down, once the run ends.
+    pub(crate) ending: VecDeque<u32>,
+    /// Messages from outside, and those that faults hold up.
+    pub(crate) injections: Injections,
+    /// The newest records of messages from outside.
+    pub(crate) outside: OutsideRing,
+    /// Counter of the journal's records.
+    pub(crate) record_ids: Arc<AtomicU64>,
+    pub(crate) faults: Faults,
+    /// The number of each component, by its path.
+    pub(crate) numbers: HashMap<Arc<str>, u32>,
+    /// The component of a change that failed in a call, before the change was committed.
+    pub(crate) held_failure: Option<(u32, Failure)>,
+    pub(crate) cause: Option<EndCause>,
+    pub(crate) reasons: Vec<String>,
+    /// Beginning of the end, in the time of the run and on the machine's clock.
+    pub(crate) ended: (u64, u64),
+    pub(crate) votes: VoteTally,
+    /// Latest end of the run.
+    pub(crate) limit: u64,
+    /// Time up to which virtual time may advance for now.
+    pub(crate) pause: u64,
+    pub(crate) real: bool,
+    pub(crate) budget: u64,
+    pub(crate) seed: u64,
+}
+
+/// Phases of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RunPhase {
+    /// Components initialize; their messages are held back.
+    Starting,
+    /// Time advances and components execute.
+    Running,
+    /// Components shut down.
+    Stopping,
+    /// The run is over.
+    Ended,
+}
+
+/// Roles of the threads.
+#[derive(Debug, Default)]
+pub(crate) struct Roles {
+    /// The number of the thread that does the timer's work: it changes when another takes over.
+    pub(crate) timer: u64,
+    /// The kernel's number of that thread.
+    pub(crate) thread: i32,
+    /// Component whose code that thread runs.
+    pub(crate) running: Option<u32>,
+    /// Time until which it sleeps; 0 while it is awake.
+    pub(crate) asleep_until: u64,
+    /// Components for the worker threads.
+    pub(crate) work: VecDeque<u32>,
+    pub(crate) workers: usize,
+    pub(crate) idle_workers: usize,
+}
+
+/// Next action of the timer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Next {
+    /// Run this job of this component.
+    Run(u32, Job),
+    /// Hand work over to a worker thread.
+    HandOver,
+    /// Sleep until this time.
+    Wait(u64),
+    /// The run is over.
+    Ended,
+}
+
+impl Engine {
+    pub(crate) fn new(settings: &Settings) -> Engine {
+        Engine {
+            slots: Vec::new(),
+            queue: Queue::default(),
+            bus: Bus::default(),
+            phase: RunPhase::Starting,
+            roles: Roles::default(),
+            news: Vec::new(),
+            wake: false,
+            trace: (settings.clock == ClockKind::Virtual).then(Trace::default),
+            records: None,
+            journal_capacity: settings.journal,
+            lost_records: 0,
+            executions: Arc::default(),
+            out: 0,
+            awaited: 0,
+            has_returned: false,
+            ending: VecDeque::new(),
+            injections: Injections::default(),
+            outside: OutsideRing::default(),
+            record_ids: Arc::default(),
+            faults: settings.faults.clone(),
+            numbers: HashMap::new(),
+            held_failure: None,
+            cause: None,
+            reasons: Vec::new(),
+            ended: (0, 0),
+            votes: VoteTally::default(),
+            limit: settings.limit.map_or(NEVER, nanos),
+            pause: 0,
+            real: settings.clock == ClockKind::Real,
+            budget: nanos(settings.budget),
+            seed: settings.seed,
+        }
+    }
+
+    /// The action at this time.
+    pub(crate) fn next(&mut self, now: u64) -> Next {
+        loop {
+            match self.phase {
+                RunPhase::Running => {
+                    // Executions due before the limit still run, however late.
+                    if now >= self.limit && self.earliest().is_none_or(|when| when >= self.limit) {
+                        self.begin_stop(EndCause::Elapsed, self.limit);
+                        continue;
+                    }
+                    if self.injections.earliest().is_some_and(|when| when <= now && when < self.limit) {
+                        self.deliver_injections(now);
+                        continue;
+                    }
+                    let Some((when, index)) = self.queue.pop_due(now) else {
+                        return Next::Wait(self.earliest().unwrap_or(NEVER).min(self.limit));
+                    };
+                    let slot = &mut self.slots[index as usize];
+                    if slot.entry != when {
+                        continue;
+                    }
+                    slot.entry = NEVER;
+                    if slot.body.is_none() || slot.held {
+                        slot.waiting = true;
+                    } else if slot.apart.now {
+                        slot.queued = true;
+                        self.roles.work.push_back(index);
+                        return Next::HandOver;
+                    } else if let Some(job) = self.job(index, now) {
+                        return Next::Run(index, job);
+                    }
+                }
+                RunPhase::Stopping => match self.next_to_end() {
+                    Some(index) => return Next::Run(index, Job::Shutdown),
+                    None if self.out == 0 => self.phase = RunPhase::Ended,
+                    None => return Next::Wait(NEVER),
+                },
+                RunPhase::Starting => return Next::Wait(NEVER),
+                RunPhase::Ended => return Next::Ended,
+            }
+        }
+    }
+
+    /// The earliest due time.
+    fn earliest(&self) -> Option<u64> {
+        self.queue.earliest().into_iter().chain(self.injections.earliest()).min()
+    }
+
+    pub(crate) fn is_abandoned(&self, index: u32) -> bool {
+        self.slots[index as usize].state == SlotState::Abandoned
+    }
+
+    /// Puts a component into the queue.
+    pub(crate) fn enqueue(&mut self, index: u32, when: u64) {
+        self.slots[index as usize].entry = when;
+        self.queue.push(when, index);
+        self.wake |= when < self.roles.asleep_until;
+        if self.queue.len() > 2 * self.slots.len() + 64 {
+            let slots = &self.slots;
+            self.queue.retain(|when, index| slots[index as usize].entry == when);
+        }
+    }
+
+    /// Queues an event about a component for the observers.
+    pub(crate) fn tell(&mut self, now: u64, index: u32, what: Occurrence) {
+        let component = Some(Arc::clone(&self.slots[index as usize].name));
+        self.news.push(RunEvent { time: Time::from_nanos(now), component, what }.into());
+    }
+
+    pub(crate) fn step(&mut self, now: u64, index: u32, step: TraceStep) {
+        if let Some(trace) = &mut self.trace {
+            trace.step(now, index, step);
+        }
+    }
+}

@@ -1,0 +1,77 @@
+use super::Engine;
+use super::ending::EndCause;
+use super::trace::Trace;
+use crate::journal::Journal;
+use crate::report::{
+    ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes,
+};
+
+impl Engine {
+    /// The report of a run that has ended.
+    pub(crate) fn report(&self, sections: &Sections) -> RunReport {
+        RunReport {
+            seed: self.seed,
+            time_s: self.ended.0 as f64 / 1e9,
+            periods: self.slots.iter().map(|slot| slot.statistics.executions).sum(),
+            sections: sections.to_json(),
+            components: self.components(),
+            journal: self.journal(),
+            votes: self.votes_report(),
+            outcome: self.outcome(),
+            trace_hash: self.trace.as_ref().map(Trace::digits),
+        }
+    }
+
+    fn journal(&self) -> Journal {
+        let rings = self.slots.iter().filter(|slot| slot.joined).map(|slot| (&slot.name, &slot.journal));
+        let mut journal = Journal::of_rings(rings, &self.outside);
+        journal.lost = self.lost_records;
+        journal
+    }
+
+    fn components(&self) -> Vec<ComponentReport> {
+        // All components that ever joined the fleet.
+        let joined = self.slots.iter().filter(|slot| slot.joined);
+        joined
+            .map(|slot| {
+                let (spec, statistics) = (&slot.spec, &slot.statistics);
+                ComponentReport {
+                    name: spec.path.clone(),
+                    id: spec.task.as_ref().map(|task| task.id.clone()),
+                    class: spec.class.name().to_owned(),
+                    executions: statistics.executions,
+                    missed: statistics.missed,
+                    late_us: if self.real { statistics.late.summary() } else { LatenessSummary::default() },
+                    deadline_misses: statistics.deadline_misses,
+                    slow: statistics.slow,
+                    restarts: slot.restarts,
+                    replaced: slot.statistics.replaced,
+                    failures: statistics.failures,
+                    dropped: statistics.dropped,
+                    messages: MessageCounts { sent: statistics.sent, received: statistics.received },
+                }
+            })
+            .collect()
+    }
+
+    fn votes_report(&self) -> Votes {
+        let open = self.slots.iter().filter(|slot| slot.vote == Some(saoms_api::Work::Open));
+        Votes { done: self.votes.done as u64, open: open.map(|slot| slot.name.to_string()).collect() }
+    }
+
+    fn outcome(&self) -> Outcome {
+        let mut reasons = self.reasons.clone();
+        let status = match self.cause {
+            Some(EndCause::Interrupted) => RunStatus::Interrupted,
+            _ if !reasons.is_empty() => RunStatus::Failed,
+            Some(EndCause::Elapsed) => RunStatus::Elapsed,
+            Some(EndCause::Idle) => {
+                reasons
+                    .push("no component is scheduled, and in virtual time nothing else happens".to_owned());
+                RunStatus::Done
+            }
+            Some(EndCause::Done | EndCause::Lost) | None => RunStatus::Done,
+        };
+        Outcome { status, reasons }
+    }
+}
