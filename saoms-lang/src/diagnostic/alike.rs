@@ -8,7 +8,7 @@ use crate::source::{FileId, Sources};
 
 /// Fewer that are alike are shown one by one.
 const MANY: usize = 5;
-/// How many of their lines are named.
+/// The number of their lines that are named.
 const NAMED: usize = 10;
 
 /// The diagnostics to show, each with how many more are like it and where. Alike are those of one code and severity in one file whose messages differ
@@ -38,7 +38,7 @@ pub(super) fn told_together<'d>(
     told.collect()
 }
 
-/// What those have in common that are alike: code, severity, file, and the message but for its numbers, as a hash, since there may be very many.
+/// The key of diagnostics that are alike: code, severity, file, and the message but for its numbers, as a hash, since there may be very many.
 type Kind = (&'static str, Severity, FileId, u64);
 
 fn kind(one: &Diagnostic) -> Kind {
@@ -59,7 +59,7 @@ fn shape(message: &str) -> String {
     shape
 }
 
-/// How many others there are, and in which lines.
+/// The number of the others, and their lines.
 fn others(others: &[&Diagnostic], sources: &Sources) -> String {
     let line = |one: &&Diagnostic| sources.get(one.location.file).range(one.location.span).start.line;
     let mut lines: Vec<u32> = others.iter().map(line).collect();

@@ -1,6 +1,6 @@
-//! How much work is done to find what a wrong name means.
+//! Budgets for the search of the name that was meant.
 
-/// How many right names are looked at for all wrong ones together.
+/// The number of right names that are compared for all wrong ones together.
 const MOST: usize = 1_000_000;
 /// Lists that are not longer are searched in any case.
 const FEW: usize = 100;
@@ -19,7 +19,7 @@ impl Default for Candidates {
 }
 
 impl Candidates {
-    /// Whether a list of so many names is searched; they are counted then.
+    /// True if a list of so many names is searched; they are counted then.
     pub(crate) fn admit(&mut self, count: usize) -> bool {
         if count <= FEW {
             return true;
@@ -29,7 +29,7 @@ impl Candidates {
         left.is_some()
     }
 
-    /// How much of a list decides whether it is searched: what is beyond need not be counted.
+    /// The length of a list up to which it is searched: the rest need not be counted.
     pub(crate) fn telling(&self) -> usize {
         self.left.max(FEW) + 1
     }

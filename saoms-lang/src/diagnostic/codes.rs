@@ -174,7 +174,7 @@ pub(crate) enum Absence {
     OfName,
 }
 
-/// What is absent by a diagnostic of this code, if it says that something is.
+/// The kind of thing that is absent by a diagnostic of this code.
 pub(crate) fn absence(code: &Code) -> Option<Absence> {
     const OF_PARTS: [&Code; 6] = [
         &PROPERTY_MISSING,
@@ -212,7 +212,7 @@ pub(crate) fn absence(code: &Code) -> Option<Absence> {
     }
 }
 
-/// Whether errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of every rule of a crate of
+/// True if errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of every rule of a crate of
 /// components.
 pub fn is_judgement(code: &Code) -> bool {
     const JUDGEMENTS: &[&Code] = &[
@@ -237,14 +237,14 @@ pub fn is_judgement(code: &Code) -> bool {
     JUDGEMENTS.contains(&code) || !ALL.contains(&code)
 }
 
-/// Whether what a code is about is found again in the composite that is left when all is resolved.
+/// True if what a code is about is found again in the composite that is left when all is resolved.
 pub(crate) fn outlives_expansion(code: &Code) -> bool {
     [&MISSING_TARGET_NAMESPACE, &UNWIRED, &CALL_CYCLE, &NOT_UNIQUE].contains(&code)
         || [&TASK_ID_SHARED, &RENAME_UNUSED, &CREDENTIALS, &DEADLINE, &RESTART_UNUSED].contains(&code)
         || !ALL.contains(&code)
 }
 
-/// Whether a code is one of those that the wiring report adds.
+/// True if a code is one of those that the wiring report adds.
 pub(crate) fn is_of_wiring(id: &str) -> bool {
     [&TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR, &QUEUE, &READER_FASTER]
         .into_iter()

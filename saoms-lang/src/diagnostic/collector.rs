@@ -6,10 +6,10 @@ use super::codes::Absence;
 use super::{Code, Diagnostic, Severity, codes};
 use crate::source::{FileId, Location};
 
-/// How many diagnostics of one code are kept for one file. A generated file with one mistake in each of a million
+/// The number of diagnostics of one code that are kept for one file. A generated file with one mistake in each of a million
 /// components must not cost a million messages.
 const LIMIT: u32 = 1000;
-/// How many of all codes together.
+/// The number of diagnostics of all codes together.
 const LIMIT_OF_FILE: u32 = 2000;
 
 /// Collects diagnostics.
@@ -20,7 +20,7 @@ const LIMIT_OF_FILE: u32 = 2000;
 pub struct Diagnostics {
     items: Vec<Diagnostic>,
     counts: HashMap<(FileId, &'static str), Count>,
-    /// How many are kept for each file.
+    /// The number of kept diagnostics of each file.
     kept: HashMap<FileId, u32>,
     errors: usize,
     warnings: usize,
@@ -78,7 +78,7 @@ impl Diagnostics {
         }
     }
 
-    /// Whether a diagnostic of this code is one too many for its file; it is counted then, as if it had been pushed.
+    /// True if a diagnostic of this code is one too many for its file; it is counted then, as if it had been pushed.
     /// Asked before a diagnostic is put together, where a file can have a million of them.
     pub fn skip(&mut self, code: &'static Code, severity: Severity, location: Location) -> bool {
         let is_full = self.is_full(code, location.file);
@@ -88,7 +88,7 @@ impl Diagnostics {
         is_full
     }
 
-    /// Whether no more diagnostics of this code are kept for a file.
+    /// True if no more diagnostics of this code are kept for a file.
     pub(crate) fn is_full(&self, code: &'static Code, file: FileId) -> bool {
         let kept = self.counts.get(&(file, code.id)).map_or(0, |count| count.kept);
         // The first of a kind is always told.
@@ -174,27 +174,27 @@ impl Diagnostics {
         }
     }
 
-    /// How many were kept.
+    /// The number of kept diagnostics.
     pub(crate) fn len(&self) -> usize {
         self.items.len()
     }
 
-    /// Whether one of them is an error: nothing may start.
+    /// True if one of them is an error: nothing may start.
     pub fn has_errors(&self) -> bool {
         self.errors > 0
     }
 
-    /// How many errors there are, those not kept included.
+    /// The number of errors, those not kept included.
     pub fn errors(&self) -> usize {
         self.errors
     }
 
-    /// How many warnings there are, those not kept included.
+    /// The number of warnings, those not kept included.
     pub fn warnings(&self) -> usize {
         self.warnings
     }
 
-    /// Whether there is none at all.
+    /// True if there is none at all.
     pub fn is_empty(&self) -> bool {
         self.items.is_empty()
     }

@@ -15,7 +15,7 @@ pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> Str
     Human::of(diagnostics, sources, colour).to_string()
 }
 
-/// What [`human`] gives, made while it is shown: that of a thousand files with faults is long.
+/// Diagnostics for people, made while they are written: those of a thousand files are long.
 #[derive(Debug)]
 pub struct Human<'d> {
     told: Vec<(&'d Diagnostic, Option<String>)>,
@@ -51,7 +51,7 @@ impl fmt::Display for Human<'_> {
     }
 }
 
-/// Whether a line has nothing but `:::` in it, which stands before the path of a file.
+/// True if a line has nothing but `:::` in it, which stands before the path of a file.
 fn is_nameless_place(line: &str) -> bool {
     let mut plain = String::new();
     let mut rest = line;

@@ -20,7 +20,7 @@ pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
 pub struct Json<'d> {
     /// The diagnostics.
     pub diagnostics: &'d [Diagnostic],
-    /// What they are about.
+    /// The texts of the files.
     pub sources: &'d Sources,
 }
 

@@ -3,7 +3,7 @@
 use super::Severity;
 use crate::source::Location;
 
-/// What a diagnostic can be set to.
+/// The level that a diagnostic can be set to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeverityLevel {
     /// It is not told, and kept for the record.
@@ -17,7 +17,7 @@ impl SeverityLevel {
     pub const ALL: [Self; 4] =
         [Self::Allow, Self::Set(Severity::Note), Self::Set(Severity::Warning), Self::Set(Severity::Error)];
 
-    /// How much it hides: 0 for an error, 3 for what is allowed.
+    /// The rank in hiding: 0 for an error, 3 for allowed.
     pub const fn hides(self) -> u8 {
         match self {
             Self::Allow => 3,
@@ -41,15 +41,15 @@ impl SeverityLevel {
     }
 }
 
-/// What set the severity of a diagnostic.
+/// The setting that changed the severity of a diagnostic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SetBy {
-    /// What it was set to.
+    /// The new level.
     pub level: SeverityLevel,
-    /// Where.
+    /// The place of the setting.
     pub at: Location,
-    /// Whether on the command line; in a composite otherwise.
+    /// True if on the command line; in a composite otherwise.
     pub is_option: bool,
-    /// Why; composites always say it.
+    /// The reason; composites always give one.
     pub reason: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! What is wrong, where, and what to do: diagnostics as data.
+//! Diagnostics as data: a fault, its place, and what to do.
 //!
 //! A [`Diagnostic`] has a stable [`Code`], a severity, a place, a message, and whatever helps: labels on other places,
 //! help, the rule of the SCA specification it stems from, and suggestions that a tool can apply as edits.
@@ -35,7 +35,7 @@ use crate::source::Location;
 pub struct Label {
     /// The place, possibly in another file.
     pub location: Location,
-    /// What is to be seen there.
+    /// The caption of the place.
     pub text: String,
 }
 
@@ -44,14 +44,14 @@ pub struct Label {
 pub struct Edit {
     /// The text that is replaced; of length 0 for an insertion.
     pub location: Location,
-    /// What takes its place.
+    /// The new text.
     pub replacement: String,
 }
 
 /// A way to mend the fault; its edits belong together and do not overlap.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suggestion {
-    /// What applying it does, in the imperative.
+    /// The title, in the imperative: what applying it does.
     pub description: String,
     /// The edits.
     pub edits: Vec<Edit>,
@@ -60,25 +60,25 @@ pub struct Suggestion {
 /// One fault, or one thing worth knowing, at one place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// What kind it is.
+    /// The code.
     pub code: &'static Code,
-    /// How bad it is; the code's own severity unless set.
+    /// The severity; the code's own one unless set.
     pub severity: Severity,
     /// The very place.
     pub location: Location,
-    /// What was found and what was expected.
+    /// The message: what was found and what was expected.
     pub message: String,
-    /// What is at the place, short, for the picture; the message alone when there is nothing to add.
+    /// The caption of the place in the excerpt; empty when the message says it all.
     pub at: Option<String>,
     /// Further places.
     pub labels: Vec<Label>,
-    /// What to do; each a sentence or two.
+    /// Help: what to do, each a sentence or two.
     pub help: Vec<String>,
     /// The rule of the SCA specification, as `ASM50037`.
     pub rule: Option<&'static str>,
     /// Ways to mend it, the likeliest first.
     pub suggestions: Vec<Suggestion>,
-    /// What set its severity, where something did.
+    /// The setting that changed its severity, if one did.
     pub set: Option<SetBy>,
 }
 
@@ -99,7 +99,7 @@ impl Diagnostic {
         }
     }
 
-    /// Whether it is kept for the record alone: it is not told, and counts for nothing.
+    /// True if it is kept for the record alone: it is not told, and counts for nothing.
     pub fn is_allowed(&self) -> bool {
         self.set.as_ref().is_some_and(|set| set.level == SeverityLevel::Allow)
     }

@@ -14,16 +14,16 @@ pub fn sarif(diagnostics: &[Diagnostic], sources: &Sources, version: &str) -> Va
     json!(Sarif { diagnostics, sources, version, properties: None::<()> })
 }
 
-/// What [`sarif`] gives, made while it is written, with properties of the run where there are some.
+/// A SARIF log, made while it is written, with properties of the run where there are some.
 #[derive(Clone, Copy, Debug)]
 pub struct Sarif<'d, P> {
     /// The diagnostics.
     pub diagnostics: &'d [Diagnostic],
-    /// What they are about.
+    /// The texts of the files.
     pub sources: &'d Sources,
     /// The version of the program.
     pub version: &'d str,
-    /// What else is to be told of the run.
+    /// Further properties of the run.
     pub properties: Option<P>,
 }
 
@@ -63,7 +63,7 @@ impl<P: Serialize> Serialize for Run<'_, '_, P> {
     }
 }
 
-/// What was found, for codes in this order.
+/// The results, for codes in this order.
 struct Results<'s>(&'s [Diagnostic], &'s [&'s Code], &'s Sources);
 
 impl Serialize for Results<'_> {

@@ -12,7 +12,7 @@ const TOGETHER: u32 = 12;
 const TALLEST: u32 = 6;
 /// A line of more bytes than this is cut.
 const LONGEST: usize = 400;
-/// How much of a cut line stands before its first mark, in bytes.
+/// The bytes of a cut line that stand before its first mark.
 const BEFORE: usize = 80;
 
 /// A place to point at.

@@ -1,4 +1,4 @@
-//! What expressions come to.
+//! Evaluation of expressions.
 
 use super::parse::Node;
 use super::{Expression, ExpressionError, ExpressionFault, ExpressionValue, Lookup};
@@ -12,7 +12,7 @@ pub fn integer(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<i64, 
     number(value(expression, lookup)?, expression)
 }
 
-/// Whether an expression is true.
+/// True if an expression is true.
 ///
 /// # Errors
 /// A name has no value, or it comes to something else.
@@ -65,7 +65,7 @@ fn single(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<Expression
     }
 }
 
-/// What an operator makes of the value on its left, given with its expression, and of what is on its right.
+/// Applies an operator to the value on its left, given with its expression, and to the expression on its right.
 fn two(
     whole: &Expression,
     (left, of): (ExpressionValue, &Expression),

@@ -33,10 +33,10 @@ pub use token::{is_name, words};
 
 use crate::diagnostic::quoted;
 
-/// What the replicas of a component are counted by.
+/// The name of the number of a replica.
 pub const INDEX: &str = "index";
 
-/// What an expression comes to.
+/// The value of an expression.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExpressionValue {
     /// A whole number.
@@ -57,16 +57,16 @@ impl fmt::Display for ExpressionValue {
     }
 }
 
-/// Why a name has no value, or an expression none.
+/// The reason why a name or an expression has no value.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ExpressionError {
-    /// What is wrong.
+    /// The fault.
     pub message: String,
-    /// What to do.
+    /// Help: what to do.
     pub help: Option<String>,
-    /// What the bytes at fault should be, where that is plain.
+    /// The right text for the bytes at fault, where that is plain.
     pub instead: Option<String>,
-    /// Whether it is the numbers that are wrong, not the expression.
+    /// True if it is the numbers that are wrong, not the expression.
     pub(crate) is_arithmetic: bool,
 }
 
@@ -96,9 +96,9 @@ impl ExpressionError {
 /// A problem at bytes of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExpressionFault {
-    /// Where.
+    /// The bytes at fault.
     pub at: Range<usize>,
-    /// What.
+    /// The fault.
     pub problem: ExpressionError,
 }
 

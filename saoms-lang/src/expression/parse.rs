@@ -88,7 +88,7 @@ struct Parser<'t> {
 }
 
 impl Parser<'_> {
-    /// What the next token is as an operator or a word.
+    /// The next token as an operator or a word.
     fn sign(&self) -> &str {
         match self.tokens.get(self.next) {
             Some((Token::Word(word), _)) => word,
@@ -97,7 +97,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What operators of this level and those that bind more make. They are climbed in a loop, so that parentheses cost the stack no frame for
+    /// Parses operators of this level and those that bind tighter. They are climbed in a loop, so that parentheses cost the stack no frame for
     /// each level: <https://en.wikipedia.org/wiki/Operator-precedence_parser#Precedence_climbing_method>.
     fn level(&mut self, lowest: usize) -> Result<Expression, ExpressionFault> {
         let mut left = match self.sign() {

@@ -14,7 +14,7 @@ enum Piece<'t> {
     Expression(Expression, usize),
 }
 
-/// Whether a text has an expression, or something that could be meant as one.
+/// True if a text has an expression, or something that could be meant as one.
 pub fn has_expression(text: &str) -> bool {
     // Few texts have a `$`, and looking for one byte takes a tenth of the time.
     memchr::memchr(b'$', text.as_bytes()).is_some() && text.contains("${")
@@ -106,7 +106,7 @@ fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, ExpressionFault>
     })
 }
 
-/// Where the `}` is that ends the expression; those in texts do not count.
+/// The place of the `}` that ends the expression; those in texts do not count.
 fn end_of(inside: &str) -> Option<usize> {
     let mut quote = None;
     inside.char_indices().find_map(|(at, character)| {

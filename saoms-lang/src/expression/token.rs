@@ -38,7 +38,7 @@ fn is_part(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Whether a name can stand in an expression.
+/// True if a name can stand in an expression.
 pub fn is_name(name: &str) -> bool {
     name.starts_with(is_first) && name.chars().all(is_part) && !RESERVED.contains(&name)
 }

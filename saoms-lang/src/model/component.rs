@@ -9,7 +9,7 @@ use crate::source::{Located, Text};
 /// A component: a configured use of an implementation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComponentElement {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
@@ -32,11 +32,11 @@ pub struct ComponentDetails {
     pub path: Option<Text>,
     /// `if`, in the namespace of SAOMS: it is there only where this is true.
     pub condition: Option<Text>,
-    /// What is said about its replicas, in the namespace of SAOMS; `None` for a component that stands for itself alone.
+    /// Its replicas, in the namespace of SAOMS; `None` for a single component.
     pub replicas: Option<Replicas>,
     /// `autowire`.
     pub autowire: Option<Located<bool>>,
-    /// What it says about its loops, in order.
+    /// Its changes of the loops of its class, in order.
     pub loops: Vec<LoopElement>,
 }
 
@@ -51,7 +51,7 @@ impl ComponentElement {
         self.details.as_ref()?.condition.as_ref()
     }
 
-    /// What is said about its replicas, in the namespace of SAOMS; `None` for a component that stands for itself alone.
+    /// Its replicas, in the namespace of SAOMS; `None` for a single component.
     pub fn replicas(&self) -> Option<&Replicas> {
         self.details.as_ref()?.replicas.as_ref()
     }
@@ -61,7 +61,7 @@ impl ComponentElement {
         self.details.as_ref()?.autowire
     }
 
-    /// What it says about its loops, in order.
+    /// Its changes of the loops of its class, in order.
     pub fn loops(&self) -> &[LoopElement] {
         self.details.as_ref().map_or(&[], |details| &details.loops)
     }
@@ -93,9 +93,9 @@ impl ComponentElement {
 /// The implementation of a component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Implementation {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
-    /// Which kind, with what it names.
+    /// The kind, with the name that it gives.
     pub kind: ImplementationKind,
 }
 
@@ -121,9 +121,9 @@ pub enum ImplementationKind {
     },
     /// Any other, of SCA or foreign; its element has the attributes.
     Other {
-        /// What follows `implementation.` in its name, as `script`.
+        /// The kind of another runtime: the text behind `implementation.`, as `script`.
         kind: SmolStr,
-        /// Whether its element is of an SCA namespace.
+        /// True if its element is of an SCA namespace.
         is_sca: bool,
     },
 }

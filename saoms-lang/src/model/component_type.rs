@@ -6,10 +6,10 @@ use super::origin::parts;
 use super::{Origin, Property, ReferenceElement, ServiceElement, Version};
 use crate::syntax::Document;
 
-/// What an implementation offers, asks for and can be given, as a `.componentType` file states it.
+/// Component types: services, references and properties of an implementation, as a `.componentType` file states them.
 #[derive(Clone, Debug)]
 pub struct ComponentType {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// The whole document.
     pub document: Arc<Document>,

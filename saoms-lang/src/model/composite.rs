@@ -10,7 +10,7 @@ use crate::syntax::Document;
 /// A composite: components, what they are wired to, and what of them is promoted.
 #[derive(Clone, Debug)]
 pub struct Composite {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// The whole document: foreign elements and attributes, complex values, prefixes.
     pub document: Arc<Document>,
@@ -36,14 +36,14 @@ pub struct Composite {
     pub components: Vec<ComponentElement>,
     /// Its wires in order.
     pub wires: Vec<WireElement>,
-    /// What it says about severities, in order, that in its elements included.
+    /// Its severity settings in order, those in its elements included.
     pub severities: Vec<SeverityRule>,
 }
 
 /// An inclusion of all that another composite holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Include {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// `name`: the QName of a composite; empty, at the tag, when the file has none.
     pub name: Text,
@@ -56,17 +56,17 @@ pub struct Include {
 /// A wire from a reference to a service.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WireElement {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// `source`: `component` or `component/reference`; `None` when the file has none.
     pub source: Option<Text>,
     /// `target`: `component`, `component/service` or `component/service/binding`; `None` when the file has none.
     pub target: Option<Text>,
-    /// What few wires have.
+    /// Rarely needed fields, boxed.
     pub details: Option<Box<WireDetails>>,
 }
 
-/// What few wires have.
+/// Rarely needed fields, boxed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WireDetails {
     /// `replace` (1.1)

@@ -9,7 +9,7 @@ use crate::source::{Located, Text};
 /// A service: of a component, or of a composite, which promotes one of a component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ServiceElement {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
@@ -22,7 +22,7 @@ pub struct ServiceElement {
 /// A reference: of a component, or of a composite, which promotes those of components.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceElement {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
@@ -109,7 +109,7 @@ impl ReferenceElement {
     }
 }
 
-/// How many targets a reference can have.
+/// The number of targets that a reference can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Multiplicity {
     /// `0..1`
@@ -141,17 +141,17 @@ impl Multiplicity {
         Self::ALL.into_iter().find(|one| one.name() == name)
     }
 
-    /// Whether at least one target is required.
+    /// True if at least one target is required.
     pub const fn is_required(self) -> bool {
         matches!(self, Self::One | Self::OneOrMore)
     }
 
-    /// Whether more than one target is allowed.
+    /// True if more than one target is allowed.
     pub const fn is_many(self) -> bool {
         matches!(self, Self::Any | Self::OneOrMore)
     }
 
-    /// Whether it is `other`, or allows fewer numbers of targets than it.
+    /// True if it is `other`, or allows fewer numbers of targets than it.
     pub const fn narrows(self, other: Self) -> bool {
         (self.is_required() || !other.is_required()) && (!self.is_many() || other.is_many())
     }
@@ -160,9 +160,9 @@ impl Multiplicity {
 /// An interface of a service or a reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterfaceElement {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
-    /// Which kind of interface.
+    /// The kind of the interface.
     pub kind: InterfaceKind,
     /// `interface`: the name of the interface in its language.
     pub interface: Option<Text>,
@@ -184,11 +184,11 @@ pub enum InterfaceKind {
 /// A binding of a service, a reference or a callback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Binding {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
-    /// What follows `binding.` in its name, as `ws`.
+    /// The kind: the text behind `binding.`, as `ws`.
     pub kind: SmolStr,
-    /// Whether its element is of an SCA namespace.
+    /// True if its element is of an SCA namespace.
     pub is_sca: bool,
     /// `name`.
     pub name: Option<Box<Text>>,
@@ -199,7 +199,7 @@ pub struct Binding {
 /// The callback of a service or a reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Callback {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// Its bindings in order.
     pub bindings: Vec<Binding>,

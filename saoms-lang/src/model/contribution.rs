@@ -8,7 +8,7 @@ use crate::diagnostic::{Candidates, nearest};
 use crate::source::{FileId, Text};
 use crate::syntax::ElementId;
 
-/// What forms one fleet: the composites that were asked for, and what those name in other files.
+/// The files of one fleet: the composites that were asked for, and those that they name.
 ///
 /// [`Contribution::of`] links names among the composites it is given; [`load_named`](crate::contribution::load_named) also looks for
 /// those in files.
@@ -16,11 +16,11 @@ use crate::syntax::ElementId;
 pub struct Contribution {
     composites: Vec<Composite>,
     asked_for: usize,
-    /// How many there were at first; the others were found by their names.
+    /// The number of composites that were asked for; the others were found by their names.
     given: usize,
     /// The places of those that were there at first by their names.
     by_name: HashMap<String, Vec<usize>>,
-    /// How many of those names are still looked at for names that lead nowhere.
+    /// The number of names that may still be searched for the one that was meant.
     candidates: Candidates,
     links: HashMap<(FileId, ElementId), Link>,
     libraries: HashMap<(FileId, ElementId), LibraryLink>,
@@ -29,7 +29,7 @@ pub struct Contribution {
     described: HashMap<(FileId, ElementId), Option<usize>>,
 }
 
-/// Where the name of a composite leads.
+/// The target of the name of a composite.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Link {
     /// To this composite of the contribution.
@@ -40,7 +40,7 @@ pub enum Link {
     Missing(Missing),
 }
 
-/// Where the `library` of an implementation leads.
+/// The target of the `library` of an implementation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LibraryLink {
     /// To this file, whose classes are in the registry.
@@ -51,12 +51,12 @@ pub enum LibraryLink {
     Missing(Vec<PathBuf>),
 }
 
-/// What is known about a composite that was not found.
+/// The knowledge about a composite that was not found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Missing {
     /// Names that are spelt alike, as they would be written in place of the wrong one.
     pub near: Vec<String>,
-    /// Where it was looked for and what was seen there, a sentence each.
+    /// The places that were searched and what was seen there, a sentence each.
     pub searched: Vec<String>,
 }
 
@@ -70,12 +70,12 @@ pub struct Naming<'a> {
 }
 
 impl<'a> Naming<'a> {
-    /// What an include names; `None` when it lacks a name.
+    /// The target of an include; `None` when it lacks a name.
     pub fn of_include(include: &'a Include) -> Option<Self> {
         (!include.name.is_empty()).then_some(Self { origin: include.origin, name: &include.name })
     }
 
-    /// What `implementation.composite` names.
+    /// The target of `implementation.composite`.
     pub fn of_component(component: &'a ComponentElement) -> Option<Self> {
         let implementation = component.implementation.as_ref()?;
         match &implementation.kind {
@@ -159,12 +159,12 @@ impl Contribution {
         &self.composites[..self.asked_for]
     }
 
-    /// Where the name at an element leads; `None` where nobody looked.
+    /// The target of the name at an element; `None` where nobody looked.
     pub fn link(&self, origin: Origin) -> Option<&Link> {
         self.links.get(&(origin.file(), origin.element))
     }
 
-    /// Where the `library` of an implementation leads; `None` where nobody looked.
+    /// The target of the `library` of an implementation; `None` where nobody looked.
     pub fn library(&self, implementation: Origin) -> Option<&LibraryLink> {
         self.libraries.get(&(implementation.file(), implementation.element))
     }
@@ -174,18 +174,18 @@ impl Contribution {
         self.libraries.insert((implementation.file(), implementation.element), link);
     }
 
-    /// What a file beside an implementation says about it.
+    /// The component type in a file beside an implementation.
     pub fn component_type(&self, implementation: Origin) -> Option<&ComponentType> {
         let place = *self.described.get(&(implementation.file(), implementation.element))?;
         Some(&self.component_types[place?])
     }
 
-    /// Whether there are implementations with a component type, or without one that should be there.
+    /// True if there are implementations with a component type, or without one that should be there.
     pub(crate) fn describes_any(&self) -> bool {
         !self.described.is_empty()
     }
 
-    /// Whether a component type was looked for and not found.
+    /// True if a component type was looked for and not found.
     pub fn lacks_component_type(&self, implementation: Origin) -> bool {
         self.described.get(&(implementation.file(), implementation.element)) == Some(&None)
     }

@@ -7,7 +7,7 @@ use crate::source::{Located, Text};
 /// A `loop` of a component: it adds, replaces, removes, moves or parametrises one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopElement {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// `name`: what the loop is called within the component; empty, at the tag, when the file has none.
     pub name: Text,
@@ -24,7 +24,7 @@ pub struct LoopElement {
 }
 
 impl LoopElement {
-    /// Whether it takes the loop of its name away.
+    /// True if it takes the loop of its name away.
     pub fn is_removal(&self) -> bool {
         self.remove.is_some_and(|remove| remove.value)
     }

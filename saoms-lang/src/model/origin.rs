@@ -1,4 +1,4 @@
-//! Where in its file a part of the model comes from.
+//! Origins: the places of parts of the model in their files.
 
 use crate::source::{FileId, Location};
 use crate::syntax::{Document, Element, ElementId};
@@ -30,9 +30,9 @@ impl Origin {
     }
 }
 
-/// What all parts of the model have.
+/// A part of the model, which has an origin.
 pub trait Part {
-    /// Where it comes from.
+    /// The origin in its file.
     fn origin(&self) -> Origin;
 
     /// The name in its start tag.

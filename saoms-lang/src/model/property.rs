@@ -12,19 +12,19 @@ use crate::syntax::{Document, ElementId};
 /// A well-made one has its value in one way alone; the model keeps all that the file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Property {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
     /// The value as an attribute; where there is none, the text inside.
     pub(crate) simple: Option<Text>,
-    /// Whether that is the attribute.
+    /// True if that is the attribute.
     pub(crate) is_attribute: bool,
-    /// What few properties have; the methods give it.
+    /// Rarely needed fields, boxed; the methods give them.
     pub details: Option<Box<PropertyDetails>>,
 }
 
-/// What few properties have.
+/// Rarely needed fields of properties.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PropertyDetails {
     /// The text inside, where there is an attribute `value`, too.
@@ -43,7 +43,7 @@ pub struct PropertyDetails {
     pub file: Option<Text>,
     /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
     pub env: Option<Text>,
-    /// What that file holds; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be read.
+    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be read.
     pub from_file: Option<Text>,
     /// The same, where it is XML that is more than a text.
     pub document: Option<ValueDocument>,
@@ -58,7 +58,7 @@ pub struct PropertyDetails {
 pub struct ValueDocument {
     /// All of it.
     pub document: Arc<Document>,
-    /// Whether its root is `values` of SCA, which holds each value in an element.
+    /// True if its root is `values` of SCA, which holds each value in an element.
     pub is_list: bool,
 }
 
@@ -71,7 +71,7 @@ impl PartialEq for ValueDocument {
 /// A `<value>` of a property.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComponentProperty {
-    /// Where it comes from.
+    /// The origin in its file.
     pub origin: Origin,
     /// The text inside, trimmed; empty, at the end of the start tag, when there is none.
     pub text: Text,
@@ -127,7 +127,7 @@ impl Property {
         self.details.as_ref()?.env.as_ref()
     }
 
-    /// What the file that `file` names holds, once it is read.
+    /// The content of the file that `file` names, once it is read.
     pub fn from_file(&self) -> Option<&Text> {
         self.details.as_ref()?.from_file.as_ref()
     }
@@ -165,7 +165,7 @@ impl Property {
         if self.details.is_none() { self.simple.as_ref() } else { None }
     }
 
-    /// Whether the property gives a value in any way: directly, by `source`, or by `file`.
+    /// True if the property gives a value in any way: directly, by `source`, or by `file`.
     pub fn has_value(&self) -> bool {
         self.simple.is_some()
             || !self.values().is_empty()

@@ -2,7 +2,7 @@
 
 use crate::source::{FileId, Text};
 
-/// What a component says about its replicas.
+/// Replicas of a component.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Replicas {
     /// `count`: an expression; how many there are. `None` when only the others are given, or a name that uses the index.
@@ -11,7 +11,7 @@ pub struct Replicas {
     pub from: Option<Text>,
     /// `overrides`: the file of the table.
     pub overrides: Option<Text>,
-    /// What that file holds; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be read.
+    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be read.
     pub table: Option<Table>,
 }
 
@@ -20,7 +20,7 @@ pub struct Replicas {
 pub struct Table {
     /// The file.
     pub file: FileId,
-    /// What the first column says: `index` or `name`.
+    /// The heading of the first column: `index` or `name`.
     pub key: Text,
     /// The properties of the other columns.
     pub properties: Vec<Text>,
@@ -31,7 +31,7 @@ pub struct Table {
 /// A line of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Which replica it is about.
+    /// The replica that it is about.
     pub key: Text,
     /// A value for each property; `None` for a replica that has its own.
     pub values: Vec<Option<Text>>,

@@ -32,12 +32,12 @@ impl Version {
         Self::ALL.into_iter().find(|version| version.namespace() == namespace)
     }
 
-    /// Whether it is 1.1, as a draft or as published.
+    /// True if it is 1.1, as a draft or as published.
     pub const fn is_1_1(self) -> bool {
         !matches!(self, Self::Osoa10)
     }
 
-    /// What users call it.
+    /// The name that users know.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Osoa10 => "SCA 1.0",

@@ -12,7 +12,7 @@ pub struct LineColumn {
 /// From one line and column to another; the end is exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LineRange {
-    /// Where it starts.
+    /// The start.
     pub start: LineColumn,
     /// The place behind its last character.
     pub end: LineColumn,
@@ -21,11 +21,11 @@ pub struct LineRange {
 /// Bytes between two places whose scalars are counted beforehand, so that a place far into an endless line costs no more than another.
 const BLOCK: usize = 1024;
 
-/// Where each line of a text starts. A line ends with LF, CR LF, or a CR alone, as in XML.
+/// Starts of the lines of a text. A line ends with LF, CR LF, or a CR alone, as in XML.
 #[derive(Debug)]
 pub(super) struct LineIndex {
     starts: Vec<u32>,
-    /// How many scalars there are before each multiple of [`BLOCK`]; `None` where all are ASCII.
+    /// The number of scalars before each multiple of [`BLOCK`]; `None` where all are ASCII.
     scalars: Option<Vec<u32>>,
 }
 
@@ -83,7 +83,7 @@ impl LineIndex {
         place.map_or(end, |place| from + place) as u32
     }
 
-    /// How many scalars begin before byte `at`.
+    /// The number of scalars that begin before byte `at`.
     fn before(&self, text: &str, at: usize) -> u32 {
         let Some(scalars) = &self.scalars else { return at as u32 };
         let block = at / BLOCK;
@@ -110,7 +110,7 @@ fn counted(bytes: &[u8]) -> u32 {
     bytes.chunks(128).map(|bytes| u32::from(piece(bytes))).sum()
 }
 
-/// Whether a scalar begins with this byte of UTF-8.
+/// True if a scalar begins with this byte of UTF-8.
 fn is_first(byte: u8) -> bool {
     byte & 0xC0 != 0x80
 }

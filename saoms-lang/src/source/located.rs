@@ -12,7 +12,7 @@ use super::{FileId, Location, Span};
 pub struct Located<T> {
     /// The value.
     pub value: T,
-    /// Where it is written: for an attribute the characters between the quotes.
+    /// The place in the file: for an attribute the characters between the quotes.
     pub location: Location,
 }
 

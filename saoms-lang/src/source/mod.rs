@@ -42,22 +42,22 @@ impl Span {
         Self { start: at, end: at }
     }
 
-    /// How many bytes it holds.
+    /// The number of bytes.
     pub const fn len(self) -> u32 {
         self.end.saturating_sub(self.start)
     }
 
-    /// Whether it holds no byte.
+    /// True if it holds no byte.
     pub const fn is_empty(self) -> bool {
         self.end <= self.start
     }
 
-    /// Whether byte `at` is inside, or right behind: where an editor's cursor touches it.
+    /// True if byte `at` is inside, or right behind: where an editor's cursor touches it.
     pub const fn touches(self, at: u32) -> bool {
         self.start <= at && at <= self.end
     }
 
-    /// Whether `other` lies inside.
+    /// True if `other` lies inside.
     pub const fn contains(self, other: Self) -> bool {
         self.start <= other.start && other.end <= self.end
     }
