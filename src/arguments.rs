@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 /// Options that describe a fleet.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct FleetArguments {
-    /// Composite files, `-` for standard input; several form one fleet. A folder is a contribution: `check` looks at all of it, others
-    /// take what its `sca-contribution.xml` calls deployable, or the only composite that runs by itself
+    /// Composite files, `-` for standard input; several form one fleet. A folder is a contribution: `check` looks at
+    /// all of it, others take what its `sca-contribution.xml` calls deployable, or the only composite that runs by
+    /// itself
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
 
@@ -16,7 +17,8 @@ pub(crate) struct FleetArguments {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(crate) settings: Vec<String>,
 
-    /// Make diagnostics of a code `allow`ed, a `note`, a `warning` or an `error` where composites say nothing else; may be repeated
+    /// Make diagnostics of a code `allow`ed, a `note`, a `warning` or an `error` where composites say nothing else; may
+    /// be repeated
     #[arg(long = "severity", value_name = "CODE=LEVEL[:REASON]")]
     pub(crate) severities: Vec<String>,
 

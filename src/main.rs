@@ -1,7 +1,7 @@
 //! The command `saoms`: loads composites, checks them, and runs the fleet that they describe.
 //!
-//! `command` has one file per subcommand; each returns the process's exit code. The machinery is in `saoms-core`; the components that
-//! ship are in `saoms-components`, which is linked here and known nowhere else.
+//! `command` has one file per subcommand; each returns the process's exit code. The machinery is in `saoms-core`; the
+//! components that ship are in `saoms-components`, which is linked here and known nowhere else.
 
 mod arguments;
 mod command;

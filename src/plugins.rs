@@ -14,8 +14,8 @@ use crate::output::eprint;
 /// The variable with folders of plugins, separated by colons.
 const SEARCH_PATH: &str = "SAOMS_PLUGIN_PATH";
 
-/// The classes of a command. Plugins are looked for where the command line says, in the folders of `SAOMS_PLUGIN_PATH`, beside each composite,
-/// and in a folder `plugins` beside it or in the current folder.
+/// The classes of a command. Plugins are looked for where the command line says, in the folders of `SAOMS_PLUGIN_PATH`,
+/// beside each composite, and in a folder `plugins` beside it or in the current folder.
 pub(crate) struct CommandClasses<'a> {
     arguments: &'a PluginArguments,
     linked: Registry,

@@ -1,7 +1,7 @@
 //! Whatever a file holds, no command takes more than 16 MB and 20 times its size for it.
 //!
-//! What is measured is the memory of the whole process at its peak, beyond that of the same command with an empty composite: what the
-//! program itself takes differs from build to build.
+//! What is measured is the memory of the whole process at its peak, beyond that of the same command with an empty
+//! composite: what the program itself takes differs from build to build.
 
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]

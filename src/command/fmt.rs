@@ -28,7 +28,8 @@ Exit codes:
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct FmtArguments {
-    /// Files to format in place; a folder stands for all composites in it and below, `-` is from standard input to standard output
+    /// Files to format in place; a folder stands for all composites in it and below, `-` is from standard input to
+    /// standard output
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
 

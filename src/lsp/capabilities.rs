@@ -92,7 +92,8 @@ pub(super) fn capabilities() -> Value {
     })
 }
 
-/// The files whose changes on disk are of interest: what is checked, tables and texts that values are in, and the libraries of plugins.
+/// The files whose changes on disk are of interest: what is checked, tables and texts that values are in, and the
+/// libraries of plugins.
 pub(super) fn watchers() -> Value {
     let endings = ["composite", "componentType", "csv", "txt", "so"].map(|ending| format!("**/*.{ending}"));
     let globs = endings.into_iter().chain(["**/sca-contribution.xml".to_owned()]);

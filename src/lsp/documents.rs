@@ -29,7 +29,8 @@ pub(super) struct Documents {
 }
 
 impl Documents {
-    /// Takes in a text. One that has no file yet, as `untitled:Untitled-1`, counts as one in the folder that the server was started in.
+    /// Takes in a text. One that has no file yet, as `untitled:Untitled-1`, counts as one in the folder that the server
+    /// was started in.
     pub(super) fn open(&mut self, uri: String, version: i32, text: String) {
         let path = uri::path(&uri).unwrap_or_else(|| uri.replace('/', "_").into());
         let path = identity(&path);

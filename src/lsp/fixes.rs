@@ -81,7 +81,8 @@ impl<W: Write> Server<W> {
         }
     }
 
-    /// Meanings of the codes of the diagnostics that are shown at a place. Those of a text before the last change may be elsewhere by now.
+    /// Meanings of the codes of the diagnostics that are shown at a place. Those of a text before the last change may
+    /// be elsewhere by now.
     pub(super) fn reported_at(&self, uri: &Uri, at: Position) -> impl Iterator<Item = String> {
         let shown = self.documents.get(uri.as_str()).and_then(|document| {
             let shown = self.shown.get(&document.path)?;

@@ -1,7 +1,8 @@
 //! `saoms lsp`: answers editors, by the Language Server Protocol 3.17 on standard input and output.
 //!
-//! One thread reads, one answers, one checks. Answers come from [`saoms_tools::editor`]; diagnostics come from the loader and the checker, as
-//! `saoms check` has them. This module holds the protocol alone: messages, documents, positions in UTF-16.
+//! One thread reads, one answers, one checks. Answers come from [`saoms_tools::editor`]; diagnostics come from the
+//! loader and the checker, as `saoms check` has them. This module holds the protocol alone: messages, documents,
+//! positions in UTF-16.
 
 mod capabilities;
 mod check;

@@ -41,8 +41,8 @@ impl Registries {
         search(&self.arguments, &[file.to_owned()])
     }
 
-    /// The classes for a composite, those of libraries that it names itself included. Plugins that were built anew since the last time are
-    /// read anew.
+    /// The classes for a composite, those of libraries that it names itself included. Plugins that were built anew
+    /// since the last time are read anew.
     pub(super) fn of(&self, file: &Path, named: &[String]) -> Arc<Registry> {
         let folder = file.parent().unwrap_or(Path::new(""));
         let search = self.search(file);

@@ -1,7 +1,7 @@
 //! JSON-RPC over standard input and output, framed as the Language Server Protocol says.
 //!
-//! The types of messages are those of `lsp-server`. Reading is done here, since what is malformed is to be answered, and not to end the
-//! session.
+//! The types of messages are those of `lsp-server`. Reading is done here, since what is malformed is to be answered,
+//! and not to end the session.
 
 use std::io::{self, BufRead, Read, Write};
 
@@ -46,7 +46,8 @@ pub(super) fn read(input: &mut impl BufRead) -> io::Result<Option<Incoming>> {
     }
 }
 
-/// The length of the next message. Lines that are no header are skipped, so that a broken message costs no more than itself.
+/// The length of the next message. Lines that are no header are skipped, so that a broken message costs no more than
+/// itself.
 fn length(input: &mut impl BufRead) -> io::Result<Option<u64>> {
     let mut length = None;
     loop {

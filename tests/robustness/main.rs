@@ -1,5 +1,5 @@
-//! Whatever a file holds, the program answers: no panic and no hang, for real composites with bytes changed, cut off, or
-//! put elsewhere.
+//! Whatever a file holds, the program answers: no panic and no hang, for real composites with bytes changed, cut off,
+//! or put elsewhere.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 

@@ -68,7 +68,7 @@ pub struct Diagnostic {
     pub location: Location,
     /// The message: what was found and what was expected.
     pub message: String,
-    /// The caption of the place in the excerpt; empty when the message says it all.
+    /// The caption of the place in the excerpt; `None` when the message says it all.
     pub at: Option<String>,
     /// Further places.
     pub labels: Vec<Label>,

@@ -37,7 +37,8 @@ fn condition(value: ExpressionValue, of: &Expression) -> Result<bool, Expression
     }
 }
 
-/// Chains such as `1 + 2 + 3` lean to the left: they are followed in a loop, so that only parentheses and signs cost the stack a frame.
+/// Chains such as `1 + 2 + 3` lean to the left: they are followed in a loop, so that only parentheses and signs cost
+/// the stack a frame.
 fn value(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<ExpressionValue, ExpressionFault> {
     let mut chain = Vec::new();
     let mut first = expression;
@@ -77,7 +78,8 @@ fn two(
         "and" | "or" => {
             let decides = operator == "or";
             let left = condition(left, of)?;
-            // The right side is looked at in any case: what is wrong with it is wrong. But the left one may keep numbers from it.
+            // The right side is looked at in any case: what is wrong with it is wrong. But the left one may keep
+            // numbers from it.
             match boolean(right, lookup) {
                 Err(fault) if left == decides && fault.problem.is_arithmetic => {
                     Ok(ExpressionValue::Boolean(left))

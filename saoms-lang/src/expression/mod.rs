@@ -11,8 +11,9 @@
 //! operand    = number | "'" text "'" | "true" | "false" | name | "(" expression ")"
 //! ```
 //!
-//! Numbers are whole, of 64 bits; what goes beyond is a fault. `/` rounds down and `%` is never negative for a positive divisor, so that
-//! `index % 11` counts around also from below zero. Nothing here panics or recurses without bound, whatever the text.
+//! Numbers are whole, of 64 bits; what goes beyond is a fault. `/` rounds down and `%` is never negative for a positive
+//! divisor, so that `index % 11` counts around also from below zero. Nothing here panics or recurses without bound,
+//! whatever the text.
 
 mod evaluate;
 mod parse;

@@ -97,8 +97,9 @@ impl Parser<'_> {
         }
     }
 
-    /// Parses operators of this level and those that bind tighter. They are climbed in a loop, so that parentheses cost the stack no frame for
-    /// each level: <https://en.wikipedia.org/wiki/Operator-precedence_parser#Precedence_climbing_method>.
+    /// Parses operators of this level and those that bind tighter. They are climbed in a loop, so that parentheses cost
+    /// the stack no frame for each level:
+    /// <https://en.wikipedia.org/wiki/Operator-precedence_parser#Precedence_climbing_method>.
     fn level(&mut self, lowest: usize) -> Result<Expression, ExpressionFault> {
         let mut left = match self.sign() {
             "not" if lowest <= COMPARISON => self.prefix(COMPARISON, Node::Not)?,

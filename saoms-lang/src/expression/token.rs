@@ -18,7 +18,8 @@ pub(super) enum Token {
 /// A token with its bytes.
 pub(super) type Placed = (Token, Range<usize>);
 
-/// Tokens of an expression: more than one of as many operators as there may be needs, each of its values in as many parentheses.
+/// Tokens of an expression: more than one of as many operators as there may be needs, each of its values in as many
+/// parentheses.
 const MOST_TOKENS: usize = 20_000;
 
 /// The signs, the longer ones first.

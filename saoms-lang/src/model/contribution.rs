@@ -10,8 +10,8 @@ use crate::syntax::ElementId;
 
 /// The files of one fleet: the composites that were asked for, and those that they name.
 ///
-/// [`Contribution::of`] links names among the composites it is given; [`load_named`](crate::contribution::load_named) also looks for
-/// those in files.
+/// [`Contribution::of`] links names among the composites it is given; [`load_named`](crate::contribution::load_named)
+/// also looks for those in files.
 #[derive(Debug, Default)]
 pub struct Contribution {
     composites: Vec<Composite>,
@@ -102,8 +102,8 @@ impl Composite {
     /// The namespaces that a QName in it may mean, the likeliest first, and its local part. `None` in place of the
     /// namespaces when its prefix is bound to none: then any will do.
     ///
-    /// A name without a prefix is of the default namespace. Where that is one of SCA, in which nobody's composites are, the
-    /// composite's own is meant.
+    /// A name without a prefix is of the default namespace. Where that is one of SCA, in which nobody's composites are,
+    /// the composite's own is meant.
     pub fn resolve_name<'n>(&self, naming: Naming<'n>) -> (Option<Vec<String>>, &'n str) {
         let element = naming.origin.element(&self.document);
         match naming.name.as_str().split_once(':') {

@@ -43,7 +43,8 @@ pub struct PropertyDetails {
     pub file: Option<Text>,
     /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
     pub env: Option<Text>,
-    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be read.
+    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
+    /// read.
     pub from_file: Option<Text>,
     /// The same, where it is XML that is more than a text.
     pub document: Option<ValueDocument>,

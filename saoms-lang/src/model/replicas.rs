@@ -5,13 +5,15 @@ use crate::source::{FileId, Text};
 /// Replicas of a component.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Replicas {
-    /// `count`: an expression; how many there are. `None` when only the others are given, or a name that uses the index.
+    /// `count`: an expression; how many there are. `None` when only the others are given, or a name that uses the
+    /// index.
     pub count: Option<Text>,
     /// `from`: an expression; the index of the first.
     pub from: Option<Text>,
     /// `overrides`: the file of the table.
     pub overrides: Option<Text>,
-    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be read.
+    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
+    /// read.
     pub table: Option<Table>,
 }
 

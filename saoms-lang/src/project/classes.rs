@@ -34,7 +34,8 @@ pub struct PluginFault {
 
 /// Opens libraries that composites name with `library`.
 pub trait LibraryResolver {
-    /// Looks for the library that a composite in a folder names, and adds what it offers to the registry. Nothing in it runs.
+    /// Looks for the library that a composite in a folder names, and adds what it offers to the registry. Nothing in it
+    /// runs.
     fn open(&self, folder: &Path, name: &str, registry: &mut Registry) -> LibraryLink;
 }
 

@@ -47,7 +47,8 @@ impl<T> Compilation<T> {
 }
 
 impl Compilation<Assembly> {
-    /// The text of the one composite that is left when includes, inner composites, sources and wires are resolved; `None` where there is an error.
+    /// The text of the one composite that is left when includes, inner composites, sources and wires are resolved;
+    /// `None` where there is an error.
     pub fn expanded(&self) -> Option<String> {
         Some(expanded(self.output.as_ref()?, self.first()?, &self.diagnostics))
     }

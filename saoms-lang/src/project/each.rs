@@ -109,7 +109,8 @@ impl Project {
             let start = (sources, Diagnostics::new());
             let found = step(self.load_fleet(&inputs, &mut finder, classes.clone(), options.clone(), start));
             sources = found.sources;
-            // A composite that is made for others may lack what these give it, also where nothing else is in the folder.
+            // A composite that is made for others may lack what these give it, also where nothing else is in the
+            // folder.
             let is_whole = is_deployable || count == 1 && !is_exported;
             merged.add(found.diagnostics, is_whole, &sources);
             let named = found.contribution.composites().iter().skip(inputs.len());
@@ -121,7 +122,8 @@ impl Project {
         Compilations { outputs, fleets: count, sources, diagnostics, problems }
     }
 
-    /// The fleets of the inputs, and a contribution of the component types among them. Other files beside composites are checked at once.
+    /// The fleets of the inputs, and a contribution of the component types among them. Other files beside composites
+    /// are checked at once.
     fn fleets(
         &self,
         finder: &mut Finder,

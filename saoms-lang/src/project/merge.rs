@@ -38,7 +38,8 @@ impl Merged {
                 continue;
             }
             let path = sources.get(one.location.file).path().to_owned();
-            // A place that one fleet reports is not reported again for another one in other words, unless it is worse there.
+            // A place that one fleet reports is not reported again for another one in other words, unless it is worse
+            // there.
             let new = Reports { fleet: self.fleets, worst: one.severity, messages: Vec::new() };
             let reports = self.known.entry((path, one.location.span, one.code.id)).or_insert(new);
             let is_wanted = reports.fleet == self.fleets || one.severity > reports.worst;

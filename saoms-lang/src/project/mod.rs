@@ -1,7 +1,7 @@
 //! The one way from files to an [`Assembly`], or to the diagnostics that say why there is none.
 //!
-//! A [`Project`] says what is compiled and how; a [`Compilation`] holds what came of it. Nobody outside of this crate takes the steps
-//! between them by hand.
+//! A [`Project`] says what is compiled and how; a [`Compilation`] holds what came of it. Nobody outside of this crate
+//! takes the steps between them by hand.
 
 mod classes;
 mod compilation;
@@ -121,7 +121,8 @@ impl Project {
         self
     }
 
-    /// Looks for nothing on disk: the fleet names composites among the texts of the project alone, and no files of values.
+    /// Looks for nothing on disk: the fleet names composites among the texts of the project alone, and no files of
+    /// values.
     #[must_use]
     pub fn in_memory(self) -> Self {
         Self { in_memory: true, ..self }
@@ -147,7 +148,8 @@ impl Project {
         self
     }
 
-    /// Gives diagnostics of a code another severity where composites say nothing else, as `CODE=LEVEL` or `CODE=LEVEL:REASON`.
+    /// Gives diagnostics of a code another severity where composites say nothing else, as `CODE=LEVEL` or
+    /// `CODE=LEVEL:REASON`.
     #[must_use]
     pub fn severity(mut self, severity: impl Into<String>) -> Self {
         self.severities.push(severity.into());
@@ -173,8 +175,8 @@ impl Project {
         Self { max_size, ..self }
     }
 
-    /// Takes classes that the registry does not know as given, and implementations of other kinds. There is no assembly then when a
-    /// component has such a one.
+    /// Takes classes that the registry does not know as given, and implementations of other kinds. There is no assembly
+    /// then when a component has such a one.
     #[must_use]
     pub fn assume_classes(self, assume_classes: bool) -> Self {
         Self { assume_classes, ..self }
@@ -203,7 +205,8 @@ impl Project {
         self.load(classes).compile()
     }
 
-    /// As [`compile`](Self::compile) for the diagnostics alone, which needs less: the output is the number of components.
+    /// As [`compile`](Self::compile) for the diagnostics alone, which needs less: the output is the number of
+    /// components.
     ///
     /// The result of [`wiring`](Self::wiring) is reported of assemblies only.
     pub fn check(&self, classes: &impl ClassPath) -> Compilation<usize> {
@@ -220,7 +223,8 @@ impl Project {
         self.load_with(&mut self.finder(), classes)
     }
 
-    /// A finder for the files that the fleet names. One finder for several projects with the same open texts looks at each file once.
+    /// A finder for the files that the fleet names. One finder for several projects with the same open texts looks at
+    /// each file once.
     pub fn finder(&self) -> Finder {
         Finder::new(self.open.clone())
     }

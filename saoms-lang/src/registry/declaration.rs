@@ -222,8 +222,8 @@ pub struct InterfaceDeclaration {
 )]
 static TASK_SERVICE: LazyLock<ServiceDeclaration> = LazyLock::new(|| ServiceDeclaration {
     name: "TaskInterface".to_owned(),
-    // Proof: the macro writes the text while `saoms-api` compiles, and no input reaches it; any test that registers a periodic class
-    // reads it.
+    // Proof: the macro writes the text while `saoms-api` compiles, and no input reaches it; any test that registers a
+    // periodic class reads it.
     interface: serde_json::from_str(<dyn TaskInterface as Interface>::DECLARATION)
         .expect("the interface declares itself in JSON"),
 });
@@ -234,7 +234,8 @@ impl ClassDeclaration {
         self.kind == ClassKind::Periodic
     }
 
-    /// The services that components of it offer: its own, and `TaskInterface` of a periodic class, which the host serves.
+    /// The services that components of it offer: its own, and `TaskInterface` of a periodic class, which the host
+    /// serves.
     pub fn offers(&self) -> impl Iterator<Item = &ServiceDeclaration> {
         let own = |service: &ServiceDeclaration| service.name == TASK_SERVICE.name;
         let task = (self.is_periodic() && !self.services.iter().any(own)).then(|| &*TASK_SERVICE);

@@ -15,7 +15,8 @@ struct Head<'a> {
     extends: Option<&'a RawValue>,
 }
 
-/// The declarations of the classes that the one with this declaration extends, as their authors' builds wrote them, the nearest first.
+/// The declarations of the classes that the one with this declaration extends, as their authors' builds wrote them, the
+/// nearest first.
 pub(super) fn lineage(mut text: &str) -> Result<Vec<&str>, String> {
     let mut all = Vec::new();
     loop {

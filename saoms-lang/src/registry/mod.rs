@@ -1,7 +1,7 @@
 //! The classes and the loops that composites can name.
 //!
-//! A [`Registry`] is a value. [`Registry::linked`] has the classes that are linked into the program, tests fill their own.
-//! It is built from the text of declarations alone, so that it can know classes whose code it has not run.
+//! A [`Registry`] is a value. [`Registry::linked`] has the classes that are linked into the program, tests fill their
+//! own. It is built from the text of declarations alone, so that it can know classes whose code it has not run.
 
 mod class;
 mod declaration;
@@ -140,7 +140,8 @@ impl Registry {
     /// Adds a class under all its names, and the loops that it has. After an error the registry is as it was before.
     ///
     /// # Errors
-    /// The declaration is malformed or of another version of the contract, or one of its names is taken; or as [`Registry::add_loop`].
+    /// The declaration is malformed or of another version of the contract, or one of its names is taken; or as
+    /// [`Registry::add_loop`].
     pub fn add(&mut self, registration: Registration) -> Result<(), RegistryError> {
         let before = (!registration.loops().is_empty()).then(|| self.loops.clone());
         let loops = registration.loops().iter().try_for_each(|one| self.add_loop(*one));
@@ -183,7 +184,8 @@ impl Registry {
         Ok(())
     }
 
-    /// Adds a class by its declaration and where its code comes from, under all its names. After an error the registry is as it was before.
+    /// Adds a class by its declaration and where its code comes from, under all its names. After an error the registry
+    /// is as it was before.
     ///
     /// # Errors
     /// As [`Registry::add`].
@@ -259,8 +261,9 @@ impl Registry {
         self.classes.is_empty()
     }
 
-    /// Up to three names that are like `name`, the likeliest first: those that end alike behind the last dot, or else those that are spelt alike,
-    /// or else those of which it is a part. What a class is called comes before what else it is called.
+    /// Up to three names that are like `name`, the likeliest first: those that end alike behind the last dot, or else
+    /// those that are spelt alike, or else those of which it is a part. What a class is called comes before what else
+    /// it is called.
     pub fn nearest(&self, name: &str) -> Vec<&str> {
         let names = self.classes.values().map(|class| (class.name(), class.is_alias()));
         near(name, names)

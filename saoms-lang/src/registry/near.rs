@@ -7,9 +7,9 @@ const OFFERED: usize = 3;
 /// A part of a name is looked for in others if it has at least so many letters.
 const TELLING: usize = 4;
 
-/// Up to three of the names, the likeliest first: what is the same but for case; what ends alike behind the last dot; what is spelt alike, with its
-/// package or without; what begins or ends with it. Among equals those come first that say what a class is called rather than what else it
-/// is called, and the shorter ones.
+/// Up to three of the names, the likeliest first: what is the same but for case; what ends alike behind the last dot;
+/// what is spelt alike, with its package or without; what begins or ends with it. Among equals those come first that
+/// say what a class is called rather than what else it is called, and the shorter ones.
 pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>) -> Vec<&'n str> {
     let last = simple(name);
     if last.is_empty() {

@@ -1,5 +1,5 @@
-//! Messages as JSON: a message is an object, a sequence an array, a constant of an enumeration its name, a number that JSON does not have
-//! (`NaN`, `inf`, `-inf`) its name.
+//! Messages as JSON: a message is an object, a sequence an array, a constant of an enumeration its name, a number that
+//! JSON does not have (`NaN`, `inf`, `-inf`) its name.
 
 use saoms_api::host::cdr::{DecodeError, Reader, Writer};
 use serde_json::{Map, Number as JsonNumber, Value};

@@ -1,7 +1,7 @@
 //! Messages that this program knows by their schema alone: those of plugins and of other programs.
 //!
-//! A [`Schema`] is read from the text that a declaration carries (see [`saoms_api::host::declaration`]). It tells whether bytes are such a message
-//! ([`Schema::check`]), and turns them into JSON and back, for tools and people.
+//! A [`Schema`] is read from the text that a declaration carries (see [`saoms_api::host::declaration`]). It tells
+//! whether bytes are such a message ([`Schema::check`]), and turns them into JSON and back, for tools and people.
 
 mod json;
 mod read;

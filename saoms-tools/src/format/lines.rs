@@ -60,7 +60,8 @@ impl<'w> Lines<'w> {
         }
     }
 
-    /// Writes text of the source; each line end in it becomes one of this text, which XML does not tell apart (XML 1.0, 2.11).
+    /// Writes text of the source; each line end in it becomes one of this text, which XML does not tell apart (XML 1.0,
+    /// 2.11).
     pub(super) fn verbatim(&mut self, mut text: &str) {
         while let Some(at) = text.find(['\r', '\n']) {
             self.push(&text[..at]);

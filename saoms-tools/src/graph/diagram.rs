@@ -21,8 +21,8 @@ pub struct Diagram {
     pub links: Vec<DiagramLink>,
     /// The topics of its components, in the order of their first use.
     pub topics: Vec<DiagramTopic>,
-    /// The number of wires that are left out: of those that autowire makes there can be as many as the product of all ends, and those to components that are not
-    /// there have a box each.
+    /// The number of wires that are left out: of those that autowire makes there can be as many as the product of all
+    /// ends, and those to components that are not there have a box each.
     pub left_out: usize,
 }
 
@@ -31,7 +31,8 @@ pub struct Diagram {
 pub struct DiagramComponent {
     /// Its name; that of a replicated one with `*` for each expression.
     pub name: String,
-    /// The fewest and the most replicas in one of the composites that it is in, where it is replicated and that is known.
+    /// The fewest and the most replicas in one of the composites that it is in, where it is replicated and that is
+    /// known.
     pub replicas: Option<(usize, usize)>,
     /// The name of its class, or the kind of its implementation; empty where the file says nothing.
     pub class: String,

@@ -1,8 +1,8 @@
 //! Pictures of composites in the notation of SCA Assembly: components with services on the left and references on the
 //! right, properties on top, wires, promotions, and topics.
 //!
-//! A [`Diagram`] is what there is to draw; [`svg`], [`mermaid`] and [`dot`] draw it. It is made from the model, not from
-//! an assembly: a fleet with mistakes has a picture, too, in which what is missing can be seen.
+//! A [`Diagram`] is what there is to draw; [`svg`], [`mermaid`] and [`dot`] draw it. It is made from the model, not
+//! from an assembly: a fleet with mistakes has a picture, too, in which what is missing can be seen.
 
 mod diagram;
 mod dot;

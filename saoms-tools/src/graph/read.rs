@@ -12,16 +12,16 @@ use saoms_lang::model::{
 };
 use saoms_lang::registry::{RegisteredClass, Registry};
 
-/// Composites that are drawn inside each other, and components that are drawn in all of them: a few lines of text can name
-/// a composite of composites of composites.
+/// Composites that are drawn inside each other, and components that are drawn in all of them: a few lines of text can
+/// name a composite of composites of composites.
 const MOST_DEEP: usize = 12;
 const MOST_INSIDE: usize = 5_000;
 
 impl Diagram {
-    /// The diagram of the composites of a contribution that were asked for, as the one fleet that they are together, with what they
-    /// include, and with what is inside the components that composites implement. Classes that are not registered are drawn with what the file says of them;
-    /// components that are named and not there are drawn as missing.
-    /// Of replicated components there is one box, with how many `census` has; what is not in it is left out.
+    /// The diagram of the composites of a contribution that were asked for, as the one fleet that they are together,
+    /// with what they include, and with what is inside the components that composites implement. Classes that are not
+    /// registered are drawn with what the file says of them; components that are named and not there are drawn as
+    /// missing. Of replicated components there is one box, with how many `census` has; what is not in it is left out.
     pub fn of(contribution: &Contribution, registry: &Registry, census: &Occurrences) -> Self {
         if contribution.asked_for().is_empty() {
             return Self::default();

@@ -174,7 +174,8 @@ impl Out<'_, '_> {
         self.text.push_str("</g>\n");
     }
 
-    /// Joins what a composite promotes to the parts of its component of the same names: on each side by one line, as the names say which belong together.
+    /// Joins what a composite promotes to the parts of its component of the same names: on each side by one line, as
+    /// the names say which belong together.
     fn ties(&mut self, placed: &Placed, component: &DiagramComponent, picture: &Layout, at: Point) {
         let Placed { rect, plan } = placed;
         let (left, right) = (rect.x + TIE, rect.x + rect.width - TIE);

@@ -107,7 +107,8 @@ fn autowire_finds_services_of_the_same_interface() {
     );
 }
 
-/// A promoted service has the interface of the inner one, so that autowire finds it, and is wired around its composite alone.
+/// A promoted service has the interface of the inner one, so that autowire finds it, and is wired around its composite
+/// alone.
 #[test]
 fn autowire_finds_what_composites_promote() {
     let interface = "<interface.java interface='a.I'/>";

@@ -3,8 +3,8 @@
 use super::diagram::Diagram;
 use saoms_lang::syntax::escaped;
 
-/// Widths of the printable characters of ASCII in thousandths of the size, as the metrics of DejaVu Sans have them: of the
-/// fonts that viewers usually take for sans-serif it is the widest, so that labels fit in all of them.
+/// Widths of the printable characters of ASCII in thousandths of the size, as the metrics of DejaVu Sans have them: of
+/// the fonts that viewers usually take for sans-serif it is the widest, so that labels fit in all of them.
 const WIDTHS: [u16; 95] = [
     318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636, 636, 636,
     636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632, 575, 775, 752, 295,
@@ -31,7 +31,8 @@ fn thousandths(character: char) -> u16 {
     }
 }
 
-/// The start and the end of a text, of at most so many characters with an ellipsis between them when some are missing: long names differ at their ends.
+/// The start and the end of a text, of at most so many characters with an ellipsis between them when some are missing:
+/// long names differ at their ends.
 pub(super) fn short(text: &str, most: usize) -> String {
     let text = plain(text);
     let count = text.chars().count();

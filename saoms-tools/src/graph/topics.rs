@@ -19,8 +19,9 @@ pub(super) fn of(view: &View<'_>) -> Vec<DiagramTopic> {
     topics.all
 }
 
-/// Makes one of topics that are the same but for their names, such as those of the replicas of a hall: the same before renaming, with the same ends, each of
-/// which stands for several components; so do all where the composite `is_repeated`.
+/// Makes one of topics that are the same but for their names, such as those of the replicas of a hall: the same before
+/// renaming, with the same ends, each of which stands for several components; so do all where the composite
+/// `is_repeated`.
 pub(super) fn join(diagram: &mut Diagram, is_repeated: bool) {
     let is_several =
         |end: &usize| is_repeated || diagram.components[*end].replicas.is_some_and(|(_, most)| most > 1);

@@ -9,7 +9,8 @@ use super::read::View;
 use saoms_lang::expression::{has_expression, pattern};
 use saoms_lang::model::WireElement;
 
-/// Wires of autowire that are drawn of one composite: each reference that takes several has one to each service of its interface.
+/// Wires of autowire that are drawn of one composite: each reference that takes several has one to each service of its
+/// interface.
 const MOST_AUTOWIRED: usize = 20_000;
 /// Components that are named and not there that are drawn of one composite.
 const MOST_MISSING: usize = 2_000;
@@ -147,8 +148,8 @@ impl Linker<'_> {
         }
     }
 
-    /// The components among the first `count`, those that are there, that offer each interface, in order, each with the place of its
-    /// first such service.
+    /// The components among the first `count`, those that are there, that offer each interface, in order, each with the
+    /// place of its first such service.
     fn offers(&self, count: usize) -> HashMap<String, Vec<(usize, usize)>> {
         let mut all: HashMap<String, Vec<(usize, usize)>> = HashMap::new();
         for (component, one) in self.diagram.components[..count].iter().enumerate() {
@@ -190,7 +191,8 @@ impl Linker<'_> {
         }
     }
 
-    /// The service that `component`, `component/service` or `component/service/binding` names; `None` where that is not drawn.
+    /// The service that `component`, `component/service` or `component/service/binding` names; `None` where that is not
+    /// drawn.
     fn service(&mut self, uri: &str, interface: Option<&str>) -> Option<DiagramEnd> {
         let (component, name) = self.split(uri)?;
         let port = match &name {
@@ -212,7 +214,8 @@ impl Linker<'_> {
         Some(DiagramEnd::Component { component, port })
     }
 
-    /// The component of a URI, drawn as missing when there is none, and what follows it; `None` where there are too many that are missing.
+    /// The component of a URI, drawn as missing when there is none, and what follows it; `None` where there are too
+    /// many that are missing.
     fn split(&mut self, uri: &str) -> Option<(usize, Option<String>)> {
         let uri = if has_expression(uri) { pattern(uri) } else { uri.to_owned() };
         let mut parts = uri.trim_start_matches('/').split('/');

@@ -1,12 +1,14 @@
 //! The language of composites as XML schemas, for editors that know XML and not SAOMS.
 //!
-//! A schema has one namespace, so there is one for each version of SCA and one for what SAOMS adds, which the others import. It holds the
-//! names of all classes, properties, services, references, interfaces and loops of a registry as well, each documented.
+//! A schema has one namespace, so there is one for each version of SCA and one for what SAOMS adds, which the others
+//! import. It holds the names of all classes, properties, services, references, interfaces and loops of a registry as
+//! well, each documented.
 //!
-//! In XSD 1.0 the type of an element cannot depend on an attribute, and what properties a component has depends on the attribute `class` of
-//! another element. So these names are enumerations in a union with any name: an editor offers and explains them, and refuses none that a
-//! composite of somebody else could have. What values they take is said in their documentation. XSD 1.1 has assertions, which hold
-//! components to the properties of their classes, too; few editors read it.
+//! In XSD 1.0 the type of an element cannot depend on an attribute, and what properties a component has depends on the
+//! attribute `class` of another element. So these names are enumerations in a union with any name: an editor offers and
+//! explains them, and refuses none that a composite of somebody else could have. What values they take is said in their
+//! documentation. XSD 1.1 has assertions, which hold components to the properties of their classes, too; few editors
+//! read it.
 
 mod assertions;
 mod catalog;

@@ -15,8 +15,9 @@ use saoms_lang::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 const DOC: &str =
     "What SAOMS adds to SCA, and the names that its classes and plugins bring. Written by `saoms schema`.";
 
-/// Values of attributes that are not written. With these as defaults every component has what tells it from others of its name, so that `xs:unique` holds for those
-/// without a condition, too. They stand on the declarations: libxml2 does not know defaults of references to these.
+/// Values of attributes that are not written. With these as defaults every component has what tells it from others of
+/// its name, so that `xs:unique` holds for those without a condition, too. They stand on the declarations: libxml2 does
+/// not know defaults of references to these.
 pub(super) const DEFAULTS: [(&str, &str); 2] = [("if", "true"), ("from", "1")];
 
 pub(super) fn schema(words: &Words) -> NewElement {

@@ -48,7 +48,8 @@ const OTHER_ROOTS: &[(&str, &str)] = &[
     ("definitions", "Policies. What is inside is not described here."),
 ];
 
-/// The kinds of elements with unique names within their parent, and the attributes that make the name: of two components of one name another condition or another first index decides.
+/// The kinds of elements with unique names within their parent, and the attributes that make the name: of two
+/// components of one name another condition or another first index decides.
 const UNIQUE: &[(&Kind, &str, &[&str])] = &[
     (&COMPOSITE, "component", &["@name", "@saoms:if", "@saoms:from"]),
     (&COMPOSITE, "property", &["@name"]),
@@ -59,7 +60,8 @@ const UNIQUE: &[(&Kind, &str, &[&str])] = &[
     (&COMPONENT, "reference", &["@name"]),
 ];
 
-/// The namespaces of attributes that others put on elements of SCA. XSD 1.0 cannot let all pass but that of SAOMS, in which mistakes are to be found.
+/// The namespaces of attributes that others put on elements of SCA. XSD 1.0 cannot let all pass but that of SAOMS, in
+/// which mistakes are to be found.
 const FOREIGN: &[&str] = &[
     "http://www.w3.org/XML/1998/namespace",
     "http://www.w3.org/1999/xlink",

@@ -14,8 +14,8 @@ const SETTINGS: &[&str] = &["p=2", "site=north"];
 
 /// Checks a fleet as the command does, and draws it.
 ///
-/// The same is found when nothing but the diagnostics is asked for, and when the files are formatted. What the fleet comes to is written
-/// out, and comes to the same. What is suggested mends what is wrong.
+/// The same is found when nothing but the diagnostics is asked for, and when the files are formatted. What the fleet
+/// comes to is written out, and comes to the same. What is suggested mends what is wrong.
 pub(crate) fn holds(input: &Input, registry: &Registry) {
     let known = Asked::default();
     let fleet = examined(input, &known, registry);
@@ -94,8 +94,8 @@ fn mended(input: &Input, fleet: &Checked<Assembly>, asked: &Asked, registry: &Re
     let number =
         |fleet: &Checked<Assembly>| fleet.kinds().iter().filter(|kind_| **kind_ == kind(one)).count();
     if one.code.id.starts_with("S01") || one.code == &codes::NAMESPACE_NEAR || parsed(text).is_none() {
-        // Of these the first is told, and of a text whose tags do not fit what stands before that is seen: the same may be wrong again
-        // further on.
+        // Of these the first is told, and of a text whose tags do not fit what stands before that is seen: the same may
+        // be wrong again further on.
         let start = |one: &Diagnostic| one.location.span.start as usize;
         let is_further = |next: &Diagnostic| {
             start(next) > start(one) || edited.len() - start(next) < text.len() - start(one)

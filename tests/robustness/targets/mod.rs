@@ -1,4 +1,5 @@
-//! What has to hold for whatever bytes a file has. The tests beside this file and the fuzzers in `fuzz/` run the same functions.
+//! What has to hold for whatever bytes a file has. The tests beside this file and the fuzzers in `fuzz/` run the same
+//! functions.
 
 mod grammar;
 mod input;
@@ -161,7 +162,8 @@ pub(crate) fn parsed(text: &str) -> Option<Document> {
     syntax::parse(FileId(0), &Arc::new(text.to_owned())).well_formed().ok()
 }
 
-/// Elements with their attributes and texts, white space between elements left out, and the comments and instructions among them.
+/// Elements with their attributes and texts, white space between elements left out, and the comments and instructions
+/// among them.
 fn meaning(document: &Document) -> Vec<String> {
     let mut elements = document.elements();
     let element = |element: syntax::Element<'_>| {
@@ -188,12 +190,14 @@ fn meaning(document: &Document) -> Vec<String> {
     all.collect()
 }
 
-/// Shows diagnostics in all formats; the first ones, when there are very many. Each is of a known code and at places in its files.
+/// Shows diagnostics in all formats; the first ones, when there are very many. Each is of a known code and at places in
+/// its files.
 pub(crate) fn show(all: &[Diagnostic], sources: &Sources) {
     let is_inside = |at: Location| {
         let file = sources.get(at.file);
         let Some(_) = file.text().get(at.span.start as usize..at.span.end as usize) else { return false };
-        // Lines and columns, which people and editors see, name the same place; those of a mark at the start are those behind it.
+        // Lines and columns, which people and editors see, name the same place; those of a mark at the start are those
+        // behind it.
         let is_same = |from: u32, to: u32| from == to || to == 3 && file.text().starts_with('\u{feff}');
         [at.span.start, at.span.end].iter().all(|&end| is_same(end, file.offset(file.line_column(end))))
     };

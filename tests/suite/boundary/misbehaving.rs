@@ -1,4 +1,5 @@
-//! Components of plugins that do what they must not: the program and all other components go on, and what happened is told by name.
+//! Components of plugins that do what they must not: the program and all other components go on, and what happened is
+//! told by name.
 
 use std::path::PathBuf;
 
@@ -19,7 +20,8 @@ fn libraries() -> Vec<PathBuf> {
     ["good", "bad", "raw"].map(library).to_vec()
 }
 
-/// A second of virtual time with an honest component in front of these and one behind them, which both do all their work.
+/// A second of virtual time with an honest component in front of these and one behind them, which both do all their
+/// work.
 fn beside_honest(components: &str) -> Run {
     let behind = component("Behind", "good.Reader", "");
     let run = second(&(honest() + components + &behind), &libraries());

@@ -1,4 +1,5 @@
-//! Plugins at their best and at their worst: real libraries, built once from `tests/plugins`, loaded by the real command.
+//! Plugins at their best and at their worst: real libraries, built once from `tests/plugins`, loaded by the real
+//! command.
 
 mod build;
 mod misbehaving;

@@ -1,4 +1,5 @@
-//! Mistakes that people make in fleets that are right: each is told once, at its place, and what is suggested makes the fleet right again.
+//! Mistakes that people make in fleets that are right: each is told once, at its place, and what is suggested makes the
+//! fleet right again.
 
 use std::fmt::Write as _;
 use std::fs;

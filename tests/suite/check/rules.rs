@@ -1,5 +1,5 @@
-//! The rules over whole fleets that the shipped components bring: their part of `docs/diagnostics.md`, with an example of each, and where
-//! they say nothing.
+//! The rules over whole fleets that the shipped components bring: their part of `docs/diagnostics.md`, with an example
+//! of each, and where they say nothing.
 //!
 //! `UPDATE_EXPECT=1 cargo test --test suite rules` writes the part anew, and what the examples say of themselves.
 

@@ -24,7 +24,8 @@ fn robot(number: u32, inside: &str) -> String {
     )
 }
 
-/// A folder with a fleet that includes a part that cannot run by itself, and another fleet with robots of the same names.
+/// A folder with a fleet that includes a part that cannot run by itself, and another fleet with robots of the same
+/// names.
 fn contribution(deployables: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {

@@ -123,7 +123,8 @@ fn topics_of_loops_are_drawn_as_the_wiring_report_has_them() {
     assert!(drawn.contains(&"OTHER") && drawn.contains(&"CSMSTOPIC"), "{drawn:?}");
 }
 
-/// What is inside is drawn as often as it is there in one of the composites around it, and what it promotes is joined to its component.
+/// What is inside is drawn as often as it is there in one of the composites around it, and what it promotes is joined
+/// to its component.
 #[test]
 fn what_is_in_replicas_is_counted_in_each_of_them() {
     let folder = tempdir().unwrap();

@@ -47,8 +47,8 @@ fn the_folder_schema_is_what_the_command_writes() {
     }
 }
 
-/// The characters that can stand behind `\` in a pattern: XML Schema 1.0, part 2, F.1.1. `$` and `/` are not among them, and some validators refuse a whole
-/// schema for it.
+/// The characters that can stand behind `\` in a pattern: XML Schema 1.0, part 2, F.1.1. `$` and `/` are not among
+/// them, and some validators refuse a whole schema for it.
 #[test]
 fn patterns_have_escapes_that_xml_schema_knows() {
     const KNOWN: &str = r"nrt\|.?*+(){}-[]^sSiIcCdDwWpP";

@@ -129,7 +129,8 @@ fn the_classic_rules_deliver_and_collide_once_as_in_figure_8_19() {
         &json!({"requested": 4, "delivered": 4, "open": 0, "ignored": 0})
     );
     assert_eq!(section(&report, "collisions"), &json!({"vertex": 1, "swap": 0}));
-    // The last piece is deposited in the 51st execution of the first robot, and the run ends when the environment hears of it.
+    // The last piece is deposited in the 51st execution of the first robot, and the run ends when the environment hears
+    // of it.
     assert_eq!(report.time_s, 5.15);
 }
 

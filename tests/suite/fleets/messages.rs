@@ -1,4 +1,5 @@
-//! What nobody can mean on the topics that the shipped components read: reported with its sender, said once, and ignored.
+//! What nobody can mean on the topics that the shipped components read: reported with its sender, said once, and
+//! ignored.
 
 use std::time::Duration;
 
@@ -209,7 +210,8 @@ fn run(policy: &str, topic: &str) -> Run {
     Fleet::of_text(format!("{start}\n{}</composite>", text.concat())).run(1, Duration::from_secs(600))
 }
 
-/// Holds that the work is done whatever is said on a topic, and that each of these readers says each of these things, once.
+/// Holds that the work is done whatever is said on a topic, and that each of these readers says each of these things,
+/// once.
 fn ignored(topic: &str, readers: &[(&str, &[&str])]) {
     for policy in ["safe", "classic"] {
         let report = run(policy, topic);

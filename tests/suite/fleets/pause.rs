@@ -1,4 +1,5 @@
-//! Robots that are unscheduled in the middle of a job and scheduled again later: they start new, and luggage is neither lost nor delivered twice.
+//! Robots that are unscheduled in the middle of a job and scheduled again later: they start new, and luggage is neither
+//! lost nor delivered twice.
 
 use std::time::Duration;
 

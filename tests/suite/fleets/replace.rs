@@ -1,4 +1,5 @@
-//! Robots that are replaced while their fleet runs, as `saoms run --reload` does when a library with one of their loops is built anew.
+//! Robots that are replaced while their fleet runs, as `saoms run --reload` does when a library with one of their loops
+//! is built anew.
 
 use std::time::Duration;
 

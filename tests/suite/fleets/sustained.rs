@@ -1,4 +1,5 @@
-//! Endless work and the charge of the robots: what the checker refuses piles up in the simulation, and what it says nothing about is worked off.
+//! Endless work and the charge of the robots: what the checker refuses piles up in the simulation, and what it says
+//! nothing about is worked off.
 
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -84,7 +85,8 @@ fn what_is_refused_piles_up_and_what_is_not_told_is_worked_off() {
 
 #[test]
 fn what_is_in_reach_is_brought_and_what_is_not_is_given_up() {
-    // 300 ms of handling are three executions, and a full battery lasts for 50: 19 moves there and back, two to be sure and a third of the way.
+    // 300 ms of handling are three executions, and a full battery lasts for 50: 19 moves there and back, two to be sure
+    // and a third of the way.
     let far = Setting { times: (0, 300), luggage: "", ..ONE };
     let brought = |luggage: &'static str| {
         let fleet = Setting { luggage, ..far }.fleet(60_000, "1 times");

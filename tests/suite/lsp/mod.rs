@@ -291,7 +291,8 @@ fn composites_are_checked_as_the_description_of_their_contribution_says() {
     );
     editor.open("fleet.composite", &first);
     editor.open("library.composite", &library);
-    // Both deployables have a component of one name, and the value that is missing in what is only used by others is theirs.
+    // Both deployables have a component of one name, and the value that is missing in what is only used by others is
+    // theirs.
     let mut shown = std::collections::BTreeMap::new();
     while shown.len() < 3 {
         let message = editor.receive();

@@ -30,7 +30,8 @@ struct Keystroke {
     new: String,
 }
 
-/// Something that a person types: mostly in the middle of words, sometimes what breaks the text, which is mended at once.
+/// Something that a person types: mostly in the middle of words, sometimes what breaks the text, which is mended at
+/// once.
 fn typed(text: &str, chance: &mut Chance) -> Vec<Keystroke> {
     const BREAKING: [&str; 12] =
         ["<", ">", "\"", "&", "</", "\r\n", "🤖", "<!--", "${", "/>", "ä", "<component "];

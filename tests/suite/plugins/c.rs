@@ -1,4 +1,5 @@
-//! Components in C, built by the system's compiler against the header: the robot of the examples, and the component of `docs/c.md`.
+//! Components in C, built by the system's compiler against the header: the robot of the examples, and the component of
+//! `docs/c.md`.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -23,8 +23,8 @@ fn library(package: &str) -> PathBuf {
     library
 }
 
-/// Runs the fleet of an example with its code loaded from the library, and linked in. The two runs have to be the same, event for event; what is
-/// given back is the report of the first, and the second.
+/// Runs the fleet of an example with its code loaded from the library, and linked in. The two runs have to be the same,
+/// event for event; what is given back is the report of the first, and the second.
 fn loaded_and_linked(example: &str, seconds: u64) -> (Value, Run) {
     let library = library(&format!("saoms_{}", example.replace('-', "_")));
     let composite = format!("plugins/{example}/fleet.composite");

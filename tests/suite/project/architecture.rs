@@ -138,7 +138,8 @@ fn the_checker_knows_no_clock_no_thread_and_no_network() {
     }
 }
 
-/// Words of the domain of the components that ship: the program knows them only through what `saoms-components` registers.
+/// Words of the domain of the components that ship: the program knows them only through what `saoms-components`
+/// registers.
 const DOMAIN: &[&str] =
     &["luggage", "collision", "stranded", "robot", "airport", "charg", "battery", "healer", "scenario"];
 

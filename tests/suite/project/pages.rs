@@ -1,5 +1,5 @@
-//! What the pages in `docs/` show is so: their composites and scenarios have no fault of their own, their commands have the options that they name, and
-//! what is printed there is printed.
+//! What the pages in `docs/` show is so: their composites and scenarios have no fault of their own, their commands have
+//! the options that they name, and what is printed there is printed.
 
 use std::fs;
 use std::path::PathBuf;
@@ -77,7 +77,8 @@ fn without_gaps(text: &str) -> String {
     text.lines().filter(|line| line.trim() != "...").map(|line| format!("{line}\n")).collect()
 }
 
-/// What parts of composites lack, because a page does not show all of one: files, implementations, components, classes of plugins, properties.
+/// What parts of composites lack, because a page does not show all of one: files, implementations, components, classes
+/// of plugins, properties.
 const LACKING: [&str; 12] = [
     "S0003", "S1010", "S2011", "S2024", "S2026", "S2030", "S2031", "S2045", "S2049", "S3001", "S3006",
     "S3015",

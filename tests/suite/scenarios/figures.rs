@@ -1,7 +1,7 @@
 //! The console beside the manual's figures: what each of them shows, in its order and wording.
 //!
-//! Left out are the figures' dates, the lines of the original's libraries, and what their edges cut; robots have their names throughout, where
-//! the figures sometimes write `Robot2` for `Robot002`.
+//! Left out are the figures' dates, the lines of the original's libraries, and what their edges cut; robots have their
+//! names throughout, where the figures sometimes write `Robot2` for `Robot002`.
 
 use super::run::Run;
 

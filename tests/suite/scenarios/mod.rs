@@ -1,4 +1,5 @@
-//! The scenarios of the manual's chapter 8 in virtual time: the facts of its figures, to the execution number and the battery's value.
+//! The scenarios of the manual's chapter 8 in virtual time: the facts of its figures, to the execution number and the
+//! battery's value.
 
 mod critical;
 mod figures;

@@ -5,7 +5,8 @@ use saoms_testkit::Fleet;
 use super::fleet::fleet;
 use super::run::Run;
 
-/// Checks of each record of these loops whose text begins so that the way back ends in the environment; how many those are.
+/// Checks of each record of these loops whose text begins so that the way back ends in the environment; how many those
+/// are.
 #[track_caller]
 fn begin_outside(run: &Run, loops: &[&str], texts: &[&str]) -> usize {
     let journal = &run.report.journal;

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use super::run::{Execution, Run};
 
 impl Run {
-    /// The facts of a robot's run, such as `12: collects at (3,1), 94.0`: the execution, what happened, where, and the battery.
+    /// The facts of a robot's run, such as `12: collects at (3,1), 94.0`: the execution, what happened, where, and the
+    /// battery.
     pub(crate) fn story(&self, robot: &str) -> String {
         let (mut text, mut before) = (String::new(), Vec::new());
         for execution in self.executions(robot) {

@@ -1,4 +1,5 @@
-//! The use cases of the manual's chapter 7, and its stress test, by the default policy: what has to have happened in the end, and in which order.
+//! The use cases of the manual's chapter 7, and its stress test, by the default policy: what has to have happened in
+//! the end, and in which order.
 
 use super::run::Run;
 
@@ -16,7 +17,8 @@ fn run(composite: &str, pieces: i64) -> Run {
     run
 }
 
-/// Checks that these lines of the log came in this order, perhaps with others between them; given as component and text.
+/// Checks that these lines of the log came in this order, perhaps with others between them; given as component and
+/// text.
 fn assert_order(run: &Run, expected: &[(&str, &str)]) {
     let mut log = run.whole_log();
     for (component, text) in expected {

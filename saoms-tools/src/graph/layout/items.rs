@@ -1,4 +1,5 @@
-//! Items of columns and the links between them: components, parts of the composite at its borders, and lines that pass by.
+//! Items of columns and the links between them: components, parts of the composite at its borders, and lines that pass
+//! by.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -50,8 +51,8 @@ pub(super) struct Back {
     pub(super) to: Pin,
 }
 
-/// Lines that pass by columns, for each link and component and for any picture: long ways of wires could have as many as the product
-/// of both.
+/// Lines that pass by columns, for each link and component and for any picture: long ways of wires could have as many
+/// as the product of both.
 const PASSES: (usize, usize) = (2, 1_000);
 
 /// Columns with their items from top to bottom; the first and the last hold what the composite promotes.

@@ -125,7 +125,8 @@ pub(super) const LEGEND: i32 = 4 * GRID;
 /// The least width of a picture: that of the legend.
 const LEAST_WIDTH: i32 = 640;
 
-/// Lays out a diagram in the shape that fills a screen best: as a whole picture with a legend, or to stand inside another one.
+/// Lays out a diagram in the shape that fills a screen best: as a whole picture with a legend, or to stand inside
+/// another one.
 pub(super) fn layout(diagram: &Diagram, is_whole: bool) -> Layout {
     let mut has_topics = vec![false; diagram.components.len()];
     for topic in &diagram.topics {

@@ -61,8 +61,8 @@ fn stacked(all: &Items, column: &[usize]) -> Vec<i32> {
 }
 
 /// Moves the items of a column to where their joints on one side are straight, at the least sum of squares of what is
-/// left: neighbours that would overlap move as one (pool adjacent violators; Barlow et al., Statistical inference under order
-/// restrictions, 1972).
+/// left: neighbours that would overlap move as one (pool adjacent violators; Barlow et al., Statistical inference under
+/// order restrictions, 1972).
 fn fit(all: &mut Items, column: usize, offsets: &[i32], wanted: &[Vec<usize>], is_left: bool, free: i32) {
     struct Block {
         sum: f64,

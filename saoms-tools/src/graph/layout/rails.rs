@@ -25,7 +25,8 @@ fn label(name: &str) -> String {
     short(name, 32)
 }
 
-/// The rails from `top` on, and what components do with them; the lines of components are drawn into `lines` of the layout.
+/// The rails from `top` on, and what components do with them; the lines of components are drawn into `lines` of the
+/// layout.
 pub(super) fn draw(
     diagram: &Diagram,
     routes: &Routes,

@@ -1,5 +1,6 @@
-//! Fleets out of bytes: the elements and attributes of the vocabulary, the classes and properties of the registry, and values that fit them,
-//! put together as the bytes decide. Most of it is right, so that what is wrong, or odd, is met by all rules.
+//! Fleets out of bytes: the elements and attributes of the vocabulary, the classes and properties of the registry, and
+//! values that fit them, put together as the bytes decide. Most of it is right, so that what is wrong, or odd, is met
+//! by all rules.
 
 mod choices;
 mod component;
