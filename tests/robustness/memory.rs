@@ -7,41 +7,37 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use saoms_components as _;
-use saoms_lang::check::{Occurrences, Options, check};
-use saoms_lang::diagnostic::{Diagnostics, human, json};
-use saoms_lang::load::{MAX_SIZE, load_file, read_from};
-use saoms_lang::model::Contribution;
+use saoms_lang::diagnostic::{human, json};
+use saoms_lang::project::{Compilation, Project};
 use saoms_lang::registry::Registry;
-use saoms_lang::source::Sources;
 use saoms_tools::graph::{Diagram, Picture, dot, mermaid, svg};
+use tempfile::TempDir;
 
 use crate::below;
 use crate::targets::memory::{peak, within};
 
 thread_local! {
     static REGISTRY: Registry = Registry::linked().unwrap();
+    static FOLDER: TempDir = tempfile::tempdir().unwrap();
 }
 
 /// Reads, checks and tells what is wrong, as `saoms check` does; whether it could be run.
-fn checked(bytes: &[u8], assume_classes: bool) -> bool {
+fn checked(bytes: &[u8]) -> bool {
     REGISTRY.with(|registry| {
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let file = read_from(bytes, "x.composite", MAX_SIZE, &mut sources, &mut diagnostics);
-        let composite = file.and_then(|file| load_file(file, &sources, &mut diagnostics));
-        let fleet = Contribution::of(composite.into_iter().collect());
-        let options = Options { assume_classes, ..Options::default() };
-        let assembly = check(&fleet, registry, &options, &sources, &mut diagnostics);
-        let all = diagnostics.into_sorted();
-        drop(human(&all, &sources, false));
-        drop(json(&all, &sources));
-        assembly.is_some()
+        let path = FOLDER.with(|folder| folder.path().join("x.composite"));
+        fs::write(&path, bytes).unwrap();
+        let compilation = Project::new().file(path).compile(registry);
+        let Compilation { output, diagnostics, sources, .. } = &compilation;
+        drop(human(diagnostics, sources, false));
+        drop(json(diagnostics, sources));
+        output.is_some()
     })
 }
 
 #[track_caller]
 fn holds(what: &str, bytes: &[u8]) {
     let components = bytes.windows(10).filter(|part| part == b"<component").count();
-    within(what, bytes.len() + components * COMPONENT / 20, || _ = checked(bytes, false));
+    within(what, bytes.len() + components * COMPONENT / 20, || _ = checked(bytes));
 }
 
 const HEAD: &str =
@@ -123,7 +119,7 @@ fn fleets_by_their_size_alone() {
         };
         let text = composite(SIZE, "", robot, "");
         let mut is_sound = false;
-        let taken = peak(|| is_sound = checked(text.as_bytes(), false));
+        let taken = peak(|| is_sound = checked(text.as_bytes()));
         assert!(is_sound, "nothing is wrong with {class}");
         assert!(taken <= 20 * text.len(), "{class}: {taken} bytes for {} of the file", text.len());
     }
@@ -146,7 +142,7 @@ fn files_of_one_kind_by_their_size() {
         ("references", composite(SIZE, component, same("<reference/>"), end)),
         ("loops", composite(SIZE, component, same("<s:loop xmlns:s='urn:saoms:1'/>"), end)),
     ] {
-        let taken = peak(|| _ = checked(text.as_bytes(), false));
+        let taken = peak(|| _ = checked(text.as_bytes()));
         let limit = REST + 20 * text.len() + COMPONENT * text.matches("<component").count();
         assert!(taken <= limit, "{what}: {taken} bytes for {} of the file, {limit} at most", text.len());
     }
@@ -175,13 +171,8 @@ fn pictures_by_the_size_of_their_fleet() {
     for (what, draw) in [("svg", svg as fn(&Diagram) -> Picture<'_>), ("mermaid", mermaid), ("dot", dot)] {
         let taken = peak(|| {
             let diagram = REGISTRY.with(|registry| {
-                let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-                let file = sources.add("x.composite", text.clone());
-                let composite = load_file(file, &sources, &mut diagnostics).unwrap();
-                let fleet = Contribution::of(vec![composite]);
-                let options = Options::default();
-                let census = Occurrences::of(&fleet, registry, &options, &sources, &mut diagnostics);
-                Diagram::of(&fleet, registry, &census)
+                let fleet = Project::new().in_memory().text("x.composite", text.as_str()).census(registry);
+                Diagram::of(&fleet.contribution, registry, &fleet.output.unwrap())
             });
             write!(io::sink(), "{}", draw(&diagram)).unwrap();
         });

@@ -2,33 +2,27 @@ use expect_test::{Expect, expect};
 
 use super::{Diagram, State, dot, mermaid, svg};
 use saoms_lang::check::Occurrences;
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::Sources;
 
 fn diagram(content: &str) -> Diagram {
     let namespace = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
     let text =
         format!("<composite xmlns='{namespace}' name='c' targetNamespace='urn:c'{content}</composite>");
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = sources.add("c.composite", text);
-    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
-    Diagram::of(&Contribution::of(vec![composite]), &Registry::new(), &Occurrences::default())
+    drawn(&Project::new().text("c.composite", text))
 }
 
 /// The diagram of the first of some composites that name each other.
 fn together(texts: impl IntoIterator<Item = String>) -> Diagram {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let load = |text: String| {
-        let file = sources.add("c.composite", text);
-        load_file(file, &sources, &mut diagnostics).unwrap()
-    };
-    let mut asked_for: Vec<_> = texts.into_iter().map(load).collect();
-    let others = asked_for.split_off(1);
-    let contribution = Contribution::with(asked_for, others);
-    Diagram::of(&contribution, &Registry::new(), &Occurrences::default())
+    let mut texts = texts.into_iter();
+    let project = Project::new().text("c.composite", texts.next().unwrap());
+    drawn(&texts.fold(project, |project, text| project.other_text("c.composite", text)))
+}
+
+/// The diagram of a project in memory, whose classes nobody knows.
+fn drawn(project: &Project) -> Diagram {
+    let loaded = project.clone().in_memory().load(&Registry::new());
+    Diagram::of(&loaded.contribution, &loaded.registry, &Occurrences::default())
 }
 
 /// The edges of the flowchart, each a line.
@@ -174,16 +168,12 @@ fn a_composite_that_is_named_beside_one_that_has_it_inside_is_drawn_twice() {
             "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='{name}' targetNamespace='urn:c' xmlns:c='urn:c'>{content}</composite>"
         )
     };
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let both = [
         composite("outer", "<component name='I'><implementation.composite name='c:inner'/></component>"),
         composite("inner", "<component name='A'><implementation.java class='a.A'/></component>"),
     ];
-    let both = both.map(|text| {
-        let file = sources.add("c.composite", text);
-        load_file(file, &sources, &mut diagnostics).unwrap()
-    });
-    let diagram = Diagram::of(&Contribution::of(both.into()), &Registry::new(), &Occurrences::default());
+    let project = both.into_iter().fold(Project::new(), |project, text| project.text("c.composite", text));
+    let diagram = drawn(&project);
     let inside = diagram.components[0].inside.as_deref().unwrap();
     assert_eq!((inside.components[0].name.as_str(), diagram.components[1].name.as_str()), ("A", "A"));
 }

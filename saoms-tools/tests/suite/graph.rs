@@ -2,11 +2,8 @@
 
 use roxmltree::{Document, Node};
 use saoms_lang::check::Occurrences;
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::Sources;
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
 use crate::files::{self, Sample};
@@ -22,11 +19,10 @@ fn ends(node: Node<'_, '_>) -> [i32; 4] {
 fn every_file_has_a_picture() {
     let registry = Registry::new();
     for Sample { name, text } in files::all().into_iter().step_by(4) {
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let file = sources.add(&*name, text);
-        let Some(composite) = load_file(file, &sources, &mut diagnostics) else { continue };
+        let fleet = Project::new().in_memory().text(&*name, text).load(&registry).contribution;
+        let Some(composite) = fleet.asked_for().first() else { continue };
         let count = composite.components.len();
-        let diagram = Diagram::of(&Contribution::of(vec![composite]), &registry, &Occurrences::default());
+        let diagram = Diagram::of(&fleet, &registry, &Occurrences::default());
         assert!(
             mermaid(&diagram).to_string().starts_with("flowchart")
                 && dot(&diagram).to_string().starts_with("digraph")

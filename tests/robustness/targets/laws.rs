@@ -1,51 +1,47 @@
 //! What has to hold for whatever is checked.
 
 use saoms_lang::assembly::{Assembly, ComponentSpec};
-use saoms_lang::check::{Options, check, count};
 use saoms_lang::diagnostic::{Diagnostic, Edit, codes};
+use saoms_lang::project::Compilation;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::FileId;
 
-use super::input::{Asked, Checked, Input, kind};
+use super::input::{Input, Settings, kind, kinds};
 use super::{draw, parsed, show};
 
-/// Values from outside, for composite properties that a fleet may have.
-const SETTINGS: &[&str] = &["p=2", "site=north"];
+/// A fleet as the command checks it.
+const KNOWN: Settings = |project| project;
+
+/// A fleet with classes as given, its wiring judged, and values from outside for properties that it may have.
+const GIVEN: Settings = |project| project.assume_classes(true).wiring(true).set_all(["p=2", "site=north"]);
 
 /// Checks a fleet as the command does, and draws it.
 ///
 /// The same is found when nothing but the diagnostics is asked for, and when the files are formatted. What the fleet
 /// comes to is written out, and comes to the same. What is suggested mends what is wrong.
 pub(crate) fn holds(input: &Input, registry: &Registry) {
-    let known = Asked::default();
-    let fleet = examined(input, &known, registry);
-    assert_eq!(fleet.made.is_none(), fleet.has_errors(), "{}", fleet.told());
+    let fleet = examined(input, KNOWN, registry);
+    let counted = input.counted(KNOWN, registry);
+    let components = fleet.output.as_ref().map(|assembly| assembly.components.len());
+    assert_eq!(components, counted.output, "{input:#?}");
+    assert!(fleet.diagnostics == counted.diagnostics, "{}{}{input:#?}", fleet.text(), counted.text());
+    assert_eq!(fleet.output.is_none(), fleet.has_errors(), "{}", fleet.text());
     draw(&fleet.contribution, registry, &fleet.sources);
-    mended(input, &fleet, &known, registry);
-    if let Some(assembly) = &fleet.made {
+    mended(input, &fleet, KNOWN, registry);
+    if let Some(assembly) = &fleet.output {
         written_out(input, &fleet, assembly, registry);
     }
-    let options = Options { assume_classes: true, wiring: true, ..Options::default() };
-    let given = Asked { options, settings: SETTINGS };
-    let fleet = examined(input, &given, registry);
-    assert!(fleet.made.is_none() || !fleet.has_errors(), "{}", fleet.told());
-    mended(input, &fleet, &given, registry);
+    let fleet = examined(input, GIVEN, registry);
+    input.counted(GIVEN, registry);
+    assert!(fleet.output.is_none() || !fleet.has_errors(), "{}", fleet.text());
+    mended(input, &fleet, GIVEN, registry);
 }
 
-fn examined(input: &Input, asked: &Asked, registry: &Registry) -> Checked<Assembly> {
-    let fleet = input.checked(check, asked, registry);
+fn examined(input: &Input, settings: Settings, registry: &Registry) -> Compilation {
+    let fleet = input.compiled(settings, registry);
     show(&fleet.diagnostics, &fleet.sources);
-
-    let counted = input.checked(count, asked, registry);
-    if !asked.options.wiring {
-        let components = fleet.made.as_ref().map(|assembly| assembly.components.len());
-        assert_eq!(components, counted.made, "{input:#?}");
-        assert!(fleet.diagnostics == counted.diagnostics, "{}{}{input:#?}", fleet.told(), counted.told());
-    }
-
     let formatted = input.formatted();
-    let of_formatted = formatted.checked(check, asked, registry);
-    let (found, again) = (fleet.kinds(), of_formatted.kinds());
+    let (found, again) = (kinds(&fleet), kinds(&formatted.compiled(settings, registry)));
     assert!(found == again, "{:#?}\n{:#?}\n{formatted:#?}", without(&found, &again), without(&again, &found));
     fleet
 }
@@ -56,13 +52,13 @@ fn without<'k>(some: &'k [String], others: &[String]) -> Vec<&'k String> {
 }
 
 /// What a fleet comes to is written out, and comes to the same.
-fn written_out(input: &Input, fleet: &Checked<Assembly>, assembly: &Assembly, registry: &Registry) {
-    let text = fleet.expanded(assembly);
-    let alone = Input::Text(text.clone()).checked(check, &Asked::default(), registry);
-    assert!(alone.made.is_some(), "{}{input:#?}{text}", alone.told());
-    let Some(other) = &alone.made else { return };
+fn written_out(input: &Input, fleet: &Compilation, assembly: &Assembly, registry: &Registry) {
+    let text = fleet.expanded().unwrap();
+    let alone = Input::Text(text.clone()).compiled(KNOWN, registry);
+    assert!(alone.output.is_some(), "{}{input:#?}{text}", alone.text());
+    let Some(other) = &alone.output else { return };
     assert_eq!(facts(assembly), facts(other), "{input:#?}{text}");
-    assert_eq!(text, alone.expanded(other), "{input:#?}");
+    assert_eq!(Some(text), alone.expanded(), "{input:#?}");
 }
 
 /// An assembly without the declarations of its classes.
@@ -80,7 +76,7 @@ fn facts(assembly: &Assembly) -> Vec<String> {
 }
 
 /// Follows one of the suggestions; which one, the length of the text says. What it is for is there once less.
-fn mended(input: &Input, fleet: &Checked<Assembly>, asked: &Asked, registry: &Registry) {
+fn mended(input: &Input, fleet: &Compilation, settings: Settings, registry: &Registry) {
     let Input::Text(text) = input else { return };
     let is_here = |file: FileId| fleet.sources.get(file).path() == "x";
     let all = fleet.diagnostics.iter().flat_map(|one| one.suggestions.iter().map(move |way| (one, way)));
@@ -90,9 +86,8 @@ fn mended(input: &Input, fleet: &Checked<Assembly>, asked: &Asked, registry: &Re
     let edited = edited(text, &way.edits);
     let context = || format!("{way:?} for {one:?}\n{text}\nbecame\n{edited}\n");
     assert!(parsed(text).is_none() || parsed(&edited).is_some(), "{}", context());
-    let after = Input::Text(edited.clone()).checked(check, asked, registry);
-    let number =
-        |fleet: &Checked<Assembly>| fleet.kinds().iter().filter(|kind_| **kind_ == kind(one)).count();
+    let after = Input::Text(edited.clone()).compiled(settings, registry);
+    let number = |fleet: &Compilation| kinds(fleet).iter().filter(|kind_| **kind_ == kind(one)).count();
     if one.code.id.starts_with("S01") || one.code == &codes::NAMESPACE_NEAR || parsed(text).is_none() {
         // Of these the first is told, and of a text whose tags do not fit what stands before that is seen: the same may
         // be wrong again further on.
@@ -100,16 +95,16 @@ fn mended(input: &Input, fleet: &Checked<Assembly>, asked: &Asked, registry: &Re
         let is_further = |next: &Diagnostic| {
             start(next) > start(one) || edited.len() - start(next) < text.len() - start(one)
         };
-        let alike = |fleet: &Checked<Assembly>| {
+        let alike = |fleet: &Compilation| {
             let alike = fleet.diagnostics.iter().filter(|next| kind(next) == kind(one));
             alike.filter(|next| !is_further(next)).count()
         };
         let here =
             fleet.diagnostics.iter().filter(|next| kind(next) == kind(one) && start(next) <= start(one));
-        assert!(alike(&after) < here.count(), "{}{}", context(), after.told());
+        assert!(alike(&after) < here.count(), "{}{}", context(), after.text());
         return;
     }
-    assert!(number(&after) < number(fleet), "{}{}", context(), after.told());
+    assert!(number(&after) < number(fleet), "{}{}", context(), after.text());
 }
 
 /// A text after edits, which must not overlap.

@@ -7,11 +7,8 @@ use std::path::Path;
 
 use expect_test::{ExpectFile, expect_file};
 use saoms_components as _;
-use saoms_lang::check::{Options, check};
-use saoms_lang::contribution::{load, load_named};
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Edit};
-use saoms_lang::load::MAX_SIZE;
-use saoms_lang::model::Contribution;
+use saoms_lang::diagnostic::{Diagnostic, Edit};
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::Sources;
 
@@ -34,14 +31,8 @@ impl Checker {
         for (name, text) in files {
             fs::write(self.folder.path().join(name), text).unwrap();
         }
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let path = self.folder.path().join(files[0].0);
-        if let Some(composite) = load(&path, &mut sources, &mut diagnostics) {
-            let mut fleet = Contribution::of(vec![composite]);
-            load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
-            check(&fleet, &self.registry, &Options::default(), &sources, &mut diagnostics);
-        }
-        (diagnostics.into_sorted(), sources)
+        let compilation = Project::new().file(self.folder.path().join(files[0].0)).compile(&self.registry);
+        (compilation.reported().cloned().collect(), compilation.sources)
     }
 
     /// What comes of a mistake: each diagnostic with the text that it marks, its help, and what its suggestions leave.

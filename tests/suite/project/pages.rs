@@ -5,12 +5,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use saoms_components as _;
-use saoms_lang::check::{Options, check};
-use saoms_lang::diagnostic::{Diagnostics, human};
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::Sources;
 
 use crate::support::{root, saoms, stdout};
 
@@ -34,15 +30,9 @@ fn blocks<'p>(page: &'p str, language: &str) -> Vec<&'p str> {
 
 /// What is wrong with a composite, as the command says it, and the codes.
 fn faults(text: &str) -> (String, Vec<&'static str>) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = sources.add("page.composite", text);
-    if let Some(composite) = load_file(file, &sources, &mut diagnostics) {
-        let fleet = Contribution::of(vec![composite]);
-        let registry = Registry::linked().unwrap();
-        check(&fleet, &registry, &Options::default(), &sources, &mut diagnostics);
-    }
-    let found = diagnostics.into_sorted();
-    (human(&found, &sources, false), found.iter().map(|one| one.code.id).collect())
+    let project = Project::new().in_memory().text("page.composite", text);
+    let compilation = project.compile(&Registry::linked().unwrap());
+    (compilation.text(), compilation.reported().map(|one| one.code.id).collect())
 }
 
 /// A part of a composite as a whole one.

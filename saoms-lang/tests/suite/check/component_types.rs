@@ -3,15 +3,9 @@
 use std::fs;
 
 use expect_test::expect;
-use saoms_lang::check::{Options, check};
-use saoms_lang::contribution::{load_named, read_values};
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load_file, read};
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use saoms_lang::project::Project;
 
-use crate::check::classes::registry;
-use crate::check::support::{fleet, shown};
+use crate::check::support::{compiled_in, fleet};
 use crate::check::values::properties::robot;
 
 const DESCRIPTION: &str = "<property name='speed' type='xsd:int'>5</property>
@@ -34,16 +28,7 @@ pub(crate) fn found(inside: &str, types: &[(&str, &str)], assume_classes: bool) 
     let text =
         fleet(inside).replacen('>', " xmlns:t='urn:t' xmlns:xsd='http://www.w3.org/2001/XMLSchema'>", 1);
     fs::write(&path, text).unwrap();
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
-    let mut composite = load_file(file, &sources, &mut diagnostics).unwrap();
-    read_values(&mut composite, MAX_SIZE, &mut sources, &mut diagnostics);
-    let mut all = Contribution::of(vec![composite]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
-    let options = Options { assume_classes, ..Options::default() };
-    check(&all, &registry(), &options, &sources, &mut diagnostics);
-    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
-    found.replace(&format!("{}/", folder.path().display()), "")
+    compiled_in(folder.path(), &Project::new().file(path).assume_classes(assume_classes)).1
 }
 
 /// A component of a script that is described as above.

@@ -3,11 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use saoms_lang::check::{Options, check};
-use saoms_lang::contribution::{load, load_named};
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity};
-use saoms_lang::load::MAX_SIZE;
-use saoms_lang::model::Contribution;
+use saoms_lang::diagnostic::{Diagnostic, Severity};
+use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{Location, Sources, Span};
 use saoms_lang::syntax;
@@ -21,13 +18,8 @@ pub(crate) fn collection() -> Option<PathBuf> {
 }
 
 fn checked(path: &Path) -> (Vec<Diagnostic>, Sources) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let composite = load(path, &mut sources, &mut diagnostics);
-    let mut all = Contribution::of(composite.into_iter().collect());
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
-    let options = Options { assume_classes: true, ..Options::default() };
-    check(&all, &Registry::new(), &options, &sources, &mut diagnostics);
-    (diagnostics.into_sorted(), sources)
+    let compilation = Project::new().file(path).assume_classes(true).check(&Registry::new());
+    (compilation.diagnostics, compilation.sources)
 }
 
 /// A row of `verdicts.tsv`.

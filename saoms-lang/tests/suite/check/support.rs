@@ -1,6 +1,7 @@
 //! Composites in, text out.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Diagnostic;
@@ -29,8 +30,8 @@ fn composite(namespace: &str, inside: &str) -> String {
     )
 }
 
-/// The outcome of a project in memory.
-fn compiled(project: &Project) -> (Option<Assembly>, Vec<Diagnostic>, Sources) {
+/// The outcome of a project with the classes of these tests.
+pub(crate) fn compiled(project: &Project) -> (Option<Assembly>, Vec<Diagnostic>, Sources) {
     let Compilation { output, mut diagnostics, sources, .. } = project.compile(&registry());
     diagnostics.retain(|one| !one.is_allowed());
     (output, diagnostics, sources)
@@ -68,7 +69,7 @@ pub(crate) fn part(name: &str, attributes: &str, inside: &str) -> String {
 /// What the first of these texts comes to, after what is wrong with it: components, values as text, targets.
 pub(crate) fn outcome(texts: &[&str], settings: &[&str]) -> String {
     let (assembly, diagnostics, sources) = nested(texts, settings, false);
-    let mut out: String = diagnostics.iter().map(|one| shown(one, &sources)).collect();
+    let mut out = told(&diagnostics, &sources);
     for component in assembly.iter().flat_map(|assembly| &assembly.components) {
         let _ = write!(out, "{} ({})", component.path, component.class.name());
         for (name, value) in &component.values {
@@ -97,7 +98,18 @@ pub(crate) fn faults_of(texts: &[&str], settings: &[&str]) -> String {
     let (assembly, diagnostics, sources) = run(texts, settings);
     let has_errors = diagnostics.iter().any(|one| one.severity.name() == "error");
     assert_eq!(assembly.is_none(), has_errors, "there is an assembly exactly where there is no error");
-    diagnostics.iter().map(|one| shown(one, &sources)).collect()
+    told(&diagnostics, &sources)
+}
+
+/// The assembly of a project whose files are in a folder, and its diagnostics without that folder's name.
+pub(crate) fn compiled_in(folder: &Path, project: &Project) -> (Option<Assembly>, String) {
+    let (assembly, diagnostics, sources) = compiled(project);
+    (assembly, told(&diagnostics, &sources).replace(&format!("{}/", folder.display()), ""))
+}
+
+/// All of these diagnostics.
+pub(crate) fn told(diagnostics: &[Diagnostic], sources: &Sources) -> String {
+    diagnostics.iter().map(|one| shown(one, sources)).collect()
 }
 
 /// One diagnostic, a line for each part of it.

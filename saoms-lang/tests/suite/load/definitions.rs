@@ -1,12 +1,12 @@
 //! `definitions.xml`, by itself, in a folder and beside a composite.
 
 use expect_test::expect;
-use saoms_lang::contribution::{Finder, SideFile, load_folder};
+use saoms_lang::contribution::{Finder, SideFile};
 use saoms_lang::diagnostic::Diagnostics;
 use saoms_lang::load::MAX_SIZE;
 use saoms_lang::source::{OpenTexts, Sources};
 
-use crate::load::support::{shown, written};
+use crate::load::support::{loaded_folder, shown, written};
 
 pub(crate) const OASIS: &str = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
 pub(crate) const OSOA: &str = "http://www.osoa.org/xmlns/sca/1.0";
@@ -32,8 +32,7 @@ pub(crate) fn alone(name: &str, text: String) -> String {
 
 pub(crate) fn of_folder(files: &[(&str, String)]) -> String {
     let folder = written(files);
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
+    let (_, sources, diagnostics) = loaded_folder(folder.path());
     shown(folder.path(), &sources, diagnostics)
 }
 

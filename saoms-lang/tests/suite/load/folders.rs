@@ -11,13 +11,12 @@ use saoms_lang::source::Sources;
 
 use crate::load::imports::description;
 use crate::load::named::composite;
-use crate::load::support::{shown, written};
+use crate::load::support::{loaded_folder, shown, written};
 
 /// The fleets in a folder of these files, and what is wrong with it.
 fn fleets(files: &[(&str, String)]) -> String {
     let folder = written(files);
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let fleets = load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
+    let (fleets, sources, diagnostics) = loaded_folder(folder.path());
     let mut out = String::new();
     for fleet in fleets {
         let files: Vec<String> = fleet.files.iter().map(|path| path.display().to_string()).collect();

@@ -4,11 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use expect_test::expect;
-use saoms_lang::contribution::{load, load_named};
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::MAX_SIZE;
-use saoms_lang::model::{Contribution, Link, Naming};
-use saoms_lang::source::{OpenTexts, Sources};
+use saoms_lang::model::{Link, Naming};
+use saoms_lang::source::OpenTexts;
+
+use crate::load::support::loaded_with_named;
 
 pub(crate) fn composite(namespace: &str, name: &str, inside: &str) -> String {
     format!(
@@ -29,10 +28,7 @@ pub(crate) fn links(files: &[(&str, String)], asked_for: &str) -> String {
         path.replace(&format!("{}/", folder.path().display()), "")
             .replace(&folder.path().display().to_string(), "FOLDER")
     };
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let first = load(&folder.path().join(asked_for), &mut sources, &mut diagnostics).unwrap();
-    let mut all = Contribution::of(vec![first]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let (all, sources, diagnostics) = loaded_with_named(&folder.path().join(asked_for), OpenTexts::default());
     let mut out = String::new();
     let path = |place: usize| shown(sources.get(all.composites()[place].file()).path());
     for (place, composite) in all.composites().iter().enumerate() {
@@ -163,10 +159,8 @@ fn thousands_of_composites_that_one_names_are_found_each_at_once() {
     let includes: String = (0..ALL).rev().map(|number| format!("<include name='a:c{number}'/>")).collect();
     write("fleet.composite", text("urn:a", "fleet", &includes));
     write("sca-contribution.xml", "<contribution xmlns='http://www.osoa.org/xmlns/sca/1.0'/>".to_owned());
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let first = load(&folder.path().join("fleet.composite"), &mut sources, &mut diagnostics).unwrap();
-    let mut all = Contribution::of(vec![first]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let (all, _, diagnostics) =
+        loaded_with_named(&folder.path().join("fleet.composite"), OpenTexts::default());
     for include in &all.asked_for()[0].includes {
         let name = include.name.as_str().trim_start_matches("a:");
         let number: usize = name[1..].parse().unwrap();
@@ -188,10 +182,7 @@ fn circles_of_links_and_large_folders_end() {
     fs::write(&path, composite("urn:a", "fleet", "<include name='a:hall'/>")).unwrap();
     std::os::unix::fs::symlink(folder.path(), folder.path().join("around")).unwrap();
     std::os::unix::fs::symlink(Path::new("/"), folder.path().join("root")).unwrap();
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let first = load(&path, &mut sources, &mut diagnostics).unwrap();
-    let mut all = Contribution::of(vec![first]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let (all, _, _) = loaded_with_named(&path, OpenTexts::default());
     assert_eq!(all.composites().len(), 1);
 }
 
@@ -209,11 +200,8 @@ fn what_an_editor_holds_counts_in_place_of_files() {
     open.insert(&path("inner.composite"), composite("urn:a", "renamed", ""));
     open.insert(&path("new.composite"), composite("urn:a", "new", ""));
     open.insert(&path("value.txt"), " typed ");
-    let (mut sources, mut diagnostics) = (Sources::with_open(open), Diagnostics::new());
-    let outer = load(&path("outer.composite"), &mut sources, &mut diagnostics).unwrap();
-    assert_eq!(outer.components[0].properties[0].from_file().unwrap(), &"typed");
-    let mut all = Contribution::of(vec![outer]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let (all, _, diagnostics) = loaded_with_named(&path("outer.composite"), open);
+    assert_eq!(all.composites()[0].components[0].properties[0].from_file().unwrap(), &"typed");
     let link = |place: usize| all.link(all.composites()[0].includes[place].origin).unwrap();
     assert!(matches!(link(0), Link::Missing(_)), "it has another name now");
     assert_eq!(*link(1), Link::To(1), "it is not on disk");
@@ -238,10 +226,8 @@ fn of_two_composites_of_one_name_in_a_folder_one_is_taken_and_both_are_told() {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, text).unwrap();
     }
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let first = load(&folder.path().join("fleet.composite"), &mut sources, &mut diagnostics).unwrap();
-    let mut all = Contribution::of(vec![first]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let (_, sources, diagnostics) =
+        loaded_with_named(&folder.path().join("fleet.composite"), OpenTexts::default());
     let found: Vec<_> = diagnostics
         .iter()
         .map(|one| (one.code.id, one.severity.name(), sources.snippet(one.location), one.message.as_str()))
@@ -265,11 +251,9 @@ fn what_a_composite_names_is_no_pipe_and_no_device() {
                   <implementation.java class='C'/><property name='p' file='pipe'/><property name='q' file='/dev/zero'/>\
                   <property name='r' file='link'/></component>";
     fs::write(path("fleet.composite"), composite("urn:a", "fleet", inside)).unwrap();
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let first = load(&path("fleet.composite"), &mut sources, &mut diagnostics).unwrap();
-    assert_eq!(first.components[0].properties[2].from_file().unwrap(), &"7", "links lead to files");
-    let mut all = Contribution::of(vec![first]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    let (all, sources, diagnostics) = loaded_with_named(&path("fleet.composite"), OpenTexts::default());
+    let properties = &all.composites()[0].components[0].properties;
+    assert_eq!(properties[2].from_file().unwrap(), &"7", "links lead to files");
     assert!(matches!(all.link(all.composites()[0].includes[0].origin), Some(Link::Missing(_))));
     let found: Vec<_> = diagnostics
         .iter()

@@ -2,21 +2,20 @@
 
 use std::collections::HashSet;
 
-use saoms_lang::diagnostic::{Diagnostics, codes, human, json};
-use saoms_lang::load::load_file;
+use saoms_lang::diagnostic::{codes, human, json};
 use saoms_lang::model::{
     Binding, Callback, Composite, ImplementationKind, InterfaceElement, Part, Property, ReferenceElement,
     ServiceElement,
 };
-use saoms_lang::source::{Location, Sources, Span, Text};
+use saoms_lang::source::{Location, Span, Text};
 use saoms_lang::syntax;
+
+use crate::load::support::loaded;
 
 /// Loads a text under a name and holds every place in model and diagnostics to the text. Gives errors and warnings as
 /// `code [marked text]`.
 pub(crate) fn checked(name: &str, text: &str) -> Vec<String> {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = sources.add(name, text);
-    let composite = load_file(file, &sources, &mut diagnostics);
+    let (composite, sources, diagnostics) = loaded(name, text);
     if let Some(composite) = &composite {
         for text in texts(composite) {
             let written = sources.snippet(text.location);

@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use saoms_lang::contribution::{FolderFleet, load, load_folder, load_named};
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::source::Sources;
+use saoms_lang::load::{MAX_SIZE, load_file};
+use saoms_lang::model::{Composite, Contribution};
+use saoms_lang::source::{OpenTexts, Sources};
 
 /// A folder of these files.
 pub(crate) fn written(files: &[(&str, String)]) -> tempfile::TempDir {
@@ -16,6 +19,28 @@ pub(crate) fn written(files: &[(&str, String)]) -> tempfile::TempDir {
         fs::write(path, text).unwrap();
     }
     folder
+}
+
+/// The composite of a text, with what is said of it.
+pub(crate) fn loaded(name: &str, text: &str) -> (Option<Composite>, Sources, Diagnostics) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let file = sources.add(name, text);
+    (load_file(file, &sources, &mut diagnostics), sources, diagnostics)
+}
+
+/// The composite of a file and all that it names, with what is said of them. These texts count in place of files.
+pub(crate) fn loaded_with_named(path: &Path, open: OpenTexts) -> (Contribution, Sources, Diagnostics) {
+    let (mut sources, mut diagnostics) = (Sources::with_open(open), Diagnostics::new());
+    let first = load(path, &mut sources, &mut diagnostics);
+    let mut contribution = Contribution::of(first.into_iter().collect());
+    load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
+    (contribution, sources, diagnostics)
+}
+
+/// The fleets of a folder, with what is said of its files.
+pub(crate) fn loaded_folder(folder: &Path) -> (Vec<FolderFleet>, Sources, Diagnostics) {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    (load_folder(folder, MAX_SIZE, &mut sources, &mut diagnostics), sources, diagnostics)
 }
 
 /// What is said, with the folder as `FOLDER`.

@@ -1,11 +1,8 @@
 //! Severities that composites and the command line set.
 
 use expect_test::expect;
-use saoms_lang::check::{Options, SeveritySetting, check};
-use saoms_lang::diagnostic::{Diagnostics, json, sarif};
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use saoms_lang::diagnostic::{json, sarif};
+use saoms_lang::project::Project;
 use serde_json::Value;
 
 use crate::check::classes::registry;
@@ -21,26 +18,18 @@ struct Found {
 }
 
 fn found(texts: &[&str], severities: &[&str]) -> Found {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let files: Vec<_> = texts.iter().map(|text| sources.add("fleet.composite", *text)).collect();
-    let severities = severities
-        .iter()
-        .filter_map(|text| SeveritySetting::parse("--severity", text, &mut sources, &mut diagnostics))
-        .collect();
-    let mut composites: Vec<_> =
-        files.into_iter().filter_map(|file| load_file(file, &sources, &mut diagnostics)).collect();
-    let others = composites.split_off(1);
-    let fleet = Contribution::with(composites, others);
-    let options = Options { severities, ..Options::default() };
-    let assembly = check(&fleet, &registry(), &options, &sources, &mut diagnostics);
-    assert_eq!(assembly.is_some(), !diagnostics.has_errors());
-    let all = diagnostics.into_all();
-    let told = all.iter().filter(|one| !one.is_allowed()).map(|one| shown(one, &sources)).collect();
+    let project = Project::new().in_memory().severities(severities.iter().copied());
+    let project = project.text("fleet.composite", texts[0]);
+    let project =
+        texts[1..].iter().fold(project, |project, text| project.other_text("fleet.composite", *text));
+    let compilation = project.compile(&registry());
+    assert_eq!(compilation.output.is_some(), !compilation.has_errors());
+    let (all, sources) = (&compilation.diagnostics, &compilation.sources);
     Found {
-        runs: assembly.is_some(),
-        told,
-        json: json(&all, &sources),
-        sarif: sarif(&all, &sources, "1.0.0"),
+        runs: compilation.output.is_some(),
+        told: compilation.reported().map(|one| shown(one, sources)).collect(),
+        json: json(all, sources),
+        sarif: sarif(all, sources, "1.0.0"),
     }
 }
 
@@ -108,12 +97,12 @@ fn a_severity_is_set_once_at_a_place() {
         4:23-28 error S2048: the severity of S4001 is set to `allow` and to `error`
           3:155-160 first here
           help: keep one of them
-        3:85-86 note S4001: components `A` and `B` share the ID `C`
-          2:85-86 the first
-          help: messages and reports name tasks by their ID
         --severity:1:1-6 error S2048: the severity of S4001 is set to `note` and to `error`
           --severity:1:1-6 first here
           help: keep one of them
+        3:85-86 note S4001: components `A` and `B` share the ID `C`
+          2:85-86 the first
+          help: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&(within.told + &options.told));
     // What is inside another element may say something else.
@@ -166,13 +155,13 @@ fn options_have_reasons_too() {
 fn an_option_that_a_composite_overrules_says_so() {
     let error = clocks("", &severity("S4001", "error"));
     expect![[r#"
+        --severity:1:1-6 warning S2049: S4001 is not set to `allow`: a composite sets it to `error`, and counts first
+          4:23-28 set here
+          help: change it there, or leave the option out
         3:85-86 error S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
           4:23-28 set to `error`: because
           help: messages and reports name tasks by their ID
-        --severity:1:1-6 warning S2049: S4001 is not set to `allow`: a composite sets it to `error`, and counts first
-          4:23-28 set here
-          help: change it there, or leave the option out
     "#]]
     .assert_eq(&of(&error, &["S4001=allow"]).told);
     assert!(!of(&error, &["S4001=error"]).told.contains("S2049"));
@@ -241,6 +230,19 @@ fn errors_that_make_a_fleet_impossible_stay() {
 #[test]
 fn what_is_wrong_with_severities_is_found() {
     expect![[r#"
+        --severity:1:1-6 error S2048: `S4001` sets no severity
+          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
+        --severity:1:1-7 error S2048: `S4001=` sets no severity
+          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
+        --severity:1:7-13 error S2048: there is no severity `errror`
+          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
+          fix: replace it with `error` [--severity:1:7-13 "error"]
+        --severity:1:1-7 error S2048: there is no code `S40001`
+          fix: replace `S40001` with `S0001` [--severity:1:1-7 "S0001"]
+        --severity:1:1-1 error S2048: there is no code ``
+          help: each diagnostic shows its code, and `docs/diagnostics.md` lists them
+        --severity:1:1-8 error S2048: there is no code `unwired`
+          fix: replace `unwired` with `S2018` [--severity:1:1-8 "S2018"]
         2:23-27 error S2048: there is no code `S400`
           fix: replace `S400` with `S4001` [2:23-27 "S4001"]
         2:77-92 error S2048: there is no code `unused-property`
@@ -255,19 +257,6 @@ fn what_is_wrong_with_severities_is_found() {
         4:118-126 error S1004: `severity` is an element of SAOMS: it has to be in the namespace `urn:saoms:1`
           help: write `<saoms:severity .../>`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
           fix: replace `severity` with `saoms:severity` [4:118-126 "saoms:severity"]
-        --severity:1:1-6 error S2048: `S4001` sets no severity
-          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
-        --severity:1:1-7 error S2048: `S4001=` sets no severity
-          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
-        --severity:1:7-13 error S2048: there is no severity `errror`
-          help: write `--severity CODE=LEVEL` or `--severity 'CODE=LEVEL:REASON'`, with `allow`, `note`, `warning` or `error`
-          fix: replace it with `error` [--severity:1:7-13 "error"]
-        --severity:1:1-7 error S2048: there is no code `S40001`
-          fix: replace `S40001` with `S0001` [--severity:1:1-7 "S0001"]
-        --severity:1:1-1 error S2048: there is no code ``
-          help: each diagnostic shows its code, and `docs/diagnostics.md` lists them
-        --severity:1:1-8 error S2048: there is no code `unwired`
-          fix: replace `unwired` with `S2018` [--severity:1:1-8 "S2018"]
     "#]].assert_eq(&of(
         r#"<saoms:severity code="S400" level="allow" reason="x"/><saoms:severity code="unused-property" level="deny" reason="x"/>
 <saoms:severity code="S4001" level="allow"/><saoms:severity level="allow" reason=""/>

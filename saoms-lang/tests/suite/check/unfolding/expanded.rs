@@ -2,32 +2,21 @@
 
 use expect_test::expect;
 use proptest::prelude::*;
-use saoms_lang::assembly::{Assembly, expanded};
-use saoms_lang::check::{Options, check};
-use saoms_lang::diagnostic::{Diagnostics, Severity};
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use saoms_lang::assembly::Assembly;
+use saoms_lang::project::Project;
 
 use crate::check::classes::registry;
-use crate::check::support::{part, shown};
+use crate::check::support::part;
 
 /// The assembly of the first text, which can name the others, and the composite that it comes to.
 fn expand(texts: &[&str]) -> (Assembly, String) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let files: Vec<_> = texts.iter().map(|text| sources.add("t", *text)).collect();
-    let mut composites: Vec<_> =
-        files.iter().filter_map(|file| load_file(*file, &sources, &mut diagnostics)).collect();
-    let others = composites.split_off(1);
-    let fleet = Contribution::with(composites, others);
-    let assembly = check(&fleet, &registry(), &Options::default(), &sources, &mut diagnostics);
-    let Some(assembly) = assembly else {
-        let errors = diagnostics.iter().filter(|one| one.severity == Severity::Error);
-        let errors: String = errors.map(|one| shown(one, &sources)).collect();
-        panic!("{errors}\n{}", texts.join("\n"));
+    let project = Project::new().in_memory().text("t", texts[0]);
+    let project = texts[1..].iter().fold(project, |project, text| project.other_text("t", *text));
+    let compilation = project.compile(&registry());
+    let Some(text) = compilation.expanded() else {
+        panic!("{}\n{}", compilation.text(), texts.join("\n"));
     };
-    let text = expanded(&assembly, &fleet.asked_for()[0], diagnostics.iter());
-    (assembly, text)
+    (compilation.output.unwrap(), text)
 }
 
 /// Expands, and holds the result to what it has to be: the same fleet, and the same when it is expanded again.

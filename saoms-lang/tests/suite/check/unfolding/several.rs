@@ -3,15 +3,9 @@
 use std::fs;
 
 use expect_test::expect;
-use saoms_lang::check::{Options, check};
-use saoms_lang::contribution::load_named;
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load_file, read};
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use saoms_lang::project::Project;
 
-use crate::check::classes::registry;
-use crate::check::support::{outcome, part, shown};
+use crate::check::support::{compiled_in, outcome, part};
 use crate::check::unfolding::fleets::fleet;
 
 /// Writes files into a folder, checks the first of them, and gives what is wrong without that folder's name.
@@ -20,18 +14,13 @@ fn found(files: &[(&str, &str)]) -> String {
     for (name, text) in files {
         fs::write(folder.path().join(name), text).unwrap();
     }
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = read(&folder.path().join(files[0].0), MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
-    let composite = load_file(file, &sources, &mut diagnostics).unwrap();
-    let mut fleet = Contribution::of(vec![composite]);
-    load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
-    let assembly = check(&fleet, &registry(), &Options::default(), &sources, &mut diagnostics);
-    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+    let project = Project::new().file(folder.path().join(files[0].0));
+    let (assembly, found) = compiled_in(folder.path(), &project);
     let numbers = assembly.into_iter().flat_map(|assembly| assembly.components).map(|one| {
         let number = one.values.iter().find(|(name, _)| name == "number").map(|(_, value)| value.clone());
         format!("{} {number:?}\n", one.path)
     });
-    found.replace(&format!("{}/", folder.path().display()), "") + &numbers.collect::<String>()
+    found + &numbers.collect::<String>()
 }
 
 /// What a component gives the composite that it implements counts for expressions as it does for sources, however it is given.

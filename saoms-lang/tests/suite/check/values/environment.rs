@@ -1,14 +1,12 @@
 //! Values from the environment.
 
-use expect_test::expect;
-use saoms_lang::check::{Options, Setting, Variable, check};
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use std::collections::HashMap;
+use std::ffi::OsString;
 
-use crate::check::classes::registry;
-use crate::check::support::{part, shown};
+use expect_test::expect;
+use saoms_lang::project::Project;
+
+use crate::check::support::{compiled, part, told};
 
 #[test]
 fn values_come_from_the_environment_unless_somebody_gives_one() {
@@ -20,21 +18,13 @@ fn values_come_from_the_environment_unless_somebody_gives_one() {
 <property name="speed" source="$speed"/></component>"#,
     );
     let found = |environment: &[(&str, &str)], settings: &[&str]| {
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let file = sources.add("fleet", text.as_str());
-        let settings = settings
-            .iter()
-            .filter_map(|text| Setting::parse("--set", text, &mut sources, &mut diagnostics))
-            .collect();
-        let fleet = Contribution::of(load_file(file, &sources, &mut diagnostics).into_iter().collect());
-        let get =
-            |name: &str| environment.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into());
-        let variables = Variable::read(&fleet, get, &mut sources, &mut diagnostics);
-        let options = Options { settings, variables, ..Options::default() };
-        let assembly = check(&fleet, &registry(), &options, &sources, &mut diagnostics);
+        let environment: HashMap<String, OsString> =
+            environment.iter().map(|(name, value)| ((*name).to_owned(), value.into())).collect();
+        let project = Project::new().in_memory().environment(move |name| environment.get(name).cloned());
+        let project = project.set_all(settings.iter().copied()).text("fleet", text.as_str());
+        let (assembly, diagnostics, sources) = compiled(&project);
         let count = assembly.map(|assembly| assembly.components.len());
-        let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
-        format!("{count:?}\n{found}")
+        format!("{count:?}\n{}", told(&diagnostics, &sources))
     };
     expect![[r#"
         Some(1)

@@ -1,20 +1,14 @@
 //! Values from files beside the composite.
 
 use std::fs;
-use std::path::Path;
 
 use expect_test::expect;
 use saoms_api::host::PropertyValue;
 use saoms_lang::assembly::Assembly;
-use saoms_lang::check::{Options, check};
-use saoms_lang::contribution::{load, load_named, read_values};
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load_file, read};
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use saoms_lang::load::MAX_SIZE;
+use saoms_lang::project::Project;
 
-use crate::check::classes::registry;
-use crate::check::support::{fleet, shown};
+use crate::check::support::{compiled, compiled_in, fleet};
 use crate::check::values::properties::robot;
 
 /// Writes the composite and files beside it, checks it from another folder, and gives what is wrong without that folder's name.
@@ -25,25 +19,10 @@ pub(crate) fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> 
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, bytes).unwrap();
     }
-    let path = folder.path().join("fleet.composite");
-    fs::write(&path, fleet(inside)).unwrap();
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
-    let mut composite = load_file(file, &sources, &mut diagnostics).unwrap();
-    read_values(&mut composite, max_size, &mut sources, &mut diagnostics);
-    let assembly = check(
-        &Contribution::of(vec![composite]),
-        &registry(),
-        &Options::default(),
-        &sources,
-        &mut diagnostics,
-    );
-    let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
-    (assembly, without(&found, folder.path()))
-}
-
-fn without(text: &str, folder: &Path) -> String {
-    text.replace(&format!("{}/", folder.display()), "")
+    // The limit is for the files of values: the composite is not read from one.
+    let text =
+        Project::new().text(folder.path().join("fleet.composite").display().to_string(), fleet(inside));
+    compiled_in(folder.path(), &text.max_size(max_size))
 }
 
 fn value(assembly: &Assembly, name: &str) -> PropertyValue {
@@ -169,19 +148,13 @@ fn a_component_type_gives_the_values_that_components_do_not() {
         let path = folder.path().join("fleet.composite");
         let own = robot("<property name=\"speed\">0.5</property>").replace("name=\"R\"", "name=\"Own\"");
         fs::write(&path, fleet(&(robot("") + &own.replace(">R<", ">Own<")))).unwrap();
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let file = read(&path, MAX_SIZE, &mut sources, &mut diagnostics).unwrap();
-        let composite = load_file(file, &sources, &mut diagnostics).unwrap();
-        let mut fleet = Contribution::of(vec![composite]);
-        load_named(&mut fleet, MAX_SIZE, &mut sources, &mut diagnostics);
-        let assembly = check(&fleet, &registry(), &Options::default(), &sources, &mut diagnostics);
-        let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+        let (assembly, found) = compiled_in(folder.path(), &Project::new().file(path));
         let speeds = assembly.map(|assembly| {
             let all = assembly.components.into_iter().map(|one| one.values);
             all.map(|values| values.into_iter().find(|(name, _)| name == "speed").map(|(_, value)| value))
                 .collect()
         });
-        (speeds, without(&found, folder.path()))
+        (speeds, found)
     };
     let values: Vec<_> = ["0.75", "0.5"].map(|text| Some(PropertyValue::from(text))).into();
     assert_eq!(outcome("0.75"), (Some(values), String::new()));
@@ -204,11 +177,8 @@ fn a_file_of_a_component_that_is_taken_as_given_may_come_with_it() {
     let path = folder.path().join("fleet.composite");
     fs::write(&path, fleet(inside)).unwrap();
     let found = |assume_classes| {
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let composite = load(&path, &mut sources, &mut diagnostics).unwrap();
-        let options = Options { assume_classes, ..Options::default() };
-        check(&Contribution::of(vec![composite]), &registry(), &options, &sources, &mut diagnostics);
-        let all = diagnostics.into_sorted();
+        let project = Project::new().file(&path).assume_classes(assume_classes);
+        let (_, all, sources) = compiled(&project);
         let missing = all.iter().filter(|one| one.code.id == "S0001");
         missing
             .map(|one| {

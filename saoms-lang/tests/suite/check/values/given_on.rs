@@ -1,14 +1,11 @@
 //! What composites give on to those inside of them, as expressions and components there take it.
 
-use expect_test::expect;
-use saoms_lang::check::{Options, Variable, check};
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use std::ffi::OsString;
 
-use crate::check::classes::registry;
-use crate::check::support::{outcome, part, shown};
+use expect_test::expect;
+use saoms_lang::project::Project;
+
+use crate::check::support::{compiled, outcome, part, told};
 use crate::check::unfolding::fleets::fleet;
 
 /// A composite whose expression and whose robot take the same property.
@@ -105,18 +102,13 @@ fn a_variable_counts_where_a_component_gives_nothing() {
         let outer = fleet(&format!(
             "<property name=\"nothing\"/><component name=\"H\"><implementation.composite name=\"t:hall\"/>{given}</component>"
         ));
-        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let [outer, hall] = [("outer", &outer), ("hall", &hall)].map(|(name, text)| {
-            load_file(sources.add(name, text.as_str()), &sources, &mut diagnostics).unwrap()
-        });
-        let contribution = Contribution::with(vec![outer], vec![hall]);
-        let get = |_: &str| Some(value.into());
-        let variables = Variable::read(&contribution, get, &mut sources, &mut diagnostics);
-        let options = Options { variables, ..Options::default() };
-        let assembly = check(&contribution, &registry(), &options, &sources, &mut diagnostics);
-        let found: String = diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect();
+        let value = OsString::from(value);
+        let project = Project::new().in_memory().environment(move |_| Some(value.clone()));
+        let project = project.text("outer", outer.as_str()).other_text("hall", hall.as_str());
+        let (assembly, diagnostics, sources) = compiled(&project);
         let components = assembly.into_iter().flat_map(|assembly| assembly.components);
-        found + &components.map(|one| format!("{} {:?}\n", one.path, one.values)).collect::<String>()
+        told(&diagnostics, &sources)
+            + &components.map(|one| format!("{} {:?}\n", one.path, one.values)).collect::<String>()
     };
     expect![[r#"
         H/G1 []

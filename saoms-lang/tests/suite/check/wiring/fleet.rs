@@ -1,22 +1,15 @@
 //! The wiring of a fleet as a whole.
 
 use expect_test::expect;
-use saoms_lang::check::{Options, check};
-use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::load_file;
-use saoms_lang::model::Contribution;
-use saoms_lang::source::Sources;
+use saoms_lang::project::Project;
 
-use crate::check::classes::registry;
-use crate::check::support::{part, shown};
+use crate::check::support::{compiled, part, told};
 
 fn found(inside: &str) -> String {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = sources.add("fleet.composite", part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside));
-    let fleet = Contribution::of(load_file(file, &sources, &mut diagnostics).into_iter().collect());
-    let options = Options { wiring: true, ..Options::default() };
-    check(&fleet, &registry(), &options, &sources, &mut diagnostics);
-    diagnostics.into_sorted().iter().map(|one| shown(one, &sources)).collect()
+    let text = part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside);
+    let project = Project::new().in_memory().text("fleet.composite", text).wiring(true);
+    let (_, diagnostics, sources) = compiled(&project);
+    told(&diagnostics, &sources)
 }
 
 /// Components in a line each.
