@@ -19,7 +19,7 @@ pub(super) struct Document {
     pub(super) path: PathBuf,
     /// The number that the editor counts its changes with.
     pub(super) version: i32,
-    pub(super) text: Arc<str>,
+    pub(super) text: Arc<String>,
 }
 
 /// All of them, by the URIs that the editor uses.
@@ -39,9 +39,8 @@ impl Documents {
 
     pub(super) fn change(&mut self, uri: &str, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
         let Some(document) = self.all.get_mut(uri) else { return };
-        let mut text = document.text.to_string();
-        changes.into_iter().for_each(|change| apply(&mut text, change));
-        document.text = text.into();
+        let text = Arc::make_mut(&mut document.text);
+        changes.into_iter().for_each(|change| apply(text, change));
         document.version = version;
     }
 

@@ -58,7 +58,7 @@ fn value(tag: &BytesStart<'_>, name: &str) -> Option<String> {
 fn first_tag<T>(path: &Path, open: &OpenTexts, make: impl FnOnce(&BytesStart<'_>) -> Option<T>) -> Option<T> {
     let mut bytes = Vec::new();
     let text = if let Some(open) = open.get(path) {
-        Cow::Borrowed(&**open)
+        Cow::Borrowed(open.as_str())
     } else {
         // What is no file, as a pipe, might never come to an end.
         if !fs::metadata(path).ok()?.is_file() {

@@ -6,16 +6,16 @@ use std::sync::Arc;
 
 /// Texts that count in place of what their files hold on disk.
 #[derive(Clone, Debug, Default)]
-pub struct OpenTexts(HashMap<PathBuf, Arc<str>>);
+pub struct OpenTexts(HashMap<PathBuf, Arc<String>>);
 
 impl OpenTexts {
     /// Gives the file at `path`, which need not exist, another text.
-    pub fn insert(&mut self, path: &Path, text: impl Into<Arc<str>>) {
+    pub fn insert(&mut self, path: &Path, text: impl Into<Arc<String>>) {
         self.0.insert(identity(path), text.into());
     }
 
     /// The text for the file at `path`, however the path is written.
-    pub fn get(&self, path: &Path) -> Option<&Arc<str>> {
+    pub fn get(&self, path: &Path) -> Option<&Arc<String>> {
         // As a rule there are none, and then nobody has to ask the file system.
         if self.0.is_empty() { None } else { self.0.get(&identity(path)) }
     }

@@ -136,15 +136,22 @@ impl Document {
         all.get(&element)?.get(prefix).copied()
     }
 
-    /// The innermost element that byte `at` is in, the root for a place outside.
-    pub fn element_at(&self, at: u32) -> Element<'_> {
+    /// The innermost element that byte `at` is in, its tags included; right behind an element without an end is in it, too.
+    pub fn innermost(&self, at: u32) -> Option<Element<'_>> {
         let started = self.elements.partition_point(|one| self.tokens[one.token as usize].start < at);
-        let mut here = self.element(ElementId(started.saturating_sub(1) as u32));
-        while at >= here.span().end
-            && let Some(outer) = here.parent()
-        {
-            here = outer;
+        let mut here = Some(self.element(ElementId(started.checked_sub(1)? as u32)));
+        while let Some(element) = here {
+            let end = element.span().end;
+            if at < end || (at == end && !element.is_closed()) {
+                break;
+            }
+            here = element.parent();
         }
         here
+    }
+
+    /// The same, or the root for a place outside.
+    pub fn element_at(&self, at: u32) -> Element<'_> {
+        self.innermost(at).unwrap_or_else(|| self.root())
     }
 }

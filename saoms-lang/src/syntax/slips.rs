@@ -142,9 +142,19 @@ pub(super) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32) -> Option<
         return None;
     }
     let quote = input.byte(quote_at)?;
-    let behind = &input.bytes()[at as usize + 1..];
-    let length = memchr::memchr3(quote, b'<', b'>', behind)?;
-    (behind[length] == quote).then_some(at + 1 + length as u32)
+    let behind = &input.text[at as usize + 1..];
+    let length = memchr::memchr3(quote, b'<', b'>', behind.as_bytes())?;
+    // `a="<b c="d"`: the quote found is that of an attribute of the next tag.
+    let before = behind[..length].trim_end().strip_suffix('=').map(str::trim_end);
+    let is_of_next =
+        before.is_some_and(|tag| ends_with_attribute_name(tag) && name_length(tag.as_bytes()) > 0);
+    (behind.as_bytes()[length] == quote && !is_of_next).then_some(at + 1 + length as u32)
+}
+
+/// True if a name stands behind white space at the end of a text.
+fn ends_with_attribute_name(text: &str) -> bool {
+    let name = text.rsplit_once([' ', '\t', '\r', '\n']).map_or("", |(_, name)| name);
+    !name.is_empty() && name_length(name.as_bytes()) == name.len()
 }
 
 /// Where a value without a closing quote ends, where its tag goes on, and whether it surely ends there.
@@ -177,10 +187,10 @@ pub(super) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
 pub(super) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, u32)> {
     let value = input.slice(quote_at + 1, end);
     let next = value.strip_suffix('=')?;
-    let (before, name) = next.rsplit_once([' ', '\t', '\r', '\n'])?;
-    if name.is_empty() || name_length(name.as_bytes()) < name.len() {
+    if !ends_with_attribute_name(next) {
         return None;
     }
+    let (before, name) = next.rsplit_once([' ', '\t', '\r', '\n'])?;
     let before = before.trim_end();
     let end = quote_at + 1 + before.len() as u32;
     let message = format!("this value is not closed before {}", quoted(name));

@@ -2,9 +2,11 @@
 
 use saoms_lang::load::vocabulary::{SEVERITY, SEVERITY_PARENTS};
 use saoms_lang::model::SAOMS_NAMESPACE;
+use saoms_lang::syntax::Element;
 
 use super::FileEdit;
 use super::scene::Scene;
+use super::syntax::{Places, bytes, root};
 
 /// Edits that allow a code in one part of a composite.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,63 +21,58 @@ pub struct Allowance {
 /// the whole composite. The reason stays empty: the checker asks for it until somebody writes it.
 pub fn allowances(scene: &Scene, at: usize, code: &str) -> Vec<Allowance> {
     let file = scene.file();
-    let (text, tree) = (&*file.text, &file.tree);
     let mut found = Vec::new();
     // The place of a diagnostic may be the first byte of an element.
-    let mut here = tree.innermost(at + 1).or_else(|| tree.innermost(at));
+    let mut here = file.document.innermost(at as u32 + 1).or_else(|| file.document.innermost(at as u32));
     while let Some(element) = here {
-        let one = &tree.elements[element];
-        let is_holder = file.kinds[element].is_some_and(|kind| SEVERITY_PARENTS.contains(&kind.name));
-        let is_whole = one.parent.is_none();
+        let is_holder = file.kind(element.id()).is_some_and(|kind| SEVERITY_PARENTS.contains(&kind.name));
+        let is_whole = element.parent().is_none();
         // Of the elements around it, the innermost one and the root.
-        if is_holder && one.is_complete && (found.is_empty() || is_whole) {
-            if is_set(scene, element, code) {
+        if is_holder && element.has_whole_start_tag() && (found.is_empty() || is_whole) {
+            if is_set(element, code) {
                 return Vec::new();
             }
-            let name = tree.value(text, element, "name").map_or("", |at| &text[at]);
-            let what = match tree.local(text, element) {
+            let name = element.value("name").map_or("", |at| &file.text[at]);
+            let what = match element.local_name() {
                 _ if is_whole => "in this composite".to_owned(),
                 kind if name.is_empty() => format!("in this {kind}"),
                 kind => format!("in {kind} `{name}`"),
             };
             let title = format!("Allow {code} {what}, with a reason");
-            found.push(Allowance { title, edits: inserted(scene, element, code) });
+            found.push(Allowance { title, edits: inserted(element, code) });
         }
-        here = one.parent;
+        here = element.parent();
     }
     found
 }
 
 /// Whether an element says something about a code already.
-fn is_set(scene: &Scene, element: usize, code: &str) -> bool {
-    let (text, tree) = (&*scene.file().text, &scene.file().tree);
-    let mut inside = tree.children(element).filter(|child| tree.local(text, *child) == SEVERITY.name);
-    inside.any(|child| tree.value(text, child, "code").is_some_and(|at| text[at] == *code))
+fn is_set(element: Element<'_>, code: &str) -> bool {
+    let mut inside = element.children().filter(|child| child.local_name() == SEVERITY.name);
+    inside.any(|child| child.attribute("code").is_some_and(|said| said.trimmed() == code))
 }
 
-fn inserted(scene: &Scene, element: usize, code: &str) -> Vec<FileEdit> {
-    let file = scene.file();
-    let (text, tree) = (&*file.text, &file.tree);
-    let one = &tree.elements[element];
-    let bound = tree.prefix_of(text, element, SAOMS_NAMESPACE).filter(|prefix| !prefix.is_empty());
+fn inserted(element: Element<'_>, code: &str) -> Vec<FileEdit> {
+    let text = element.document().text().as_str();
+    let (tag, name) = (element.tag(), element.name());
+    let bound = element.prefix_of(SAOMS_NAMESPACE).filter(|prefix| !prefix.is_empty());
     let prefix = bound.unwrap_or("saoms");
     let said = format!("<{prefix}:{} code=\"{code}\" level=\"allow\" reason=\"\"/>", SEVERITY.name);
-    let line = text[..one.tag.start].rfind('\n').map_or(0, |found| found + 1);
-    let before = &text[line..one.tag.start];
+    let line = text[..tag.start].rfind('\n').map_or(0, |found| found + 1);
+    let before = &text[line..tag.start];
     let indent = &before[..before.len() - before.trim_start().len()];
     let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let own = format!("{newline}{indent}  {said}");
-    let mut edits = if one.is_empty {
-        let name = &text[one.name.clone()];
-        let start = text[..one.tag.end - 2].trim_end().len();
-        vec![FileEdit::new(start..one.tag.end, format!(">{own}{newline}{indent}</{name}>"))]
+    let mut edits = if element.is_empty() {
+        let start = text[..tag.end - 2].trim_end().len();
+        vec![FileEdit::new(start..tag.end, format!(">{own}{newline}{indent}</{name}>"))]
     } else {
-        vec![FileEdit::new(one.tag.end..one.tag.end, own)]
+        vec![FileEdit::new(tag.end..tag.end, own)]
     };
     if bound.is_none()
-        && let Some(root) = tree.elements.first()
+        && let Some(root) = root(element.document())
     {
-        let at = root.name.end;
+        let at = bytes(root.name_span()).end;
         edits.push(FileEdit::new(at..at, format!(" xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"")));
     }
     edits

@@ -1,6 +1,9 @@
 //! Parts of a text that an editor can fold.
 
+use saoms_lang::syntax::TokenKind;
+
 use super::scene::file::File;
+use super::syntax::is_opaque;
 
 /// Lines that can be folded into the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,22 +18,21 @@ pub struct Fold {
 
 /// Elements and comments of several lines. The line of an end tag stays; of several that begin in one line the outermost is folded.
 pub fn folds(file: &File) -> Vec<Fold> {
-    let (text, tree) = (&*file.text, &file.tree);
-    let line = |byte: usize| file.lines.line(byte);
-    let elements = tree.elements.iter().filter_map(|one| {
-        let start = line(one.tag.start);
-        let end = match &one.end_tag {
+    let line = |byte: u32| file.lines.line(byte as usize);
+    let elements = file.document.elements().filter_map(|one| {
+        let (whole, tag) = (one.span(), one.start_tag_span());
+        let start = line(tag.start);
+        let end = match one.end_tag_span() {
             Some(tag) => line(tag.start).saturating_sub(1),
-            None => line(one.end.max(one.tag.end).saturating_sub(1)),
+            None => line(whole.end.saturating_sub(1)),
         };
         // A start tag alone may have several lines, too.
-        let end = end.max(line(one.tag.end.saturating_sub(1)));
+        let end = end.max(line(tag.end.saturating_sub(1)));
         (start < end).then_some(Fold { start, end, is_comment: false })
     });
-    let opaque = tree.opaque.iter().filter_map(|part| {
-        let (start, end) = (line(part.start), line(part.end.saturating_sub(1)));
-        let is_comment = text[part.clone()].starts_with("<!--");
-        (start < end).then_some(Fold { start, end, is_comment })
+    let opaque = file.document.tokens().filter(|(kind, _)| is_opaque(*kind)).filter_map(|(kind, span)| {
+        let (start, end) = (line(span.start), line(span.end.saturating_sub(1)));
+        (start < end).then_some(Fold { start, end, is_comment: kind == TokenKind::Comment })
     });
     let mut all: Vec<Fold> = elements.chain(opaque).collect();
     all.sort_by_key(|fold| (fold.start, std::cmp::Reverse(fold.end)));

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use saoms_lang::diagnostic::codes;
 use saoms_lang::load::vocabulary::{Holds, other, own_attributes};
+use saoms_lang::syntax::{Element, ElementId};
 
 use super::complete::names::declared;
 use super::complete::table;
@@ -12,7 +13,7 @@ use super::scene::Scene;
 use super::scene::outline::{Component, Implementation, Side};
 use super::scene::symbol::{Symbol, at};
 use super::scene::topics::RENAME;
-use super::syntax::{Cursor, local, trimmed};
+use super::syntax::{Cursor, Places, local, trimmed};
 
 /// The description of the thing at a byte, in Markdown, and the range of its name.
 pub fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)> {
@@ -25,28 +26,29 @@ pub fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)> {
     if file.is_beside {
         return table::hover(scene, byte);
     }
-    match file.tree.cursor(&file.text, byte) {
-        Cursor::ElementName { element, name, .. } | Cursor::EndTag { element: Some(element), name } => {
-            let text = match file.kinds[element] {
+    match file.cursor(byte) {
+        Cursor::ElementName { element: Some(element), name, .. }
+        | Cursor::EndTag { element: Some(element), name } => {
+            let text = match file.kind(element.id()) {
                 Some(kind) => describe::element(kind),
-                None => other(file.tree.local(&file.text, element))?.to_owned(),
+                None => other(element.local_name())?.to_owned(),
             };
             Some((text, name))
         }
         Cursor::AttributeName { element, name } => {
-            let (kind, written) = (file.kinds[element]?, &file.text[name.clone()]);
+            let (kind, written) = (file.kind(element.id())?, &file.text[name.clone()]);
             let of_sca = kind.attributes.iter().find(|known| known.name == written);
             let own =
                 || own_attributes(kind).find(|known| written.contains(':') && known.name == local(written));
             Some((describe::attribute(of_sca.or_else(own)?), name))
         }
         Cursor::AttributeValue { element, attribute, value } => {
-            value_of(scene, element, attribute, value, byte)
+            value_of(scene, element, attribute.name(), value, byte)
         }
         Cursor::Text { parent: Some(element) } => {
-            let inside = file.tree.text(&file.text, element)?;
-            let is_value = file.tree.local(&file.text, element) == "value";
-            let property = if is_value { file.tree.elements[element].parent? } else { element };
+            let inside = element.text_place()?;
+            let is_value = element.local_name() == "value";
+            let property = if is_value { element.parent()? } else { element };
             let touches = inside.start <= byte && byte <= inside.end;
             touches.then(|| value_of_property(scene, property, inside, byte)).flatten()
         }
@@ -97,7 +99,8 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             Some(format!("**{name}**, a composite of `{namespace}`\n\n{count}, in `{path}`"))
         }
         Symbol::Loop { .. } => {
-            let component = scene.component_around(scene.file().tree.innermost(start + 1)?)?;
+            let component =
+                scene.component_around(scene.file().document.innermost(start as u32 + 1)?.id())?;
             let one =
                 component.loops.iter().find(|one| one.name.at.start <= start && start <= one.name.at.end)?;
             let class = scene.class_of_loop((0, component), one)?;
@@ -136,14 +139,13 @@ fn component(scene: &Scene, file: usize, one: &Component) -> String {
 
 fn value_of(
     scene: &Scene,
-    element: usize,
-    attribute: usize,
+    element: Element<'_>,
+    name: &str,
     value: Range<usize>,
     byte: usize,
 ) -> Option<(String, Range<usize>)> {
     let file = scene.file();
-    let kind = file.kinds[element]?;
-    let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
+    let kind = file.kind(element.id())?;
     let of_sca = kind.attributes.iter().find(|known| known.name == name);
     let own = || own_attributes(kind).find(|known| name.contains(':') && known.name == local(name));
     let known = of_sca.or_else(own)?;
@@ -154,7 +156,7 @@ fn value_of(
         return Some(found);
     }
     let more = match known.holds {
-        Holds::PropertyName => property(scene, file.tree.elements[element].parent?, &file.text[at.clone()]),
+        Holds::PropertyName => property(scene, element.parent()?.id(), &file.text[at.clone()]),
         Holds::Code => {
             let of_rules = scene.registry.rules().iter().map(|rule| rule.code());
             let mut all = codes::ALL.iter().copied().chain(of_rules);
@@ -167,7 +169,7 @@ fn value_of(
     Some((more.unwrap_or_else(|| describe::attribute(known)), at))
 }
 
-fn property(scene: &Scene, parent: usize, name: &str) -> Option<String> {
+fn property(scene: &Scene, parent: ElementId, name: &str) -> Option<String> {
     let (one, preset) = declared(scene, parent).into_iter().find(|(one, _)| one.name == name)?;
     Some(describe::property(one, preset))
 }
@@ -175,14 +177,14 @@ fn property(scene: &Scene, parent: usize, name: &str) -> Option<String> {
 /// The value of a property: what it has to be, or of `topicRename` the topic.
 fn value_of_property(
     scene: &Scene,
-    element: usize,
+    element: Element<'_>,
     value: Range<usize>,
     byte: usize,
 ) -> Option<(String, Range<usize>)> {
     let file = scene.file();
-    let name = &file.text[file.tree.value(&file.text, element, "name")?];
+    let name = &file.text[element.value("name")?];
     if name == RENAME
-        && let Some(component) = scene.component_around(element)
+        && let Some(component) = scene.component_around(element.id())
     {
         let is_part = |c: char| c != ',' && c != ':' && !c.is_whitespace();
         let before = file.text[value.start..byte].trim_end_matches(is_part).len();
@@ -193,5 +195,5 @@ fn value_of_property(
             return Some((describe::topic(topic.declaration), at));
         }
     }
-    Some((property(scene, file.tree.elements[element].parent?, name)?, value))
+    Some((property(scene, element.parent()?.id(), name)?, value))
 }

@@ -42,10 +42,8 @@ fn defined(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
 /// A file beside the composite that an attribute names.
 fn side_file(scene: &Scene, byte: usize) -> Option<DefinitionTarget> {
     let file = scene.file();
-    let Cursor::AttributeValue { element, attribute, value } = file.tree.cursor(&file.text, byte) else {
-        return None;
-    };
-    let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
+    let Cursor::AttributeValue { attribute, value, .. } = file.cursor(byte) else { return None };
+    let name = attribute.name();
     let is_file = matches!(name, "file" | "uri" | "library") || name.ends_with(":overrides");
     let path = file.path.parent()?.join(file.text[value].trim());
     (is_file && path.is_file()).then_some(DefinitionTarget::File(path))

@@ -3,38 +3,30 @@
 use std::ops::Range;
 
 use super::scene::file::File;
-use super::syntax::{Cursor, trimmed, words};
+use super::syntax::{Cursor, Places, bytes, is_opaque, trimmed, value_of, words};
 
 /// The ranges around a byte, the smallest first: a word, a value, an attribute, a tag, what an element holds, the element, and so on.
 pub fn selections(file: &File, at: usize) -> Vec<Range<usize>> {
-    let (text, tree) = (&*file.text, &file.tree);
-    let opaque = tree.opaque.iter().filter(|part| part.start < at && at < part.end).cloned();
-    let mut all: Vec<Range<usize>> = opaque.collect();
+    let text = file.text.as_str();
+    let opaque = file.document.token_at(at as u32).filter(|(kind, _)| is_opaque(*kind));
+    let mut all: Vec<Range<usize>> = opaque.into_iter().map(|(_, span)| bytes(span)).collect();
     all.push(0..text.len());
-    let mut here = tree.innermost(at);
+    let mut here = file.document.innermost(at as u32);
     while let Some(element) = here {
-        let one = &tree.elements[element];
-        let end = one.end.max(one.tag.end);
-        let inside_end = one.end_tag.as_ref().map_or(end, |tag| tag.start);
-        all.extend([one.tag.start..end, one.tag.clone(), one.name.clone()]);
-        all.extend(one.end_tag.clone());
-        if one.is_complete && !one.is_empty {
-            let inside = one.tag.end..inside_end.max(one.tag.end);
+        all.extend([element.whole(), element.tag(), bytes(element.name_span())]);
+        all.extend(element.end_tag_span().map(bytes));
+        if element.has_whole_start_tag() && !element.is_empty() {
+            let inside = bytes(element.content_span());
             all.extend([trimmed(text, inside.clone()), inside]);
         }
-        for attribute in &one.attributes {
-            let value = attribute.value.clone();
-            let end = value
-                .as_ref()
-                .map_or(attribute.name.end, |value| value.end + usize::from(attribute.is_closed));
-            all.extend([attribute.name.clone(), attribute.name.start..end]);
-            all.extend(
-                value
-                    .into_iter()
-                    .flat_map(|value| words(text, value.clone()).chain([value]).collect::<Vec<_>>()),
-            );
+        for attribute in element.written_attributes() {
+            all.extend([bytes(attribute.name_span()), bytes(attribute.span())]);
+            if let Some(value) = value_of(attribute) {
+                all.extend(words(text, value.clone()));
+                all.push(value);
+            }
         }
-        here = one.parent;
+        here = element.parent();
     }
     all.retain(|range| range.start <= at && at <= range.end && !range.is_empty());
     all.sort_by_key(|range| (range.len(), range.start));
@@ -53,11 +45,10 @@ pub fn selections(file: &File, at: usize) -> Vec<Range<usize>> {
 
 /// The name in the start tag and the name in the end tag of the element whose name a byte touches: they are typed as one.
 pub fn linked_tags(file: &File, at: usize) -> Option<[Range<usize>; 2]> {
-    let element = match file.tree.cursor(&file.text, at) {
-        Cursor::ElementName { element, .. } | Cursor::EndTag { element: Some(element), .. } => element,
-        _ => return None,
+    let (Cursor::ElementName { element, .. } | Cursor::EndTag { element, .. }) = file.cursor(at) else {
+        return None;
     };
-    let one = &file.tree.elements[element];
-    let tag = one.end_tag.as_ref()?;
-    Some([one.name.clone(), tag.start + 2..tag.start + 2 + one.name.len()])
+    let (start, end) = (element?.name_span(), element?.end_name_span()?);
+    let is_one = file.text[bytes(start)] == file.text[bytes(end)];
+    is_one.then(|| [bytes(start), bytes(end)])
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::scene::file::File;
 use super::scene::outline::{Component, Implementation, Named};
+use super::syntax::Places;
 
 /// A named part of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,9 +126,9 @@ fn component(file: &File, component: &Component) -> DocumentSymbol {
 /// The value of a property, short.
 fn value(file: &File, properties: &[Named], name: &str) -> Option<String> {
     let one = properties.iter().find(|one| one.text == name)?;
-    let tree = &file.tree;
-    let source = tree.value(&file.text, one.element, "source");
-    let given = tree.value(&file.text, one.element, "value").or_else(|| tree.text(&file.text, one.element));
+    let element = file.element(one.element);
+    let given = element.value("value").or_else(|| element.text_place());
+    let source = element.value("source");
     let value = &file.text[given.or(source)?];
     Some(value.lines().next().unwrap_or_default().chars().take(40).collect())
 }
@@ -139,12 +140,11 @@ fn symbol(
     detail: &str,
     children: Vec<DocumentSymbol>,
 ) -> DocumentSymbol {
-    let element = &file.tree.elements[name.element];
     DocumentSymbol {
         name: name.text.clone(),
         detail: detail.to_owned(),
         kind,
-        range: element.tag.start..element.end.max(element.tag.end),
+        range: file.element(name.element).whole(),
         name_range: name.at.clone(),
         children,
     }

@@ -54,7 +54,7 @@ fn checked(generation: u64, text: &str) -> Event {
     let mut checker = Checker { registries, assume_classes: false, newest, workspace: Workspace::default() };
     let mut open = OpenTexts::default();
     let path = Path::new("/nowhere/fleet.composite");
-    open.insert(path, text);
+    open.insert(path, text.to_owned());
     let outcome: Outcome =
         checker.check(Job { generation, open, paths: vec![path.to_owned()], looks_anew: true }).unwrap();
     Event::Checked(outcome)

@@ -199,7 +199,7 @@ fn what_an_editor_holds_counts_in_place_of_files() {
     open.insert(&path("./outer.composite"), composite("urn:a", "outer", &inside));
     open.insert(&path("inner.composite"), composite("urn:a", "renamed", ""));
     open.insert(&path("new.composite"), composite("urn:a", "new", ""));
-    open.insert(&path("value.txt"), " typed ");
+    open.insert(&path("value.txt"), " typed ".to_owned());
     let (all, _, diagnostics) = loaded_with_named(&path("outer.composite"), open);
     assert_eq!(all.composites()[0].components[0].properties[0].from_file().unwrap(), &"typed");
     let link = |place: usize| all.link(all.composites()[0].includes[place].origin).unwrap();

@@ -5,24 +5,24 @@ use std::ops::Range;
 use super::ProposalKind;
 use saoms_lang::load::vocabulary::{Known, own_attributes};
 use saoms_lang::model::{SAOMS_NAMESPACE, Version};
+use saoms_lang::syntax::{Attribute, Element, ElementId};
 
 use super::{Proposal, value};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
+use crate::editor::syntax::{Places, bytes, root_name_end, version};
 
 /// The attributes that an element can still get.
-pub(super) fn complete(scene: &Scene, element: usize, name: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn complete(scene: &Scene, element: Element<'_>, name: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
-    let Some(kind) = file.kinds[element] else { return Vec::new() };
-    let attributes = &file.tree.elements[element].attributes;
-    let here = attributes.iter().find(|one| one.name == *name);
+    let Some(kind) = file.kind(element.id()) else { return Vec::new() };
+    let is_here = |one: &Attribute<'_>| bytes(one.name_span()) == *name;
     // One that has its value already gets another name and nothing else.
-    let has_value = here.is_some_and(|one| one.value.is_some());
-    let is_taken = |written: &str| {
-        attributes.iter().any(|one| one.name != *name && &file.text[one.name.clone()] == written)
-    };
-    let version = file.tree.version(&file.text);
-    let own = Own::at(scene, element);
+    let has_value = element.written_attributes().any(|one| is_here(&one) && one.has_value());
+    let is_taken =
+        |written: &str| element.written_attributes().any(|one| !is_here(&one) && one.name() == written);
+    let version = version(&file.document);
+    let own = Own::at(scene, element.id());
     let added = own.iter().flat_map(|own| {
         let free = own_attributes(kind).map(|known| (format!("{}:{}", own.prefix, known.name), known));
         let free = free.filter(|(written, _)| !is_taken(written));
@@ -42,13 +42,13 @@ pub(super) struct Own<'s> {
 
 impl<'s> Own<'s> {
     /// `None` where the usual prefix means something else.
-    pub(super) fn at(scene: &'s Scene, element: usize) -> Option<Self> {
-        let (text, tree) = (&*scene.file().text, &scene.file().tree);
-        if let Some(prefix) = tree.prefix_of(text, element, SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
+    pub(super) fn at(scene: &'s Scene, element: ElementId) -> Option<Self> {
+        let element = scene.file().element(element);
+        if let Some(prefix) = element.prefix_of(SAOMS_NAMESPACE).filter(|own| !own.is_empty()) {
             return Some(Self { prefix, at: None });
         }
-        let is_free = tree.resolve(text, element, "saoms").is_none();
-        is_free.then(|| Self { prefix: "saoms", at: tree.elements.first().map(|root| root.name.end) })
+        let is_free = element.resolve_prefix("saoms").is_none();
+        is_free.then(|| Self { prefix: "saoms", at: root_name_end(&scene.file().document) })
     }
 
     /// A proposal that has the prefix, with its declaration where that is lacking.

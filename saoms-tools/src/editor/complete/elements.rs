@@ -7,13 +7,14 @@ use saoms_lang::load::vocabulary::{
     COMPONENT, COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, children, other,
 };
 use saoms_lang::model::Version;
+use saoms_lang::syntax::Element;
 
 use super::attributes::Own;
 use super::completion::in_snippet;
 use super::{Proposal, names};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
-use crate::editor::syntax::prefix;
+use crate::editor::syntax::{Places, prefix, root as root_of};
 
 /// Those that most files have come first.
 const USUAL: &[&str] = &[
@@ -31,15 +32,15 @@ const USUAL: &[&str] = &[
 /// The names behind a `<`.
 pub(super) fn in_tag(
     scene: &Scene,
-    parent: Option<usize>,
-    element: usize,
+    parent: Option<Element<'_>>,
+    element: Option<Element<'_>>,
     name: &Range<usize>,
 ) -> Vec<Proposal> {
-    let file = scene.file();
-    let one = &file.tree.elements[element];
     // An element that has its attributes or its end gets another name and nothing else.
-    let is_new = !one.is_complete && one.attributes.is_empty();
-    let range = name.start - 1..name.end;
+    let is_new =
+        element.is_none_or(|one| !one.has_whole_start_tag() && one.written_attributes().next().is_none());
+    let start = element.map_or(name.start - 1, |one| one.tag().start);
+    let range = start..name.end;
     let found = proposals(scene, parent, &range);
     if is_new {
         return found;
@@ -49,38 +50,41 @@ pub(super) fn in_tag(
 }
 
 /// Elements at a place without a `<`.
-pub(super) fn in_content(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
+pub(super) fn in_content(scene: &Scene, parent: Option<Element<'_>>, at: usize) -> Vec<Proposal> {
     proposals(scene, parent, &(at..at))
 }
 
 /// The end tag of an element.
-pub(super) fn end(scene: &Scene, element: Option<usize>, name: &Range<usize>, at: usize) -> Vec<Proposal> {
+pub(super) fn end(
+    scene: &Scene,
+    element: Option<Element<'_>>,
+    name: &Range<usize>,
+    at: usize,
+) -> Vec<Proposal> {
     let file = scene.file();
     let Some(element) = element else { return Vec::new() };
-    let wanted = &file.text[file.tree.elements[element].name.clone()];
+    let wanted = element.name();
     let close = if file.text[name.end..].trim_start().starts_with('>') { "" } else { ">" };
     let range = name.start..name.end.max(at);
     vec![Proposal::new(wanted, ProposalKind::Class, &range).insert(format!("{wanted}{close}"))]
 }
 
-fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<Proposal> {
+fn proposals(scene: &Scene, parent: Option<Element<'_>>, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
-    let (text, tree) = (&*file.text, &file.tree);
     let Some(parent) = parent else {
-        let has_root = tree.elements.iter().any(|one| one.parent.is_none() && one.tag.start != range.start);
+        let has_root = root_of(&file.document).is_some_and(|one| one.tag().start != range.start);
         return if has_root { Vec::new() } else { vec![root(scene, range)] };
     };
-    let Some(kind) = file.kinds[parent] else { return Vec::new() };
-    let sca = prefix(&text[tree.elements[0].name.clone()]);
-    let has_implementation = tree.children(parent).any(|child| {
-        tree.local(text, child).starts_with("implementation.")
-            && tree.elements[child].tag.start != range.start
-    });
+    let Some(kind) = file.kind(parent.id()) else { return Vec::new() };
+    let sca = prefix(file.document.root().name());
+    let has_implementation = parent
+        .children()
+        .any(|child| child.local_name().starts_with("implementation.") && child.tag().start != range.start);
     let fits = |name: &&str| !(has_implementation && name.starts_with("implementation."));
     let mut all: Vec<Proposal> =
         children(kind).filter(fits).map(|name| element(kind, name, &format!("{sca}{name}"), range)).collect();
     if std::ptr::eq(kind, &COMPONENT) {
-        all.extend(names::missing_properties(scene, parent).into_iter().map(|(one, preset)| {
+        all.extend(names::missing_properties(scene, parent.id()).into_iter().map(|(one, preset)| {
             let name = format!("{sca}property {}", one.name);
             let value = in_snippet(one.default.as_deref().unwrap_or_default());
             let rank = if one.required { 0 } else { 6 };
@@ -91,7 +95,7 @@ fn proposals(scene: &Scene, parent: Option<usize>, range: &Range<usize>) -> Vec<
                 .snippet(format!("<{sca}property name=\"{}\">${{1:{value}}}</{sca}property>", one.name))
         }));
     }
-    if let Some(own) = Own::at(scene, parent) {
+    if let Some(own) = Own::at(scene, parent.id()) {
         if std::ptr::eq(kind, &COMPONENT) {
             all.push(added(&LOOP, &own, "name=\"$1\"$2", range));
         }

@@ -5,19 +5,21 @@ use std::ops::Range;
 
 use super::ProposalKind;
 use saoms_lang::expression::{ExpressionError, ExpressionValue, INDEX, render};
+use saoms_lang::model::SAOMS_NAMESPACE;
 use saoms_lang::registry::InterfaceDeclaration;
+use saoms_lang::syntax::{Element, ElementId};
 
 use super::{Proposal, names};
 use crate::editor::scene::Scene;
 use crate::editor::scene::contracts::Contract;
 use crate::editor::scene::outline::{Component, Implementation, Side};
 use crate::editor::scene::symbol::group;
-use crate::editor::syntax::local;
+use crate::editor::syntax::Places;
 
 /// What can stand at a place of a target, a source or a promotion.
 pub(super) fn complete(
     scene: &Scene,
-    element: usize,
+    element: ElementId,
     attribute: &str,
     value: Range<usize>,
     at: usize,
@@ -26,7 +28,7 @@ pub(super) fn complete(
     let text = &*file.text;
     let word = word(text, value, at);
     let promotes = attribute == "promote";
-    let in_reference = file.tree.local(text, element) == "reference";
+    let in_reference = file.element(element).local_name() == "reference";
     let side = match attribute == "source" || (promotes && in_reference) {
         true => Side::Reference,
         false => Side::Service,
@@ -112,11 +114,8 @@ pub(super) fn complete(
 /// The name of the first of the replicas that a component stands for, where it does not depend on what is set from outside.
 fn first_replica(scene: &Scene, (file, component): (usize, &Component)) -> Option<String> {
     let of = &scene.files[file];
-    let from = of.tree.elements[component.name.element].attributes.iter().find(|one| {
-        let name = &of.text[one.name.clone()];
-        name.contains(':') && local(name) == "from"
-    });
-    let written = from.and_then(|one| one.value.clone()).map(|at| of.text[at].trim());
+    let from = of.element(component.name.element).attribute_in(SAOMS_NAMESPACE, "from");
+    let written = from.map(|one| one.raw_value().trim());
     let first = written.map_or(Ok(1), str::parse).ok()?;
     let mut value = |name: &str| match name {
         INDEX => Ok(ExpressionValue::Integer(first)),
@@ -173,10 +172,11 @@ impl Asked<'_> {
 }
 
 /// The reference that calls what a target names: the one that it is in, or that the wire begins at.
-fn calling<'s>(scene: &'s Scene, element: usize) -> Option<Contract<'s>> {
+fn calling<'s>(scene: &'s Scene, element: ElementId) -> Option<Contract<'s>> {
     let file = scene.file();
-    let value = |element: usize, name: &str| Some(&file.text[file.tree.value(&file.text, element, name)?]);
-    let (of, reference) = match file.tree.local(&file.text, element) {
+    let element = file.element(element);
+    let value = |element: Element<'s>, name: &str| Some(&file.text[element.value(name)?]);
+    let (of, reference) = match element.local_name() {
         "wire" => {
             let (component, reference) = value(element, "source")?.split_once('/')?;
             let (file, component) = scene.named(0, component);
@@ -184,8 +184,8 @@ fn calling<'s>(scene: &'s Scene, element: usize) -> Option<Contract<'s>> {
         }
         name => {
             // A binding is in its reference.
-            let element = if name == "reference" { element } else { file.tree.elements[element].parent? };
-            match scene.component_around(element) {
+            let element = if name == "reference" { element } else { element.parent()? };
+            match scene.component_around(element.id()) {
                 Some(component) => ((0, component), value(element, "name")?),
                 None => {
                     let (component, reference) = value(element, "promote")?.split_once('/')?;

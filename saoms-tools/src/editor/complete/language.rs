@@ -4,15 +4,21 @@ use std::ops::Range;
 
 use saoms_api::extension::{self, PropertyLanguage, PropertyText};
 use saoms_lang::expression::{ExpressionValue, render};
+use saoms_lang::syntax::ElementId;
 
 use super::{Proposal, ProposalKind};
 use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Component;
+use crate::editor::syntax::Places;
 
 /// The language of the text in a property of a component of a file.
-pub(super) fn of_property(scene: &Scene, file: usize, property: usize) -> Option<&'static PropertyLanguage> {
+pub(super) fn of_property(
+    scene: &Scene,
+    file: usize,
+    property: ElementId,
+) -> Option<&'static PropertyLanguage> {
     let of = &scene.files[file];
-    let name = &of.text[of.tree.value(&of.text, property, "name")?];
+    let name = &of.text[of.element(property).value("name")?];
     let component = scene.component_in(file, property)?;
     PropertyLanguage::linked()
         .find(|language| language.property == name && is_a(scene, component, language.class))

@@ -23,11 +23,12 @@ use saoms_lang::load::vocabulary::{
     COMPOSITE_SERVICE, Holds, own_attributes,
 };
 use saoms_lang::model::Multiplicity;
+use saoms_lang::syntax::{Element, ElementId};
 
 use super::scene::Scene;
 use super::scene::expressions::template_before;
 use super::scene::outline::{Component, Side};
-use super::syntax::{Cursor, local};
+use super::syntax::{Cursor, Places, bytes, is_declaration, local, trimmed};
 pub use completion::{Insert, Proposal, ProposalKind};
 
 /// The completions at a byte of the file.
@@ -39,15 +40,14 @@ pub fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
     if let Some(entities) = entities(scene, at) {
         return entities;
     }
-    match file.tree.cursor(&file.text, at) {
+    match file.cursor(at) {
         Cursor::ElementName { parent, element, name } => elements::in_tag(scene, parent, element, &name),
         Cursor::EndTag { element, name } => elements::end(scene, element, &name, at),
         Cursor::AttributeName { element, name } => attributes::complete(scene, element, &name),
         Cursor::AttributeValue { element, attribute, value } => {
             // What is behind the cursor stays where the value has no end yet.
-            let is_closed = file.tree.elements[element].attributes[attribute].is_closed;
-            let value = value.start..if is_closed { value.end } else { at };
-            value_of(scene, element, attribute, value, at)
+            let value = value.start..if attribute.is_closed() { value.end } else { at };
+            value_of(scene, element.id(), attribute.name(), value, at)
         }
         Cursor::Text { parent } => in_text(scene, parent, at),
         Cursor::Opaque => Vec::new(),
@@ -61,10 +61,8 @@ fn entities(scene: &Scene, at: usize) -> Option<Vec<Proposal>> {
     let text = &scene.file().text;
     let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '#';
     let start = text[..at].trim_end_matches(is_part).strip_suffix('&')?.len();
-    let can_be = matches!(
-        scene.file().tree.cursor(text, at),
-        Cursor::Text { parent: Some(_) } | Cursor::AttributeValue { .. }
-    );
+    let can_be =
+        matches!(scene.file().cursor(at), Cursor::Text { parent: Some(_) } | Cursor::AttributeValue { .. });
     let behind = text[at..].len() - text[at..].trim_start_matches(is_part).len();
     let end = at + behind + usize::from(text[at + behind..].starts_with(';'));
     let one = |(name, meant): (&str, &str)| {
@@ -96,17 +94,10 @@ fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
 }
 
 /// The values of an attribute.
-fn value_of(
-    scene: &Scene,
-    element: usize,
-    attribute: usize,
-    value: Range<usize>,
-    at: usize,
-) -> Vec<Proposal> {
+fn value_of(scene: &Scene, element: ElementId, name: &str, value: Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
-    let Some(kind) = file.kinds[element] else { return Vec::new() };
-    let name = &file.text[file.tree.elements[element].attributes[attribute].name.clone()];
-    if name == "xmlns" || name.starts_with("xmlns:") {
+    let Some(kind) = file.kind(element) else { return Vec::new() };
+    if is_declaration(name) {
         return attributes::namespaces(&value);
     }
     let of_sca = kind.attributes.iter().find(|known| known.name == name);
@@ -162,7 +153,7 @@ fn value_of(
 /// The names in the `${...}` that a byte is in; `None` where it is in none.
 fn in_template(
     scene: &Scene,
-    element: usize,
+    element: ElementId,
     is_name: bool,
     range: &Range<usize>,
     at: usize,
@@ -187,35 +178,35 @@ fn template(
     Some(names::parameters_of(scene, file, Some(component), &word))
 }
 
-fn in_reference(scene: &Scene, element: usize) -> bool {
-    let file = scene.file();
-    let parent = file.tree.elements[element].parent;
-    parent.is_some_and(|parent| file.tree.local(&file.text, parent) == "reference")
+fn in_reference(scene: &Scene, element: ElementId) -> bool {
+    let parent = scene.file().element(element).parent();
+    parent.is_some_and(|parent| parent.local_name() == "reference")
 }
 
 /// What can stand in the content of an element.
-fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
+fn in_text(scene: &Scene, parent: Option<Element<'_>>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     let Some(element) = parent else { return elements::in_content(scene, None, at) };
-    let one = &file.tree.elements[element];
-    let is_property = |one: &usize| {
+    let is_property = |one: &Element<'_>| {
         let kinds = [&COMPONENT_PROPERTY, &COMPOSITE_PROPERTY];
-        file.kinds[*one].is_some_and(|kind| kinds.iter().any(|known| std::ptr::eq(kind, *known)))
+        file.kind(one.id()).is_some_and(|kind| kinds.iter().any(|known| std::ptr::eq(kind, *known)))
     };
-    let property = match (file.kinds[element], one.parent) {
+    let property = match (file.kind(element.id()), element.parent()) {
         (Some(_), _) => Some(element).filter(is_property),
         // A `<value>` of a property.
-        (None, outer) if file.tree.local(&file.text, element) == "value" => outer.filter(is_property),
+        (None, outer) if element.local_name() == "value" => outer.filter(is_property),
         _ => None,
     };
-    let Some(property) = property else { return elements::in_content(scene, parent, at) };
-    if file.tree.children(element).next().is_some() {
+    let Some(property) = property.map(Element::id) else { return elements::in_content(scene, parent, at) };
+    if element.children().next().is_some() {
         return elements::in_content(scene, parent, at);
     }
-    let end = one.end_tag.as_ref().map_or(at, |tag| tag.start).max(at);
-    let inside = super::syntax::trimmed(&file.text, one.tag.end..end);
+    let end_tag = element.end_tag_span().map(bytes);
+    let end = end_tag.as_ref().map_or(at, |tag| tag.start).max(at);
+    let inside = trimmed(&file.text, element.tag().end..end);
+    let element = element.id();
     // An empty text is where the cursor is; one that is there already is replaced.
-    let range = match (inside.is_empty(), &one.end_tag) {
+    let range = match (inside.is_empty(), &end_tag) {
         (true, _) => at..at,
         (false, Some(_)) => inside.start.min(at)..inside.end.max(at),
         (false, None) => inside.start.min(at)..at,
@@ -227,7 +218,7 @@ fn in_text(scene: &Scene, parent: Option<usize>, at: usize) -> Vec<Proposal> {
     if let Some(inside) = in_template(scene, element, false, &range, at) {
         return inside;
     }
-    match file.kinds[property] {
+    match file.kind(property) {
         Some(kind) if std::ptr::eq(kind, &COMPOSITE_PROPERTY) => {
             values::of_parameter(scene, property, range, at)
         }

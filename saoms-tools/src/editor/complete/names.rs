@@ -7,6 +7,7 @@ use super::ProposalKind;
 use saoms_lang::diagnostic::codes;
 use saoms_lang::expression::is_name;
 use saoms_lang::registry::{ClassDeclaration, PropertyDeclaration};
+use saoms_lang::syntax::{Element, ElementId};
 
 use super::Proposal;
 use crate::editor::describe;
@@ -14,6 +15,7 @@ use crate::editor::scene::Scene;
 use crate::editor::scene::contracts::Contract;
 use crate::editor::scene::expressions::INDEX;
 use crate::editor::scene::outline::{Component, Loop, Named, Side};
+use crate::editor::syntax::{Places, root_name_end};
 
 /// Fixed values.
 pub(super) fn words(words: &[&str], range: &Range<usize>) -> Vec<Proposal> {
@@ -54,9 +56,9 @@ pub(super) fn classes(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
 }
 
 /// The properties that a component, or a loop, has not been given yet. One that the cursor is in counts as not given.
-pub(super) fn properties(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn properties(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
-    let Some(parent) = file.tree.elements[element].parent else { return Vec::new() };
+    let Some(parent) = file.element(element).parent().map(Element::id) else { return Vec::new() };
     let given: Vec<&str> = given(scene, parent, element);
     let mut all: Vec<Proposal> = declared(scene, parent)
         .into_iter()
@@ -81,7 +83,7 @@ pub(super) fn properties(scene: &Scene, element: usize, range: &Range<usize>) ->
 /// The declared properties that a component lacks, each with what its class's name presets.
 pub(super) fn missing_properties(
     scene: &Scene,
-    component: usize,
+    component: ElementId,
 ) -> Vec<(&PropertyDeclaration, Option<&str>)> {
     let given = given(scene, component, component);
     let all = declared(scene, component).into_iter();
@@ -89,15 +91,15 @@ pub(super) fn missing_properties(
 }
 
 /// The names of the properties in an element, but for that of one of them.
-fn given(scene: &Scene, parent: usize, except: usize) -> Vec<&str> {
+fn given(scene: &Scene, parent: ElementId, except: ElementId) -> Vec<&str> {
     let file = scene.file();
-    let others = file.tree.children(parent).filter(|child| *child != except);
-    let named = others.filter(|child| file.tree.local(&file.text, *child) == "property");
-    named.filter_map(|child| Some(&file.text[file.tree.value(&file.text, child, "name")?])).collect()
+    let others = file.element(parent).children().filter(|child| child.id() != except);
+    let named = others.filter(|child| child.local_name() == "property");
+    named.filter_map(|child| Some(&file.text[child.value("name")?])).collect()
 }
 
 /// The properties that an element, a component or a loop, can be given.
-pub(crate) fn declared(scene: &Scene, element: usize) -> Vec<(&PropertyDeclaration, Option<&str>)> {
+pub(crate) fn declared(scene: &Scene, element: ElementId) -> Vec<(&PropertyDeclaration, Option<&str>)> {
     declared_in(scene, 0, element)
 }
 
@@ -105,7 +107,7 @@ pub(crate) fn declared(scene: &Scene, element: usize) -> Vec<(&PropertyDeclarati
 pub(super) fn declared_in(
     scene: &Scene,
     file: usize,
-    element: usize,
+    element: ElementId,
 ) -> Vec<(&PropertyDeclaration, Option<&str>)> {
     let Some(component) = scene.component_in(file, element) else { return Vec::new() };
     if let Some(one) = component.loops.iter().find(|one| one.name.element == element) {
@@ -123,7 +125,12 @@ pub(super) fn declared_in(
 }
 
 /// The names of loops: for `name` those that can be changed and are not yet, for `before` and `after` all others.
-pub(super) fn loops(scene: &Scene, element: usize, attribute: &str, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn loops(
+    scene: &Scene,
+    element: ElementId,
+    attribute: &str,
+    range: &Range<usize>,
+) -> Vec<Proposal> {
     let Some(component) = scene.component_around(element) else { return Vec::new() };
     let is_own = |one: &&Loop| one.name.element == element;
     let others: Vec<&str> =
@@ -142,7 +149,7 @@ pub(super) fn loops(scene: &Scene, element: usize, attribute: &str, range: &Rang
 }
 
 /// The loops of the registry; those that work on the component's knowledge, or on any, first.
-pub(super) fn loop_classes(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn loop_classes(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let class = scene.component_around(element).and_then(|component| scene.class(component));
     let knowledge = class.and_then(|class| class.declaration().knowledge.as_ref()).map(|one| &one.name);
     let all = scene.registry.loops();
@@ -158,7 +165,7 @@ pub(super) fn loop_classes(scene: &Scene, element: usize, range: &Range<usize>) 
 }
 
 /// The services or references of the component that an element is in which nothing is said about yet.
-pub(super) fn parts(scene: &Scene, element: usize, side: Side, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn parts(scene: &Scene, element: ElementId, side: Side, range: &Range<usize>) -> Vec<Proposal> {
     let Some(component) = scene.component_around(element) else { return Vec::new() };
     let named = if side == Side::Service { &component.services } else { &component.references };
     let is_said = |name: &str| named.iter().any(|one| one.text == name && one.element != element);
@@ -179,11 +186,11 @@ pub(super) fn contracts<'s>(all: impl Iterator<Item = Contract<'s>>, range: &Ran
 }
 
 /// The interfaces that classes declare; the one that the service or the reference has by its class comes first.
-pub(super) fn interfaces(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn interfaces(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
-    let own = file.tree.elements[element].parent.and_then(|contract| {
-        let name = &file.text[file.tree.value(&file.text, contract, "name")?];
-        let of = (0, scene.component_around(contract)?);
+    let own = file.element(element).parent().and_then(|contract| {
+        let name = &file.text[contract.value("name")?];
+        let of = (0, scene.component_around(contract.id())?);
         let found =
             [Side::Service, Side::Reference].into_iter().find_map(|side| scene.contract(of, side, name));
         Some(&found?.interface?.name)
@@ -200,12 +207,12 @@ fn interfaces_of(class: &ClassDeclaration) -> impl Iterator<Item = &str> {
 }
 
 /// The composites that a file can name, with the prefix of their namespace. Where the file has none for it, one is declared at its root.
-pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn composites(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let deployed = file.outline.deployables.iter().filter(|one| one.element != element);
     let deployed: Vec<usize> = deployed.filter_map(|one| scene.composite(0, one)).collect();
-    let root = file.tree.elements.first().map(|root| root.name.end);
-    let default = file.tree.resolve(&file.text, element, "");
+    let root = root_name_end(&file.document);
+    let default = file.element(element).resolve_prefix("");
     // What a contribution runs is its own.
     let is_hidden =
         |place: usize| scene.imports_this(place) || file.is_description() && scene.is_imported(place);
@@ -214,11 +221,10 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
         .filter_map(|(place, other)| {
             let name = &other.outline.name.as_ref()?.text;
             let namespace = &other.outline.namespace;
-            let bound =
-                file.tree.prefix_of(&file.text, element, namespace).filter(|prefix| !prefix.is_empty());
+            let bound = file.element(element).prefix_of(namespace).filter(|prefix| !prefix.is_empty());
             let written = bound.map_or_else(|| name.clone(), |prefix| format!("{prefix}:{name}"));
             // Without a prefix it is of the default namespace.
-            let is_plain = namespace.is_empty() || default == Some(namespace.as_str());
+            let is_plain = namespace.is_empty() || default.as_deref() == Some(namespace);
             // A name that would lead elsewhere, or nowhere, is of no use.
             let meant = Named { element, text: written.clone(), at: range.clone() };
             let leads = scene.composite(0, &meant) == Some(place);
@@ -245,13 +251,13 @@ pub(super) fn composites(scene: &Scene, element: usize, range: &Range<usize>) ->
 }
 
 /// A prefix for a namespace that a file has not bound: the last word of it, as `fleet` of `urn:example:fleet`.
-fn free_prefix(scene: &Scene, element: usize, namespace: &str) -> String {
+fn free_prefix(scene: &Scene, element: ElementId, namespace: &str) -> String {
     let file = scene.file();
     let is_part = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
     let mut words = namespace.rsplit(|c: char| !is_part(c));
     let fits = |word: &&str| word.starts_with(|c: char| c.is_ascii_alphabetic());
     let word = words.find(fits).unwrap_or("c");
-    let is_free = |prefix: &String| file.tree.resolve(&file.text, element, prefix).is_none();
+    let is_free = |prefix: &String| file.element(element).resolve_prefix(prefix).is_none();
     let numbered = (2..).map(|number| format!("{word}{number}"));
     std::iter::once(word.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
 }
@@ -272,7 +278,7 @@ pub(super) fn of_file(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
 }
 
 /// The names of what a service or a reference of the composite promotes.
-pub(super) fn promoted(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn promoted(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let ends = scene.file().outline.ends.iter().filter(|end| end.component.element == element);
     let names: BTreeSet<&str> = ends.filter_map(|end| Some(end.part.as_ref()?.text.as_str())).collect();
     names.into_iter().map(|name| Proposal::new(name, ProposalKind::Interface, range)).collect()

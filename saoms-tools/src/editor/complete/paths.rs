@@ -5,6 +5,8 @@ use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
+use saoms_lang::syntax::ElementId;
+
 use super::ProposalKind;
 
 use super::Proposal;
@@ -61,7 +63,7 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
 }
 
 /// The libraries that are known by the classes that they bring, that of the component's class first, and those in the folder.
-pub(super) fn libraries(scene: &Scene, element: usize, value: &Range<usize>, at: usize) -> Vec<Proposal> {
+pub(super) fn libraries(scene: &Scene, element: ElementId, value: &Range<usize>, at: usize) -> Vec<Proposal> {
     let class = scene.component_around(element).and_then(|one: &Component| match &one.implementation {
         Some(Implementation::Class(name)) => scene.registry.get(&name.text)?.origin(),
         _ => None,

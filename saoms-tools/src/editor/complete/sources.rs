@@ -3,12 +3,14 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use saoms_lang::syntax::ElementId;
+
 use super::ProposalKind;
 
 use super::{Proposal, names};
 use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Named;
-use crate::editor::syntax::local;
+use crate::editor::syntax::{Places, is_declaration, local};
 
 /// How many elements of values are looked at.
 const MOST: usize = 20_000;
@@ -19,7 +21,7 @@ const MOST_GIVERS: usize = 100;
 const MOST_TEXTS: usize = 200;
 
 /// An element of a value: its file and its place there.
-type Part = (usize, usize);
+type Part = (usize, ElementId);
 
 /// What can stand at a place of a `source`: a property of the composite, or behind `/` and `[` the elements and attributes that there are in its value.
 pub(super) fn complete(scene: &Scene, value: Range<usize>, at: usize) -> Vec<Proposal> {
@@ -83,17 +85,16 @@ fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Proposal>
     let mut all = Vec::new();
     if let Some(name) = last.strip_prefix('@') {
         for (file, one) in here {
-            let file = &scene.files[file];
-            let attributes = file.tree.elements[one].attributes.iter();
-            let named = attributes.filter(|one| local(&file.text[one.name.clone()]) == local(name));
-            all.extend(named.filter_map(|one| add(&file.text[one.value.clone()?])));
+            let attributes = scene.files[file].element(one).written_attributes();
+            let named = attributes.filter(|one| one.local_name() == local(name));
+            all.extend(named.filter_map(|one| add(one.raw_value())));
         }
         return Some(all);
     }
     let elements = if matches!(last, "." | "text()") { here } else { named(scene, &here, local(last)) };
     for (file, one) in elements {
         let file = &scene.files[file];
-        all.extend(file.tree.text(&file.text, one).and_then(|at| add(file.text[at].trim())));
+        all.extend(file.element(one).text_place().and_then(|at| add(file.text[at].trim())));
     }
     Some(all)
 }
@@ -170,23 +171,25 @@ fn values(scene: &Scene, name: &str) -> Vec<Part> {
 
 /// What the values of one element `property` stand in: itself, each `value`, or each element where its values are such.
 fn values_of(scene: &Scene, file: usize, property: &Named) -> Vec<Part> {
-    let (of, element) = (&scene.files[file], property.element);
-    let children = || of.tree.children(element).take(MOST).map(|child| (file, child));
+    let property = scene.files[file].element(property.element);
+    let children = || property.children().take(MOST);
     let values: Vec<Part> =
-        children().filter(|(_, child)| of.tree.local(&of.text, *child) == "value").collect();
+        children().filter(|child| child.local_name() == "value").map(|child| (file, child.id())).collect();
     match values.is_empty() {
         false => values,
-        true if of.tree.attribute(&of.text, element, "element").is_some() => children().collect(),
-        true => vec![(file, element)],
+        true if property.written_attributes().any(|one| one.name() == "element") => {
+            children().map(|child| (file, child.id())).collect()
+        }
+        true => vec![(file, property.id())],
     }
 }
 
 /// The elements that are alone in what a value stands in: such a value has the parts of its element as well.
 fn only(scene: &Scene, all: &[Part]) -> Vec<Part> {
     let only = all.iter().filter_map(|&(file, element)| {
-        let mut inside = scene.files[file].tree.children(element);
+        let mut inside = scene.files[file].element(element).children();
         let only = inside.next()?;
-        inside.next().is_none().then_some((file, only))
+        inside.next().is_none().then_some((file, only.id()))
     });
     only.collect()
 }
@@ -202,7 +205,7 @@ fn walk<'p>(scene: &Scene, from: Vec<Part>, steps: impl Iterator<Item = &'p str>
             "." => continue,
             ".." => here
                 .iter()
-                .filter_map(|&(file, one)| Some((file, scene.files[file].tree.elements[one].parent?)))
+                .filter_map(|&(file, one)| Some((file, scene.files[file].element(one).parent()?.id())))
                 .collect(),
             _ => match named(scene, &here, name) {
                 none if none.is_empty() && place == 0 => named(scene, &only(scene, &here), name),
@@ -217,26 +220,21 @@ fn walk<'p>(scene: &Scene, from: Vec<Part>, steps: impl Iterator<Item = &'p str>
 }
 
 fn named(scene: &Scene, of: &[Part], name: &str) -> Vec<Part> {
-    let is_meant = |&(file, one): &Part| {
-        let file = &scene.files[file];
-        name == "*" || file.tree.local(&file.text, one) == name
-    };
+    let is_meant = |&(file, one): &Part| name == "*" || scene.files[file].element(one).local_name() == name;
     children(scene, of).filter(is_meant).collect()
 }
 
 fn children(scene: &Scene, of: &[Part]) -> impl Iterator<Item = Part> {
-    let all =
-        of.iter().flat_map(|&(file, one)| scene.files[file].tree.children(one).map(move |one| (file, one)));
+    let all = of
+        .iter()
+        .flat_map(|&(file, one)| scene.files[file].element(one).children().map(move |one| (file, one.id())));
     all.take(MOST)
 }
 
 /// Elements with all that is inside them.
 fn descendants(scene: &Scene, of: &[Part]) -> Vec<Part> {
     let all = of.iter().flat_map(|&(file, one)| {
-        let elements = &scene.files[file].tree.elements;
-        let end = elements[one].end;
-        let inside = (one + 1..elements.len()).take_while(move |inner| elements[*inner].tag.start < end);
-        std::iter::once(one).chain(inside).map(move |one| (file, one))
+        scene.files[file].element(one).descendants().map(move |one| (file, one.id()))
     });
     all.take(MOST).collect()
 }
@@ -246,25 +244,21 @@ fn parts(scene: &Scene, of: &[Part], range: &Range<usize>) -> Vec<Proposal> {
     let (mut all, mut seen) = (Vec::new(), BTreeSet::new());
     for (file, one) in children(scene, of) {
         let file = &scene.files[file];
-        let name = file.tree.local(&file.text, one);
+        let name = file.element(one).local_name();
         if !name.is_empty() && seen.insert(name.to_owned()) {
-            let text = file.tree.text(&file.text, one).map_or("", |at| &file.text[at]);
+            let text = file.element(one).text_place().map_or("", |at| &file.text[at]);
             all.push(Proposal::new(name, ProposalKind::Field, range).detail(text).rank(4));
         }
     }
     // A property that a value stands in is no part of that.
-    let of_values = of.iter().filter(|(file, one)| scene.files[*file].kinds[*one].is_none());
+    let of_values = of.iter().filter(|(file, one)| scene.files[*file].kind(*one).is_none());
     for &(file, one) in of_values.take(MOST) {
-        let file = &scene.files[file];
-        for attribute in &file.tree.elements[one].attributes {
-            let name = &file.text[attribute.name.clone()];
-            let shown = format!("@{}", local(name));
-            if name.is_empty() || name == "xmlns" || name.starts_with("xmlns:") || !seen.insert(shown.clone())
-            {
-                continue;
+        for attribute in scene.files[file].element(one).written_attributes() {
+            let shown = format!("@{}", attribute.local_name());
+            if !is_declaration(attribute.name()) && seen.insert(shown.clone()) {
+                let value = attribute.raw_value();
+                all.push(Proposal::new(shown, ProposalKind::Property, range).detail(value));
             }
-            let value = attribute.value.clone().map_or("", |at| &file.text[at]);
-            all.push(Proposal::new(shown, ProposalKind::Property, range).detail(value));
         }
     }
     all

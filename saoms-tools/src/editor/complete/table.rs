@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::ProposalKind;
 use saoms_lang::expression::{ExpressionValue, render};
+use saoms_lang::model::SAOMS_NAMESPACE;
 
 use super::{Proposal, names, value, values};
 use crate::editor::describe;
@@ -111,10 +112,8 @@ fn columns(
 fn replicas(scene: &Scene, (file, component): (usize, &Component), by_name: bool) -> Vec<String> {
     let of = &scene.files[file];
     let number = |attribute: &str| -> Option<i64> {
-        let attributes = &of.tree.elements[component.name.element].attributes;
-        let is_meant = |name: &str| name.rsplit_once(':').is_some_and(|(_, name)| name == attribute);
-        let found = attributes.iter().find(|one| is_meant(&of.text[one.name.clone()]))?;
-        let text = of.text[found.value.clone()?].trim();
+        let text = of.element(component.name.element).attribute_in(SAOMS_NAMESPACE, attribute)?;
+        let text = text.raw_value().trim();
         text.parse().ok().or_else(|| scene.parameter_value(file, text)?.trim().parse().ok())
     };
     let (first, count) = (number("from").unwrap_or(1), number("count").unwrap_or(0));

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::ProposalKind;
 use saoms_lang::registry::ClassTopic;
+use saoms_lang::syntax::ElementId;
 
 use super::Proposal;
 use crate::editor::describe;
@@ -12,7 +13,7 @@ use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Component;
 
 /// The names that can stand at a place of a value of `topicRename`.
-pub(super) fn complete(scene: &Scene, property: usize, value: Range<usize>, at: usize) -> Vec<Proposal> {
+pub(super) fn complete(scene: &Scene, property: ElementId, value: Range<usize>, at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
     let before = &text[value.start..at];
     let pair = before.rfind("::").map_or(0, |found| found + 2);

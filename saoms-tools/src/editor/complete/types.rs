@@ -4,9 +4,11 @@ use std::ops::Range;
 
 use super::ProposalKind;
 use saoms_lang::load::vocabulary::{BUILT_IN_TYPES, XML_SCHEMA};
+use saoms_lang::syntax::ElementId;
 
 use super::Proposal;
 use crate::editor::scene::Scene;
+use crate::editor::syntax::{Places, root_name_end};
 
 /// The types that most properties have come first, with what they are.
 const USUAL: [(&str, &str); 5] = [
@@ -18,16 +20,15 @@ const USUAL: [(&str, &str); 5] = [
 ];
 
 /// The types of XML Schema. Where the file has no prefix for them, one is declared at its root.
-pub(super) fn complete(scene: &Scene, element: usize, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn complete(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
-    let bound = file.tree.prefix_of(&file.text, element, XML_SCHEMA);
+    let bound = file.element(element).prefix_of(XML_SCHEMA);
     let prefix = match bound {
         Some("") => String::new(),
         Some(prefix) => format!("{prefix}:"),
         None => "xsd:".to_owned(),
     };
-    let root = file.tree.elements.first().map(|root| root.name.end);
-    let declaration = root.filter(|_| bound.is_none());
+    let declaration = root_name_end(&file.document).filter(|_| bound.is_none());
     let others = BUILT_IN_TYPES.iter().filter(|name| USUAL.iter().all(|(usual, _)| usual != *name));
     let all = USUAL.iter().map(|(name, what)| (*name, *what, 1)).chain(others.map(|name| (*name, "", 5)));
     all.zip(0..)
@@ -43,17 +44,16 @@ pub(super) fn complete(scene: &Scene, element: usize, range: &Range<usize>) -> V
 }
 
 /// The elements that stand in a property: one of them is its value.
-pub(super) fn elements(scene: &Scene, property: usize, range: &Range<usize>) -> Vec<Proposal> {
-    let file = scene.file();
-    let inside = file.tree.children(property).filter(|child| file.tree.local(&file.text, *child) != "value");
-    let names = inside.map(|child| &file.text[file.tree.elements[child].name.clone()]);
-    names.map(|name| Proposal::new(name, ProposalKind::Class, range)).collect()
+pub(super) fn elements(scene: &Scene, property: ElementId, range: &Range<usize>) -> Vec<Proposal> {
+    let property = scene.file().element(property);
+    let inside = property.children().filter(|child| child.local_name() != "value");
+    inside.map(|child| Proposal::new(child.name(), ProposalKind::Class, range)).collect()
 }
 
 /// Environment variables: one named after the composite and the property, then those that there are.
-pub(super) fn variables(scene: &Scene, property: usize, range: &Range<usize>) -> Vec<Proposal> {
+pub(super) fn variables(scene: &Scene, property: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
-    let name = file.tree.value(&file.text, property, "name").map(|at| &file.text[at]);
+    let name = file.element(property).value("name").map(|at| &file.text[at]);
     let composite = file.outline.name.as_ref().map(|one| one.text.as_str());
     let usual = composite.zip(name).map(|(composite, name)| {
         let joined = format!("{composite}_{name}").to_uppercase();

@@ -5,19 +5,21 @@ use std::ops::Range;
 use saoms_api::extension::DURATION_UNITS;
 use saoms_api::host::declaration::PropertyKind;
 use saoms_lang::registry::PropertyDeclaration;
+use saoms_lang::syntax::{Element, ElementId};
 
 use super::{Proposal, language, names, topics, value};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 use crate::editor::scene::symbol::Symbol;
 use crate::editor::scene::topics::RENAME;
-use crate::editor::syntax::local;
+use crate::editor::syntax::{Places, local};
 
 /// The values that a property of a component, or of a loop, can have.
-pub(super) fn complete(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Proposal> {
+pub(super) fn complete(scene: &Scene, property: ElementId, range: Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
-    let Some(parent) = file.tree.elements[property].parent else { return Vec::new() };
-    let Some(name) = file.tree.value(&file.text, property, "name") else { return Vec::new() };
+    let element = file.element(property);
+    let Some(parent) = element.parent().map(Element::id) else { return Vec::new() };
+    let Some(name) = element.value("name") else { return Vec::new() };
     let name = &file.text[name];
     if name == RENAME {
         return topics::complete(scene, property, range, at);
@@ -53,9 +55,14 @@ pub(super) fn explained(
 }
 
 /// The values that a property of the composite can have.
-pub(super) fn of_parameter(scene: &Scene, property: usize, range: Range<usize>, at: usize) -> Vec<Proposal> {
+pub(super) fn of_parameter(
+    scene: &Scene,
+    property: ElementId,
+    range: Range<usize>,
+    at: usize,
+) -> Vec<Proposal> {
     let file = scene.file();
-    match file.tree.value(&file.text, property, "name") {
+    match file.element(property).value("name") {
         Some(name) => as_used(scene, 0, &file.text[name], &range, at),
         None => Vec::new(),
     }
@@ -72,7 +79,7 @@ pub(super) fn as_used(
     let Symbol::Parameter { file, name } = scene.parameter(file, name) else { return Vec::new() };
     let of = &scene.files[file];
     let declared = of.outline.properties.iter().find(|one| one.text == name);
-    let r#type = declared.and_then(|one| of.tree.value(&of.text, one.element, "type"));
+    let r#type = declared.and_then(|one| of.element(one.element).value("type"));
     if r#type.is_some_and(|at| local(&of.text[at]) == "boolean") {
         return names::words(&["true", "false"], range);
     }
@@ -85,10 +92,11 @@ pub(super) fn as_used(
 }
 
 /// What the class declares of a property of a component of a file.
-fn taker(scene: &Scene, file: usize, property: usize) -> Option<&PropertyDeclaration> {
+fn taker(scene: &Scene, file: usize, property: ElementId) -> Option<&PropertyDeclaration> {
     let of = &scene.files[file];
-    let name = &of.text[of.tree.value(&of.text, property, "name")?];
-    let declared = names::declared_in(scene, file, of.tree.elements[property].parent?);
+    let property = of.element(property);
+    let name = &of.text[property.value("name")?];
+    let declared = names::declared_in(scene, file, property.parent()?.id());
     declared.into_iter().map(|(one, _)| one).find(|one| one.name == name)
 }
 

@@ -4,8 +4,9 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use saoms_lang::expression::{inside, words};
+use saoms_lang::syntax::{Element, TokenKind};
 
-use crate::editor::syntax::Tree;
+use crate::editor::syntax::{bytes, is_declaration, value_of};
 
 /// What replicas are counted by.
 pub(crate) const INDEX: &str = "index";
@@ -53,41 +54,27 @@ fn plain(text: &str) -> Cow<'_, str> {
 }
 
 /// The texts of an element with all that is in it: the values of its attributes and what stands between its tags.
-pub(crate) fn texts(tree: &Tree, text: &str, element: usize) -> Vec<Range<usize>> {
+pub(crate) fn texts(element: Element<'_>) -> Vec<Range<usize>> {
     const OPEN: &str = "<![CDATA[";
-    let whole = &tree.elements[element];
-    let inside =
-        tree.elements[element..].iter().take_while(|one| one.tag.start < whole.end.max(whole.tag.end));
-    let (mut all, mut markup) = (Vec::new(), Vec::new());
-    for one in inside {
-        let of_names = |name: &str| name.starts_with("xmlns") || name == "file";
-        let attributes = one.attributes.iter().filter(|at| !of_names(&text[at.name.clone()]));
-        all.extend(attributes.filter_map(|attribute| attribute.value.clone()));
-        markup.push(one.tag.clone());
-        markup.extend(one.end_tag.clone());
-    }
-    let opaque = tree.opaque.iter().skip(tree.opaque.partition_point(|one| one.end <= whole.tag.start));
-    for one in opaque.take_while(|one| one.start < whole.end) {
-        if text[one.clone()].starts_with(OPEN) {
-            all.push(one.start + OPEN.len()..one.end);
+    let of_names = |name: &str| is_declaration(name) || name == "file";
+    let attributes = element.descendants().flat_map(Element::written_attributes);
+    let mut all: Vec<Range<usize>> =
+        attributes.filter(|one| !of_names(one.name())).filter_map(value_of).collect();
+    all.extend(element.document().tokens_in(element.content_span()).filter_map(|(kind, span)| {
+        let Range { start, end } = bytes(span);
+        match kind {
+            TokenKind::Text | TokenKind::Error => Some(start..end),
+            TokenKind::Section => Some((start + OPEN.len()).min(end)..end),
+            _ => None,
         }
-        markup.push(one.clone());
-    }
-    markup.sort_unstable_by_key(|one| one.start);
-    let mut at = whole.tag.start;
-    for one in markup {
-        if at < one.start {
-            all.push(at..one.start);
-        }
-        at = at.max(one.end);
-    }
+    }));
     all
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::syntax::scan;
+    use crate::editor::syntax::parse;
 
     #[test]
     fn names_keep_their_places_beside_references() {
@@ -114,9 +101,10 @@ mod tests {
     #[test]
     fn all_texts_of_an_element_are_found_and_no_comments() {
         let text = "<a><b c='1' file='no'>2<!-- no --><d>3</d>4<![CDATA[5]]><?no no?></b><e f='no'/></a>";
-        let tree = scan(text);
+        let document = parse(&text.to_owned().into());
+        let element = document.root().children().next().unwrap();
         let mut found: Vec<&str> =
-            texts(&tree, text, 1).into_iter().map(|at| text[at].trim_end_matches("]]>")).collect();
+            texts(element).into_iter().map(|at| text[at].trim_end_matches("]]>")).collect();
         found.sort_unstable();
         assert_eq!(found, ["1", "2", "3", "4", "5"]);
     }

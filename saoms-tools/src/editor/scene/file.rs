@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use saoms_lang::load::vocabulary::{CONTRIBUTION, Kind};
+use saoms_lang::syntax::{Document, Element, ElementId};
 
 use super::outline::Outline;
 use crate::editor::LineIndex;
-use crate::editor::syntax::{Tree, scan};
+use crate::editor::syntax::{Cursor, kinds, parse};
 
 /// The text of a composite, or of a file beside one, and what is known of it.
 #[derive(Debug)]
@@ -15,12 +16,13 @@ pub struct File {
     /// Its path.
     pub path: PathBuf,
     /// The text.
-    pub text: Arc<str>,
+    pub text: Arc<String>,
     /// The lines of the text.
     pub lines: LineIndex,
-    pub(crate) tree: Tree,
+    /// The tree of the text; empty for a file beside composites.
+    pub(crate) document: Document,
     /// The kinds of the elements of the tree.
-    pub(crate) kinds: Vec<Option<&'static Kind>>,
+    kinds: Vec<Option<&'static Kind>>,
     pub(crate) outline: Outline,
     /// True for a file beside composites, which holds values.
     pub is_beside: bool,
@@ -28,17 +30,18 @@ pub struct File {
 
 impl File {
     /// A composite, or a description of a contribution.
-    pub fn new(path: PathBuf, text: Arc<str>) -> Self {
-        let tree = scan(&text);
-        let kinds = tree.kinds(&text);
-        let outline = Outline::of(&text, &tree, &kinds);
-        Self { path, lines: LineIndex::new(&text), tree, kinds, outline, text, is_beside: false }
+    pub fn new(path: PathBuf, text: Arc<String>) -> Self {
+        let document = parse(&text);
+        let kinds = kinds(&document);
+        let outline = Outline::of(&document, &kinds);
+        Self { path, lines: LineIndex::new(&text), document, kinds, outline, text, is_beside: false }
     }
 
     /// A file beside composites, which holds values.
-    pub fn beside(path: PathBuf, text: Arc<str>) -> Self {
-        let (tree, kinds, outline) = (Tree::default(), Vec::new(), Outline::default());
-        Self { path, lines: LineIndex::new(&text), tree, kinds, outline, text, is_beside: true }
+    pub fn beside(path: PathBuf, text: Arc<String>) -> Self {
+        let document = parse(&Arc::default());
+        let (kinds, outline) = (Vec::new(), Outline::default());
+        Self { path, lines: LineIndex::new(&text), document, kinds, outline, text, is_beside: true }
     }
 
     /// True if it describes a contribution.
@@ -49,5 +52,19 @@ impl File {
     /// The names of the libraries of plugins that the composite names.
     pub fn libraries(&self) -> &[String] {
         &self.outline.libraries
+    }
+
+    pub(crate) fn element(&self, id: ElementId) -> Element<'_> {
+        self.document.element(id)
+    }
+
+    /// What is known of an element.
+    pub(crate) fn kind(&self, id: ElementId) -> Option<&'static Kind> {
+        self.kinds[id.0 as usize]
+    }
+
+    /// What stands at a byte.
+    pub(crate) fn cursor(&self, at: usize) -> Cursor<'_> {
+        Cursor::at(&self.document, at)
     }
 }

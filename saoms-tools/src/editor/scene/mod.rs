@@ -18,8 +18,9 @@ use std::sync::{Arc, OnceLock};
 use saoms_lang::model::Version;
 use saoms_lang::registry::{RegisteredClass, Registry};
 use saoms_lang::source::identity;
+use saoms_lang::syntax::{Element, ElementId};
 
-use super::syntax::local;
+use super::syntax::{Places, local};
 use file::File;
 use outline::{Component, End, Implementation, Named};
 use symbol::Symbol;
@@ -229,16 +230,16 @@ impl Scene {
         let of = |namespace: &str| {
             found.iter().copied().find(|&other| self.files[other].outline.namespace == namespace)
         };
-        let bound = |prefix| from.tree.resolve(&from.text, name.element, prefix);
+        let bound = |prefix| from.element(name.element).resolve_prefix(prefix);
         match name.text.split_once(':') {
             Some((prefix, _)) => match bound(prefix) {
-                Some(namespace) => of(namespace),
+                Some(namespace) => of(&namespace),
                 None => found.first().copied(),
             },
             // As the model resolves names without a prefix.
             None => {
                 let default = bound("").filter(|namespace| Version::from_namespace(namespace).is_none());
-                let all = [default, Some(from.outline.namespace.as_str()), Some("")];
+                let all = [default.as_deref(), Some(from.outline.namespace.as_str()), Some("")];
                 all.into_iter().flatten().find_map(of)
             }
         }
@@ -279,12 +280,12 @@ impl Scene {
     }
 
     /// The component of the file that an element is, or is in.
-    pub(crate) fn component_around(&self, element: usize) -> Option<&Component> {
+    pub(crate) fn component_around(&self, element: ElementId) -> Option<&Component> {
         self.component_in(0, element)
     }
 
     /// The same of any file.
-    pub(crate) fn component_in(&self, file: usize, element: usize) -> Option<&Component> {
+    pub(crate) fn component_in(&self, file: usize, element: ElementId) -> Option<&Component> {
         let file = &self.files[file];
         let components = &file.outline.components;
         let mut here = Some(element);
@@ -292,13 +293,13 @@ impl Scene {
             if let Ok(place) = components.binary_search_by_key(&one, |known| known.name.element) {
                 return Some(&components[place]);
             }
-            here = file.tree.elements[one].parent;
+            here = file.element(one).parent().map(Element::id);
         }
         None
     }
 
     /// The value that a property of a component gives, that of the composite's property where it names one.
-    pub(crate) fn given(&self, file: usize, property: usize) -> Option<&str> {
+    pub(crate) fn given(&self, file: usize, property: ElementId) -> Option<&str> {
         let own = self.value_of(file, property);
         own.or_else(|| {
             let mut sources = self.files[file].outline.sources.iter();
@@ -315,15 +316,14 @@ impl Scene {
     }
 
     /// The simple value of a property of a file: its attribute `value`, or the text inside.
-    pub(crate) fn value_of(&self, file: usize, property: usize) -> Option<&str> {
+    pub(crate) fn value_of(&self, file: usize, property: ElementId) -> Option<&str> {
         Some(&self.files[file].text[self.place_of_value(file, property)?])
     }
 
     /// Where it is written.
-    pub(crate) fn place_of_value(&self, file: usize, property: usize) -> Option<Range<usize>> {
-        let file = &self.files[file];
-        let value = file.tree.value(&file.text, property, "value");
-        value.or_else(|| file.tree.text(&file.text, property))
+    pub(crate) fn place_of_value(&self, file: usize, property: ElementId) -> Option<Range<usize>> {
+        let property = self.files[file].element(property);
+        property.value("value").or_else(|| property.text_place())
     }
 
     /// The class of a component.

@@ -90,8 +90,8 @@ impl<'s> Found<'s> {
 
     fn component(&mut self, component: &Component) {
         let (scene, file) = (self.scene, self.file);
-        let element = &scene.files[file].tree.elements[component.name.element];
-        if self.touched.is_some_and(|at| at < element.tag.start || element.end.max(element.tag.end) < at) {
+        let element = scene.files[file].element(component.name.element);
+        if self.touched.is_some_and(|at| !element.span().touches(at as u32)) {
             return;
         }
         let of = &component.name.text;

@@ -7,9 +7,10 @@ use saoms_lang::load::vocabulary::{
     COMPONENT, COMPOSITE, CONTRIBUTION, Holds, INCLUDE, Kind, LOOP, WIRE, own_attributes,
 };
 use saoms_lang::model::SAOMS_NAMESPACE;
+use saoms_lang::syntax::{Attribute, Document, Element, ElementId};
 
 use super::expressions::{INDEX, names, names_in_template, texts};
-use crate::editor::syntax::{Tree, words};
+use crate::editor::syntax::{Places, bytes, value_of, words};
 
 /// The parts of a composite.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +45,7 @@ pub(crate) struct Outline {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Named {
     /// The element that it stands in.
-    pub(crate) element: usize,
+    pub(crate) element: ElementId,
     pub(crate) text: String,
     pub(crate) at: Range<usize>,
 }
@@ -109,33 +110,32 @@ pub(crate) enum Side {
 }
 
 impl Outline {
-    pub(crate) fn of(text: &str, tree: &Tree, kinds: &[Option<&'static Kind>]) -> Self {
+    pub(crate) fn of(document: &Document, kinds: &[Option<&'static Kind>]) -> Self {
         let mut outline = Self::default();
-        for (element, kind) in kinds.iter().enumerate() {
+        for (element, kind) in document.elements().zip(kinds) {
             let Some(kind) = kind else { continue };
-            let parent = tree.elements[element].parent.and_then(|parent| kinds[parent]);
-            outline.add(Reader { text, tree, element }, kind, parent);
+            let parent = element.parent().and_then(|parent| kinds[parent.id().0 as usize]);
+            outline.add(Reader(element), kind, parent);
         }
         for place in 0..outline.components.len() {
-            outline.templates(text, tree, place);
+            outline.templates(document, place);
         }
         outline
     }
 
     /// The ends that an element has.
-    pub(crate) fn ends_of(&self, element: usize) -> impl Iterator<Item = &End> {
+    pub(crate) fn ends_of(&self, element: ElementId) -> impl Iterator<Item = &End> {
         // They are in the order of the elements.
         let first = self.ends.partition_point(|end| end.component.element < element);
         self.ends[first..].iter().take_while(move |end| end.component.element == element)
     }
 
     /// The names in `${...}` of a component that is replicated.
-    fn templates(&mut self, text: &str, tree: &Tree, place: usize) {
+    fn templates(&mut self, document: &Document, place: usize) {
         let Component { name, is_replicated: true, .. } = &self.components[place] else { return };
-        let element = name.element;
-        let ranges = texts(tree, text, element).into_iter();
-        for at in ranges.flat_map(|range| names_in_template(text, range)) {
-            self.add_use(Reader { text, tree, element }.at(at), Some(place));
+        let element = document.element(name.element);
+        for at in texts(element).into_iter().flat_map(|range| names_in_template(document.text(), range)) {
+            self.add_use(Reader(element).at(at), Some(place));
         }
     }
 
@@ -145,7 +145,7 @@ impl Outline {
     }
 
     /// What the attributes of our namespace say.
-    fn own(&mut self, of: &Reader<'_>, kind: &'static Kind) {
+    fn own(&mut self, of: Reader<'_>, kind: &'static Kind) {
         let (mut table, mut is_replicated, mut expressions) = (None, false, Vec::new());
         for (known, at) in own_attributes(kind).filter_map(|known| Some((known, of.own(known.name)?))) {
             is_replicated |= matches!(known.name, "count" | "from" | "overrides");
@@ -158,7 +158,7 @@ impl Outline {
         }
         let place = is_replicated.then(|| self.components.len().saturating_sub(1));
         for (at, is_condition) in expressions {
-            for name in names(of.text, at) {
+            for name in names(of.0.document().text(), at) {
                 // How many there are is said before there is an index.
                 self.add_use(of.at(name), place.filter(|_| is_condition));
             }
@@ -195,15 +195,15 @@ impl Outline {
             self.ends.extend(of.named("source").map(|one| end(one, Side::Reference)));
             self.ends.extend(of.named("target").map(|one| end(one, Side::Service)));
         } else if parent.is_some_and(|parent| std::ptr::eq(parent, &COMPOSITE)) {
-            self.part(&of, kind);
+            self.part(of, kind);
         } else {
-            self.inside(&of, kind, parent);
+            self.inside(of, kind, parent);
         }
-        self.own(&of, kind);
+        self.own(of, kind);
     }
 
     /// A property, a service or a reference of the composite.
-    fn part(&mut self, of: &Reader<'_>, kind: &'static Kind) {
+    fn part(&mut self, of: Reader<'_>, kind: &'static Kind) {
         let named = of.named("name");
         match kind.name {
             "property" => {
@@ -225,7 +225,7 @@ impl Outline {
     }
 
     /// What stands in a component, a loop, a service or a reference.
-    fn inside(&mut self, of: &Reader<'_>, kind: &'static Kind, parent: Option<&'static Kind>) {
+    fn inside(&mut self, of: Reader<'_>, kind: &'static Kind, parent: Option<&'static Kind>) {
         if kind.name == "reference" {
             self.ends.extend(of.list("target").map(|one| end(one, Side::Service)));
         }
@@ -276,49 +276,32 @@ impl Outline {
 
 /// Reads the attributes of one element.
 #[derive(Clone, Copy)]
-struct Reader<'t> {
-    text: &'t str,
-    tree: &'t Tree,
-    element: usize,
-}
+struct Reader<'t>(Element<'t>);
 
 impl<'t> Reader<'t> {
-    fn named(&self, attribute: &str) -> Option<Named> {
-        let at = self.tree.value(self.text, self.element, attribute)?;
+    fn named(self, attribute: &str) -> Option<Named> {
+        let at = self.0.value(attribute)?;
         (!at.is_empty()).then(|| self.at(at))
     }
 
     /// The value of an attribute of our namespace.
-    fn own(&self, attribute: &str) -> Option<Range<usize>> {
-        let attributes = &self.tree.elements[self.element].attributes;
-        let found = attributes.iter().find(|one| {
-            let written = self.text[one.name.clone()].split_once(':');
-            written.is_some_and(|(prefix, name)| name == attribute && self.is_own(prefix))
-        })?;
-        found.value.clone()
+    fn own(self, attribute: &str) -> Option<Range<usize>> {
+        let is_meant =
+            |one: &Attribute<'_>| one.local_name() == attribute && one.namespace() == SAOMS_NAMESPACE;
+        value_of(self.0.written_attributes().find(is_meant)?)
     }
 
-    fn is_own(&self, prefix: &str) -> bool {
-        match self.tree.resolve(self.text, self.element, prefix) {
-            Some(namespace) => namespace == SAOMS_NAMESPACE,
-            // While the namespace is not there yet.
-            None => prefix == "saoms",
-        }
+    fn list(self, attribute: &str) -> impl Iterator<Item = Named> + use<'t> {
+        let range = self.0.value(attribute).unwrap_or(0..0);
+        words(self.0.document().text(), range).map(move |at| self.at(at))
     }
 
-    fn list(&self, attribute: &str) -> impl Iterator<Item = Named> + use<'t> {
-        let (text, one) = (self.text, *self);
-        let range = self.tree.value(text, self.element, attribute).unwrap_or(0..0);
-        words(text, range).map(move |at| one.at(at))
+    fn at(self, at: Range<usize>) -> Named {
+        Named { element: self.0.id(), text: self.0.document().text()[at.clone()].to_owned(), at }
     }
 
-    fn at(&self, at: Range<usize>) -> Named {
-        Named { element: self.element, text: self.text[at.clone()].to_owned(), at }
-    }
-
-    fn nameless(&self) -> Named {
-        let at = self.tree.elements[self.element].name.clone();
-        Named { element: self.element, text: String::new(), at }
+    fn nameless(self) -> Named {
+        Named { element: self.0.id(), text: String::new(), at: bytes(self.0.name_span()) }
     }
 }
 

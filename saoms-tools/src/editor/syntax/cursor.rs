@@ -1,76 +1,86 @@
-//! What stands at a place of a text.
+//! What stands at a byte of a text.
 
 use std::ops::Range;
 
-use super::{Tree, tag};
+use saoms_lang::syntax::{Attribute, Document, Element, TokenKind};
 
-/// What stands at a place, and the element that it is about.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Cursor {
-    /// The name of an element, or the place of one behind a `<`; the element is that around it.
-    ElementName { parent: Option<usize>, element: usize, name: Range<usize> },
+use super::{Places, bytes, is_opaque, value_of};
+
+/// What stands at a byte, and the element that it is about.
+#[derive(Clone, Debug)]
+pub(crate) enum Cursor<'t> {
+    /// The name of an element; behind a `<` that nothing follows there is no element yet.
+    ElementName { parent: Option<Element<'t>>, element: Option<Element<'t>>, name: Range<usize> },
     /// The name in an end tag; the element is the one that it should end.
-    EndTag { element: Option<usize>, name: Range<usize> },
+    EndTag { element: Option<Element<'t>>, name: Range<usize> },
     /// The name of an attribute, or the place of one.
-    AttributeName { element: usize, name: Range<usize> },
+    AttributeName { element: Element<'t>, name: Range<usize> },
     /// The value of an attribute.
-    AttributeValue { element: usize, attribute: usize, value: Range<usize> },
+    AttributeValue { element: Element<'t>, attribute: Attribute<'t>, value: Range<usize> },
     /// Text in an element, or beside the root.
-    Text { parent: Option<usize> },
+    Text { parent: Option<Element<'t>> },
     /// In a comment or the like.
     Opaque,
 }
 
-impl Tree {
-    /// What stands at a byte.
-    pub(crate) fn cursor(&self, text: &str, at: usize) -> Cursor {
-        if self.opaque.iter().any(|part| part.start < at && at < part.end) {
-            return Cursor::Opaque;
+impl<'t> Cursor<'t> {
+    /// What stands at a byte of a tree.
+    pub(crate) fn at(document: &'t Document, at: usize) -> Self {
+        let text = document.text();
+        let here = document.innermost(at as u32);
+        let before = at.checked_sub(1).and_then(|before| document.token_at(before as u32));
+        let Some((kind, token)) = before.map(|(kind, span)| (kind, bytes(span))) else {
+            return Self::Text { parent: here };
+        };
+        if is_opaque(kind) && (at < token.end || !text[token.clone()].ends_with('>')) {
+            return Self::Opaque;
         }
-        let here = self.innermost(at);
-        if let Some(element) = here {
-            let one = &self.elements[element];
-            let is_inside = at < one.tag.end || (at == one.tag.end && !one.is_complete);
-            if one.tag.start < at && is_inside {
-                return self.in_tag(text, element, at);
-            }
-            if let Some(tag) = &one.end_tag
-                && tag.start + 2 <= at
-                && at <= tag::name(text.as_bytes(), tag.start + 2).end
-            {
-                let name = tag::name(text.as_bytes(), tag.start + 2);
-                return Cursor::EndTag { element: Some(element), name };
+        if let Some(element) = here
+            && element.tag() == token
+            && (at < token.end || !element.has_whole_start_tag())
+        {
+            return Self::in_tag(element, at);
+        }
+        if kind == TokenKind::Error && text[token.clone()] == *"<" {
+            return Self::ElementName { parent: here, element: None, name: at..at };
+        }
+        if text[token.clone()].starts_with("</") && token.start + 2 <= at {
+            let element = document.innermost(token.start as u32 + 1);
+            let name = token.start + 2..token.start + 2 + name_length(&text[token.start + 2..token.end]);
+            if at <= name.end {
+                return Self::EndTag { element, name };
             }
         }
-        // An end tag without an element is no part of the tree.
-        let start = text[..at].rfind(['<', '>']).filter(|&start| text[start..].starts_with("</"));
-        if let Some(start) = start {
-            let name = tag::name(text.as_bytes(), start + 2);
-            if start + 2 <= at && at <= name.end {
-                return Cursor::EndTag { element: here, name };
-            }
-        }
-        Cursor::Text { parent: here }
+        Self::Text { parent: here }
     }
 
-    fn in_tag(&self, text: &str, element: usize, at: usize) -> Cursor {
-        let one = &self.elements[element];
-        if at <= one.name.end {
-            return Cursor::ElementName { parent: one.parent, element, name: one.name.clone() };
-        }
-        for (place, attribute) in one.attributes.iter().enumerate() {
-            if attribute.name.start <= at && at <= attribute.name.end {
-                return Cursor::AttributeName { element, name: attribute.name.clone() };
+    fn in_tag(element: Element<'t>, at: usize) -> Self {
+        let name = bytes(element.name_span());
+        if at <= name.end {
+            if at < name.start {
+                return Self::Opaque;
             }
-            if let Some(value) = &attribute.value
+            return Self::ElementName { parent: element.parent(), element: Some(element), name };
+        }
+        for attribute in element.written_attributes() {
+            let name = bytes(attribute.name_span());
+            if name.start <= at && at <= name.end {
+                return Self::AttributeName { element, name };
+            }
+            if let Some(value) = value_of(attribute)
                 && value.start <= at
                 && at <= value.end
             {
-                return Cursor::AttributeValue { element, attribute: place, value: value.clone() };
+                return Self::AttributeValue { element, attribute, value };
             }
         }
-        let is_name = text[..at].ends_with(|c: char| c.is_ascii_whitespace());
         // Between a quote and what follows, an attribute would need a blank first.
-        if is_name { Cursor::AttributeName { element, name: at..at } } else { Cursor::Opaque }
+        let is_behind_blank = element.document().text()[..at].ends_with(|c: char| c.is_ascii_whitespace());
+        if is_behind_blank { Self::AttributeName { element, name: at..at } } else { Self::Opaque }
     }
+}
+
+/// The length of the name that a text starts with.
+fn name_length(text: &str) -> usize {
+    text.find(|c: char| c.is_whitespace() || "<>/='\"&".contains(c)).unwrap_or(text.len())
 }

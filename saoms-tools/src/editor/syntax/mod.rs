@@ -1,117 +1,106 @@
-//! Composites as they are while somebody types: elements and attributes of any text, however broken.
-//!
-//! The loader reads well-formed XML and says what is wrong with the rest; an editor has to know what is meant before that. What is read here is
-//! never wrong, only incomplete: quotes and tags that are not closed end where the next one begins, end tags that are missing are
-//! supplied where the vocabulary asks for them.
+//! Questions of editors to the tree of a file: what stands at a byte, and where the parts of an element are written.
 
 mod cursor;
-mod namespaces;
-mod scan;
-mod tag;
+mod kinds;
 #[cfg(test)]
 mod tests;
 
 use std::ops::Range;
+use std::sync::Arc;
+
+use saoms_lang::source::{FileId, Span};
+use saoms_lang::syntax::{self, Attribute, Document, Element, TokenKind};
 
 pub(crate) use cursor::Cursor;
-pub(crate) use namespaces::prefix;
-pub(crate) use scan::scan;
+pub(crate) use kinds::{kinds, version};
 
-/// The elements of a text in document order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Tree {
-    pub(crate) elements: Vec<Element>,
-    /// Comments, instructions and CDATA sections, in order: nothing is completed in them.
-    pub(crate) opaque: Vec<Range<usize>>,
+/// The tree of a text. It stands alone, so that the number of its file says nothing.
+pub(crate) fn parse(text: &Arc<String>) -> Document {
+    syntax::parse(FileId(0), text).document
 }
 
-/// An element.
-#[derive(Clone, Debug)]
-pub(crate) struct Element {
-    /// Its name as written; empty while it has none.
-    pub(crate) name: Range<usize>,
-    /// From the `<` to behind the `>` of the start tag, or to where it breaks off.
-    pub(crate) tag: Range<usize>,
-    /// Whether the start tag has its `>`.
-    pub(crate) is_complete: bool,
-    /// Whether the start tag ends with `/>`.
-    pub(crate) is_empty: bool,
-    /// Behind the end tag, or where the element ends without one.
-    pub(crate) end: usize,
-    /// The end tag with its `</`.
-    pub(crate) end_tag: Option<Range<usize>>,
-    pub(crate) parent: Option<usize>,
-    pub(crate) attributes: Vec<Attribute>,
+/// The bytes of a span.
+pub(crate) fn bytes(span: Span) -> Range<usize> {
+    span.start as usize..span.end as usize
 }
 
-/// An attribute.
-#[derive(Clone, Debug)]
-pub(crate) struct Attribute {
-    pub(crate) name: Range<usize>,
-    /// The value without its quotes; `None` while there is no `=`.
-    pub(crate) value: Option<Range<usize>>,
-    /// Whether the value has both quotes.
-    pub(crate) is_closed: bool,
+/// The root of a tree, whose text may have none.
+pub(crate) fn root(document: &Document) -> Option<Element<'_>> {
+    Some(document.root()).filter(|root| !root.start_tag_span().is_empty())
 }
 
-impl Tree {
-    /// The innermost element that a byte is in, its tags included.
-    pub(crate) fn innermost(&self, at: usize) -> Option<usize> {
-        let started = self.elements.partition_point(|element| element.tag.start < at);
-        let mut here = started.checked_sub(1);
-        while let Some(index) = here
-            && at >= self.elements[index].end.max(self.elements[index].tag.end)
-        {
-            let one = &self.elements[index];
-            // Right behind what is not closed yet is still in it.
-            let is_open = if one.is_complete { !one.is_empty && one.end_tag.is_none() } else { true };
-            if is_open && at == one.end.max(one.tag.end) {
-                break;
-            }
-            here = one.parent;
-        }
-        here
+/// Where a declaration of a namespace can be added to the root.
+pub(crate) fn root_name_end(document: &Document) -> Option<usize> {
+    root(document).map(|root| root.name_span().end as usize)
+}
+
+/// Places in an element.
+pub(crate) trait Places<'t>: Copy {
+    /// The element with its tags.
+    fn whole(self) -> Range<usize>;
+    /// The start tag.
+    fn tag(self) -> Range<usize>;
+    /// The value of an attribute, white space at its ends left out; `None` while there is no `=`.
+    fn value(self, name: &str) -> Option<Range<usize>>;
+    /// The text directly inside, without white space at its ends, of an element that holds text alone.
+    fn text_place(self) -> Option<Range<usize>>;
+    /// The prefix that is bound to a namespace; "" for the default namespace.
+    fn prefix_of(self, namespace: &str) -> Option<&'t str>;
+}
+
+impl<'t> Places<'t> for Element<'t> {
+    fn whole(self) -> Range<usize> {
+        bytes(self.span())
     }
 
-    /// The elements directly in one, in order.
-    pub(crate) fn children(&self, parent: usize) -> impl Iterator<Item = usize> {
-        let end = self.elements[parent].end;
-        let inside =
-            (parent + 1..self.elements.len()).take_while(move |&at| self.elements[at].tag.start < end);
-        inside.filter(move |&at| self.elements[at].parent == Some(parent))
+    fn tag(self) -> Range<usize> {
+        bytes(self.start_tag_span())
     }
 
-    /// The name of an element without its prefix.
-    pub(crate) fn local<'t>(&self, text: &'t str, element: usize) -> &'t str {
-        local(&text[self.elements[element].name.clone()])
+    fn value(self, name: &str) -> Option<Range<usize>> {
+        let found = self.written_attributes().find(|one| one.name() == name);
+        Some(trimmed(self.document().text(), value_of(found?)?))
     }
 
-    /// The attribute of this name.
-    pub(crate) fn attribute(&self, text: &str, element: usize, name: &str) -> Option<&Attribute> {
-        self.elements[element].attributes.iter().find(|one| &text[one.name.clone()] == name)
+    fn text_place(self) -> Option<Range<usize>> {
+        let content = self.content_span();
+        let is_text = |(kind, _)| matches!(kind, TokenKind::Text | TokenKind::Space);
+        let is_plain = self.has_whole_start_tag() && self.document().tokens_in(content).all(is_text);
+        let inside = trimmed(self.document().text(), bytes(content));
+        (is_plain && !inside.is_empty()).then_some(inside)
     }
 
-    /// The value of an attribute, white space at its ends left out.
-    pub(crate) fn value(&self, text: &str, element: usize, name: &str) -> Option<Range<usize>> {
-        Some(trimmed(text, self.attribute(text, element, name)?.value.clone()?))
+    fn prefix_of(self, namespace: &str) -> Option<&'t str> {
+        let mut around = std::iter::successors(Some(self), |one| one.parent());
+        let found = around.find_map(|one| one.namespace_declarations().find(|one| one.value() == namespace));
+        found.map(|one| one.prefix().map_or("", |_| one.local_name()))
     }
+}
 
-    /// The text directly inside an element that holds no others, white space at its ends left out.
-    pub(crate) fn text(&self, text: &str, element: usize) -> Option<Range<usize>> {
-        let one = &self.elements[element];
-        if one.is_empty || !one.is_complete || self.children(element).next().is_some() {
-            return None;
-        }
-        let end = one.end_tag.as_ref().map_or(one.end, |tag| tag.start);
-        let inside = trimmed(text, one.tag.end..end.max(one.tag.end));
-        let is_plain = !self.opaque.iter().any(|part| part.start < inside.end && inside.start < part.end);
-        (!inside.is_empty() && is_plain).then_some(inside)
-    }
+/// The value of an attribute without its quotes; `None` while there is no `=`.
+pub(crate) fn value_of(attribute: Attribute<'_>) -> Option<Range<usize>> {
+    attribute.has_value().then(|| bytes(attribute.value_span()))
+}
+
+/// True for a declaration of a namespace.
+pub(crate) fn is_declaration(name: &str) -> bool {
+    name == "xmlns" || name.starts_with("xmlns:")
+}
+
+/// True for what is neither a tag nor text: comments, instructions, CDATA sections and declarations.
+pub(crate) fn is_opaque(kind: TokenKind) -> bool {
+    use TokenKind::{Comment, Doctype, Instruction, Section};
+    matches!(kind, Comment | Section | Instruction | Doctype)
 }
 
 /// A name without its prefix.
 pub(crate) fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
+}
+
+/// The prefix of a name with its colon; empty for none.
+pub(crate) fn prefix(name: &str) -> &str {
+    &name[..name.len() - local(name).len()]
 }
 
 /// A range without the white space at its ends.

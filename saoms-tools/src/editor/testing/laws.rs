@@ -13,7 +13,7 @@ const FRESH: &str = "freshName";
 fn checked(scene: &Scene, texts: &[String]) -> (Vec<Diagnostic>, Sources) {
     let mut open = OpenTexts::default();
     for (file, text) in scene.files.iter().zip(texts) {
-        open.insert(&file.path, text.as_str());
+        open.insert(&file.path, text.clone());
     }
     let project = Project::new().file(&scene.file().path).open_texts(open).assume_classes(true);
     let mut found = project.check(scene.registry.as_ref());

@@ -42,14 +42,14 @@ fn scene_named(name: &str, text: &str, others: &[(&str, &str)]) -> Scene {
     let files = all.map(|(name, text)| {
         let is_xml = [".composite", ".xml"].iter().any(|ending| name.ends_with(ending));
         let make = if is_xml { File::new } else { File::beside };
-        Arc::new(make(PathBuf::from("/fleet").join(name), text.into()))
+        Arc::new(make(PathBuf::from("/fleet").join(name), text.to_owned().into()))
     });
     made(files.collect())
 }
 
 /// The scene of a text that is in a file on disk, or would be.
 pub(crate) fn scene_at(path: &Path, text: &str) -> Scene {
-    made(vec![Arc::new(File::new(path.to_owned(), text.into()))])
+    made(vec![Arc::new(File::new(path.to_owned(), text.to_owned().into()))])
 }
 
 fn made(files: Vec<Arc<File>>) -> Scene {
