@@ -79,7 +79,7 @@ fn classes_properties_and_values_are_names_with_what_there_is_to_say_about_them(
     );
     assert_eq!(
         properties["shining"],
-        "example.Lamp: `steady` or `blinking`, has to be given. How it shines."
+        "example.Lamp: `steady` or `blinking`, has to be given. The way it shines."
     );
     for task in TaskProperties::declarations() {
         assert!(properties[&task.name].starts_with("every periodic class: "), "{}", task.name);
