@@ -27,22 +27,21 @@ pub(super) fn read(file: FileId, text: Text, sources: &Sources, diagnostics: &mu
         return FileValue { text: Some(text), document: None };
     }
     let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
-    if !faults.is_empty() {
-        if is_meant_as_values(&text) {
-            faults.into_iter().for_each(|fault| diagnostics.push(fault));
-            return FileValue::default();
-        }
+    if !faults.is_empty() && !is_meant_as_values(&text) {
         // A text that begins like XML and is none is a text.
         return FileValue { text: Some(text), document: None };
     }
+    let is_damaged = !faults.is_empty();
+    faults.into_iter().for_each(|fault| diagnostics.push(fault));
     let document = Arc::new(document);
     let root = document.root();
-    if root.local_name() != VALUES {
+    if root.local_name() != VALUES && !is_damaged {
         let document = Some(ValueDocument { document: Arc::clone(&document), is_list: false });
         return FileValue { text: Some(text), document };
     }
-    if let Some(fault) = wrong(root) {
-        diagnostics.push(fault);
+    let fault = if root.is_damaged() { None } else { wrong(root) };
+    if is_damaged || fault.is_some() {
+        fault.into_iter().for_each(|fault| diagnostics.push(fault));
         return FileValue::default();
     }
     // One plain value is a text, whatever is around it.

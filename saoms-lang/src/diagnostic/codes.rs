@@ -169,14 +169,18 @@ codes! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Absence {
     /// A part of the component, or of another element, that the diagnostic is at.
-    OfPart,
-    /// A name, or a user of it, anywhere in the fleet.
-    OfName,
+    Part,
+    /// A composite in any file.
+    Composite,
+    /// A component anywhere in the fleet.
+    Component,
+    /// Another name, or a user of it, anywhere in the fleet.
+    OtherName,
 }
 
 /// The kind of thing that is absent by a diagnostic of this code.
 pub(crate) fn absence(code: &Code) -> Option<Absence> {
-    const OF_PARTS: [&Code; 6] = [
+    const PARTS: [&Code; 6] = [
         &PROPERTY_MISSING,
         &CONSTRUCTION,
         &CREDENTIALS,
@@ -184,8 +188,9 @@ pub(crate) fn absence(code: &Code) -> Option<Absence> {
         &MISSING_IMPLEMENTATION,
         &REPLICAS,
     ];
-    const OF_NAMES: [&Code; 19] = [
-        &UNKNOWN_COMPONENT,
+    const COMPOSITES: [&Code; 4] =
+        [&INCLUDE_NOT_FOUND, &COMPOSITE_NOT_FOUND, &DEPLOYABLE_NOT_FOUND, &EXCHANGE];
+    const OTHER_NAMES: [&Code; 14] = [
         &UNKNOWN_TARGET_SERVICE,
         &UNKNOWN_BINDING,
         &UNKNOWN_WIRE_SOURCE,
@@ -196,18 +201,16 @@ pub(crate) fn absence(code: &Code) -> Option<Absence> {
         &UNWIRED,
         &PROMOTED_UNWIRED,
         &COMPOSITE_PROPERTY_MISSING,
-        &INCLUDE_NOT_FOUND,
-        &COMPOSITE_NOT_FOUND,
-        &DEPLOYABLE_NOT_FOUND,
-        &EXCHANGE,
         &SEVERITY_UNUSED,
         &TOPIC_UNREAD,
         &TOPIC_UNWRITTEN,
         &TOPIC_NEAR,
     ];
     match code {
-        _ if OF_PARTS.contains(&code) => Some(Absence::OfPart),
-        _ if OF_NAMES.contains(&code) => Some(Absence::OfName),
+        _ if PARTS.contains(&code) => Some(Absence::Part),
+        _ if COMPOSITES.contains(&code) => Some(Absence::Composite),
+        _ if code == &UNKNOWN_COMPONENT => Some(Absence::Component),
+        _ if OTHER_NAMES.contains(&code) => Some(Absence::OtherName),
         _ => None,
     }
 }

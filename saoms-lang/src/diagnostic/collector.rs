@@ -26,8 +26,20 @@ pub struct Diagnostics {
     warnings: usize,
     /// Stretches of files, each with its end, in which something may be missing because of a fault of the text; none overlaps another.
     damaged: BTreeMap<(FileId, u32), u32>,
-    /// True if names that others refer to may be missing.
-    lacks_names: bool,
+    hidden: HiddenNames,
+}
+
+/// The kinds of names that faults of texts may hide: one of them that is found nowhere may be there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct HiddenNames {
+    pub(crate) composites: bool,
+    pub(crate) components: bool,
+    pub(crate) others: bool,
+}
+
+impl HiddenNames {
+    /// Any name.
+    pub(crate) const ALL: Self = Self { composites: true, components: true, others: true };
 }
 
 #[derive(Debug)]
@@ -45,11 +57,13 @@ impl Diagnostics {
         Self::default()
     }
 
-    /// Lets nobody conclude from what is missing in a stretch of a file: there, a fault of the text is reported. With `has_names`, nobody
-    /// concludes either from a name that is found nowhere.
-    pub(crate) fn add_damage(&mut self, stretch: Location, has_names: bool) {
+    /// Lets nobody conclude from what is missing in a stretch of a file, where a fault of the text is reported, nor from names of the hidden
+    /// kinds that are found nowhere.
+    pub(crate) fn add_damage(&mut self, stretch: Location, hidden: HiddenNames) {
         self.damaged.insert((stretch.file, stretch.span.start), stretch.span.end);
-        self.lacks_names |= has_names;
+        self.hidden.composites |= hidden.composites;
+        self.hidden.components |= hidden.components;
+        self.hidden.others |= hidden.others;
     }
 
     /// True if a diagnostic says only what comes of a fault of the text.
@@ -58,11 +72,14 @@ impl Diagnostics {
             let before = self.damaged.range(..=(at.file, at.span.start)).next_back();
             before.is_some_and(|((file, _), end)| *file == at.file && at.span.end <= *end)
         };
-        match codes::absence(code) {
-            None => false,
-            Some(Absence::OfName) => self.lacks_names || is_inside(),
-            Some(Absence::OfPart) => is_inside(),
-        }
+        let Some(absence) = codes::absence(code) else { return false };
+        let is_hidden = match absence {
+            Absence::Part => false,
+            Absence::Composite => self.hidden.composites,
+            Absence::Component => self.hidden.components,
+            Absence::OtherName => self.hidden.others,
+        };
+        is_hidden || is_inside()
     }
 
     /// Adds one, unless it says only that something is missing where a fault of the text is the reason.

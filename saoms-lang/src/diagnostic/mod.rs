@@ -20,6 +20,7 @@ mod window;
 pub(crate) use candidates::Candidates;
 pub use codes::Code;
 pub use collector::Diagnostics;
+pub(crate) use collector::HiddenNames;
 pub use human::{Human, human};
 pub use json::{Json, json};
 pub use level::{SetBy, SeverityLevel};

@@ -7,7 +7,7 @@ use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Span, Text};
-use crate::syntax::{Attribute, Element, escaped};
+use crate::syntax::{Attribute, Element, escaped, is_local_name};
 
 /// How long a list can be: a fleet has no more components.
 const MOST_WORDS: usize = 1_000_000;
@@ -215,6 +215,9 @@ impl Loader<'_> {
         let Some(name) = self.required(element, "name") else {
             return Located::new("".into(), element.name_location());
         };
+        if is_local_name(&name) {
+            return name;
+        }
         if let Some(bad) = without_expressions(&name).chars().find(|c| c.is_whitespace() || *c == '/') {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
             let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));

@@ -36,9 +36,12 @@ impl Loader<'_> {
         if element.is_unnamed() {
             return Family::Nobody;
         }
+        // The root is of SCA, or counts as that.
+        if element.shares_namespace(root) {
+            return Family::Sca;
+        }
         let version = match element.namespace() {
-            // The root is of SCA, or counts as that.
-            namespace if namespace == self.namespace || namespace == root.namespace() => return Family::Sca,
+            namespace if namespace == self.namespace => return Family::Sca,
             SAOMS_NAMESPACE => return Family::Own,
             "" => {
                 self.without_namespace(element, root);

@@ -30,13 +30,15 @@ impl Loader<'_> {
             autowire: self.boolean(element, "autowire"),
             loops: Vec::new(),
         };
+        // Without a list that grows: there may be very many components.
+        let number_of = |name: &str| element.children().filter(|one| one.local_name() == name).count();
         let mut component = ComponentElement {
             origin: Origin::of(element),
             name,
             implementation: None,
-            properties: Vec::new(),
+            properties: Vec::with_capacity(number_of("property")),
             services: Vec::new(),
-            references: Vec::new(),
+            references: Vec::with_capacity(number_of("reference")),
             details: boxed(details),
         };
         let mut has_faulty = false;

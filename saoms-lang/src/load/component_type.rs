@@ -2,33 +2,29 @@
 
 use std::sync::Arc;
 
-use super::Loader;
 use super::children::{Family, meant_name};
 use super::root::of_another_kind;
 use super::vocabulary::{self, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPONENT_TYPE, COMPOSITE_PROPERTY};
+use super::{Loader, push_faults};
 use crate::diagnostic::Diagnostics;
 use crate::model::{ComponentType, Origin, Version};
 use crate::source::{FileId, Sources};
 use crate::syntax::{self, Parse};
 
-/// Makes the model of a component type that was read before. `None` when the text is no well-formed XML with a `componentType` of SCA as its
-/// root.
+/// Makes the model of a component type that was read before. `None` when its root is no `componentType` of SCA, or when the text is no
+/// well-formed XML: what can be read is judged, and what is missing may be there.
 pub fn load_component_type(
     file: FileId,
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<ComponentType> {
     let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
-    if !faults.is_empty() {
-        faults.into_iter().for_each(|fault| diagnostics.push(fault));
-        return None;
-    }
     let document = Arc::new(document);
     let root = document.root();
     let version = Version::from_namespace(root.namespace());
     let Some(version) = version.filter(|_| root.local_name() == COMPONENT_TYPE.name) else {
         let help = "a file of this name describes the implementation of the same name";
-        diagnostics.push(of_another_kind(root, COMPONENT_TYPE.name, help));
+        of_another_kind(root, COMPONENT_TYPE.name, help, faults, diagnostics);
         return None;
     };
     let mut loader = Loader::new(version, root.namespace(), diagnostics);
@@ -57,5 +53,7 @@ pub fn load_component_type(
             _ => {}
         }
     }
-    Some(made)
+    let is_whole = faults.is_empty();
+    push_faults(faults, sources, diagnostics);
+    is_whole.then_some(made)
 }

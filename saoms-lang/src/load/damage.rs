@@ -1,18 +1,21 @@
 //! Damage: where faults of the XML may hide parts of the model.
 
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostics, HiddenNames};
 use crate::syntax::{Document, Element, ElementId};
 
 /// Marks the children of the root with something damaged inside, or the whole file, in the diagnostics.
 pub(super) fn add(document: &Document, diagnostics: &mut Diagnostics) {
     let root = document.root();
     if root.is_damaged() {
-        return diagnostics.add_damage(root.span().in_file(document.file()), true);
+        return diagnostics.add_damage(root.span().in_file(document.file()), HiddenNames::ALL);
     }
     for part in root.children() {
         let mut damaged = part.descendants().filter(|one| one.is_damaged()).peekable();
         if damaged.peek().is_some() {
-            diagnostics.add_damage(part.span().in_file(document.file()), damaged.any(has_names));
+            let others = damaged.any(has_names);
+            let hidden =
+                HiddenNames { composites: false, components: others && may_hide_component(part), others };
+            diagnostics.add_damage(part.span().in_file(document.file()), hidden);
         }
     }
 }
@@ -26,4 +29,25 @@ fn has_names(element: Element<'_>) -> bool {
         "value" | "documentation" => false,
         name => !name.contains('.'),
     }
+}
+
+/// True if a child of the root with something damaged inside may be, or hold, a component of which nobody knows the name.
+fn may_hide_component(part: Element<'_>) -> bool {
+    let is_known = match part.local_name() {
+        "component" => has_readable_name(part),
+        "property" | "service" | "reference" | "wire" => true,
+        _ => false,
+    };
+    let is_component = |one: Element<'_>| one.is_unnamed() || one.local_name() == "component";
+    !is_known || part.is_unnamed() || part.descendants().skip(1).any(is_component)
+}
+
+/// True if the name of a component is read as it was meant, whatever else is wrong with the tag: it is given once, and ends with its quote.
+fn has_readable_name(component: Element<'_>) -> bool {
+    let mut names = component.written_attributes().filter(|one| one.name() == "name");
+    let (Some(name), None) = (names.next(), names.next()) else { return false };
+    let behind = &component.document().text()[name.span().end as usize..];
+    component.attribute("name").is_some()
+        && name.is_closed()
+        && behind.starts_with([' ', '\t', '\r', '\n', '/', '>'])
 }

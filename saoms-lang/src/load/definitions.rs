@@ -5,7 +5,7 @@ use std::path::Path;
 use super::children::Family;
 use super::root::{meant, of_another_kind};
 use super::vocabulary::{self, DEFINITIONS, Kind};
-use super::{Loader, read};
+use super::{Loader, push_faults, read};
 use crate::diagnostic::Diagnostics;
 use crate::model::Version;
 use crate::source::Sources;
@@ -28,17 +28,16 @@ pub(crate) fn check(
     let root = document.root();
     let is_named_so = root.local_name() == DEFINITIONS.name;
     match Version::from_namespace(root.namespace()).filter(|_| is_named_so) {
-        Some(_) if !faults.is_empty() => faults.into_iter().for_each(|one| diagnostics.push(one)),
         Some(version) => {
             Loader::new(version, root.namespace(), diagnostics).definitions(root);
             // The rule for composites is another one (SCA Assembly 1.1, 13).
             diagnostics.adjust(known, |one| one.rule = Some("ASM10003"));
+            push_faults(faults, sources, diagnostics);
             return true;
         }
         None if is_asked_for || is_named_so && meant(root.namespace()).is_some() => {
             let help = "a file of this name holds intents and policy sets";
-            let other = || of_another_kind(root, DEFINITIONS.name, help);
-            diagnostics.push(faults.into_iter().next().unwrap_or_else(other));
+            of_another_kind(root, DEFINITIONS.name, help, faults, diagnostics);
         }
         None => {}
     }

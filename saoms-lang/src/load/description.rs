@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::children::Family;
 use super::root::of_another_kind;
 use super::vocabulary::CONTRIBUTION;
-use super::{Loader, read};
+use super::{Loader, push_faults, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::Version;
 use crate::source::{FileId, Location, Sources, Text};
@@ -55,7 +55,7 @@ pub(crate) struct Description {
     pub(crate) imports: Vec<Entry>,
     pub(crate) exports: Vec<Entry>,
     pub(crate) deployables: Vec<Deployable>,
-    /// Whether what it says could not be read, which is reported.
+    /// True if something that it says could not be read, which is reported.
     pub(crate) is_faulty: bool,
 }
 
@@ -132,17 +132,13 @@ impl Description {
             return made;
         };
         let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
-        if !faults.is_empty() {
-            faults.into_iter().for_each(|fault| diagnostics.push(fault));
-            made.is_faulty = true;
-            return made;
-        }
+        made.is_faulty = !faults.is_empty();
         let document = Arc::new(document);
         let root = document.root();
         let version = Version::from_namespace(root.namespace());
         let Some(version) = version.filter(|_| root.local_name() == CONTRIBUTION.name) else {
             let help = "a file of this name says what a contribution runs, imports and exports";
-            diagnostics.push(of_another_kind(root, CONTRIBUTION.name, help));
+            of_another_kind(root, CONTRIBUTION.name, help, faults, diagnostics);
             return made;
         };
         let known = diagnostics.len();
@@ -162,6 +158,7 @@ impl Description {
         }
         // What composites have to conform to they have by another rule (SCA Assembly 1.1, 13).
         diagnostics.adjust(known, |one| one.rule = Some("ASM12027"));
+        push_faults(faults, sources, diagnostics);
         made.locations(root, file, sources, diagnostics);
         made
     }

@@ -66,13 +66,18 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
         loader.near_namespaces(&document);
         loader.composite(&Arc::new(document))
     });
+    push_faults(faults, sources, diagnostics);
+    encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
+    composite
+}
+
+/// Adds the faults of a text to what is wrong in the model of it.
+fn push_faults(faults: Vec<Diagnostic>, sources: &Sources, diagnostics: &mut Diagnostics) {
     for fault in faults {
         if !contradicts(&fault, sources, diagnostics) {
             diagnostics.push(fault);
         }
     }
-    encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
-    composite
 }
 
 /// True if a fault is that an end tag does not fit a start tag, and the name of the start tag is reported, with that of the end tag as the right one.

@@ -46,7 +46,10 @@ impl Loader<'_> {
             Some(text) if is_attribute => (value, Some(text)),
             text => (value.or(text), None),
         };
-        let details = boxed(self.details(element, kind, inside, values, content));
+        // Most properties have a name, and a text inside, alone.
+        let is_plain = element.written_attributes().count() <= 1 && values.is_empty() && content.is_empty();
+        let details =
+            if is_plain { None } else { boxed(self.details(element, kind, inside, values, content)) };
         Property { origin: Origin::of(element), name, simple, is_attribute, details }
     }
 

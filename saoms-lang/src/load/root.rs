@@ -2,7 +2,7 @@
 
 use super::Loader;
 use super::children::renaming;
-use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::model::Version;
 use crate::source::{Location, Span};
 use crate::syntax::Element;
@@ -105,8 +105,17 @@ fn namespaces() -> String {
     format!("{}, {} or {}", all[0], all[1], all[2])
 }
 
-/// The fault of a file whose root is not the element of SCA that it has to be, with what such a file is for.
-pub(super) fn of_another_kind(root: Element<'_>, expected: &str, help: &str) -> Diagnostic {
+/// Reports a file whose root is not the element of SCA that it has to be, with what such a file is for; of a text that is no XML its faults.
+pub(super) fn of_another_kind(
+    root: Element<'_>,
+    expected: &str,
+    help: &str,
+    faults: Vec<Diagnostic>,
+    diagnostics: &mut Diagnostics,
+) {
+    if !faults.is_empty() {
+        return faults.into_iter().for_each(|fault| diagnostics.push(fault));
+    }
     let found = quoted(root.name());
     let message = if root.local_name() != expected {
         format!("the root element is {found} and has to be {} of SCA", quoted(expected))
@@ -116,8 +125,8 @@ pub(super) fn of_another_kind(root: Element<'_>, expected: &str, help: &str) -> 
         format!("{found} is in the namespace {}, and has to be in one of SCA", quoted(root.namespace()))
     };
     let one = Diagnostic::new(&codes::ROOT, root.name_location(), message).help(help);
-    match root.local_name() == expected {
+    diagnostics.push(match root.local_name() == expected {
         true => one.help(format!("that is {}", namespaces())),
         false => one,
-    }
+    });
 }

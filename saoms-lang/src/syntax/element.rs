@@ -71,6 +71,11 @@ impl<'a> Element<'a> {
         &self.document.namespaces[self.node().namespace as usize]
     }
 
+    /// True if both elements of one document are in one namespace.
+    pub(crate) fn shares_namespace(self, other: Self) -> bool {
+        self.node().namespace == other.node().namespace
+    }
+
     /// From the `<` of the start tag to behind the `>` of the end tag.
     pub fn span(self) -> Span {
         let behind = self.node().end as usize + usize::from(self.is_closed());
@@ -200,12 +205,16 @@ impl<'a> Element<'a> {
     /// The attribute of this name in no namespace.
     #[inline]
     pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
-        self.attributes().find(|one| one.raw.namespace == NO_NAMESPACE && one.name() == name)
+        let is_it = |one: &Attribute<'_>| {
+            one.raw.namespace == NO_NAMESPACE && one.raw.name_len as usize == name.len()
+        };
+        self.written_attributes().find(|one| is_it(one) && one.is_sure() && one.name() == name)
     }
 
-    /// The attribute of this name in this namespace.
+    /// The attribute of this name with a prefix of this namespace.
     pub fn attribute_in(self, namespace: &str, local_name: &str) -> Option<Attribute<'a>> {
-        self.attributes().find(|one| one.local_name() == local_name && one.namespace() == namespace)
+        let mut prefixed = self.attributes().filter(|one| one.raw.namespace != NO_NAMESPACE);
+        prefixed.find(|one| one.local_name() == local_name && one.namespace() == namespace)
     }
 
     /// The namespace that `prefix` is bound to here; "" asks for the default namespace. `None` when it is unbound.

@@ -52,7 +52,7 @@ pub(super) fn name_length(bytes: &[u8]) -> usize {
 }
 
 /// Whether it is a Name without a colon (NCName of Namespaces in XML 1.0).
-pub(super) fn is_local_name(name: &str) -> bool {
+pub(crate) fn is_local_name(name: &str) -> bool {
     let mut characters = name.chars();
     characters.next().is_some_and(starts_name) && characters.all(continues_name)
 }

@@ -221,3 +221,18 @@ fn a_value_in_a_component_type_is_one_and_written_once() {
     "#]]
     .assert_eq(&found(component, &[("Run.componentType", inside)], true));
 }
+
+#[test]
+fn a_file_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
+    let damaged = "<property name='speed' type=xsd:int/>\n<servce name='tick'/>\n<reference/>\n";
+    let inside =
+        "<component name='S'><implementation.java class='a.Run'/><service name='other'/></component>";
+    expect![[r#"
+        Run.componentType:2:29-36 error S0105: the value of `type` is not in quotes
+          fix: put it in quotes [Run.componentType:2:29-36 "\"xsd:int\""]
+        Run.componentType:3:2-8 error S1004: SCA 1.1 has no element `servce`
+          fix: replace `servce` with `service` [Run.componentType:3:2-8 "service"]
+        Run.componentType:4:2-11 error S1008: `reference` needs the attribute `name`
+          help: add `name="..."` to it
+    "#]].assert_eq(&found(inside, &[("Run.componentType", damaged)], true));
+}

@@ -147,3 +147,20 @@ fn only_files_of_sca_are_definitions() {
     "#]]
     .assert_eq(&alone("my.xml", wrong));
 }
+
+#[test]
+fn a_file_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
+    let damaged =
+        definitions(OASIS, "<intent name=safe/>\n<intent/>\n<policySet nam='both'/>\n</definition>");
+    expect![[r#"
+        definitions.xml:2:14 [safe] error S0105 the value of `name` is not in quotes
+          put it in quotes
+        definitions.xml:3:2 [intent] error S1008 `intent` needs the attribute `name`
+          add `name="..."` to it
+        definitions.xml:4:12 [nam] error S1007 `policySet` has no attribute `nam`
+          replace `nam` with `name`
+        definitions.xml:5:1 [</definition>] error S0102 `</definition>` found where `</definitions>` is expected
+          replace it with `</definitions>`
+        definitions.xml:6:1 [</definitions>] error S0102 `</definitions>` closes nothing: no element is open
+    "#]].assert_eq(&alone("definitions.xml", damaged));
+}

@@ -92,16 +92,40 @@ fn component_types_of_imported_packages_are_found() {
 #[test]
 fn what_is_wrong_with_a_description_is_told_once() {
     let export = "<export namespace='urn:b'/>";
-    // What it imports is not known.
+    // What can be read counts.
     expect![[r#"
-        fleet/fleet.composite: b:hall is faulty
+        fleet/fleet.composite: b:hall -> halls/deep/hall.composite
+        halls/deep/hall.composite: b:door -> halls/door.composite
         fleet/META-INF/sca-contribution.xml S0102
     "#]]
     .assert_eq(&between("<import namespace='urn:b'>", export));
+    // What it imports is not known.
+    expect![[r#"
+        fleet/fleet.composite: b:hall is faulty
+        fleet/META-INF/sca-contribution.xml S0105
+    "#]]
+    .assert_eq(&between("<import namespace/>", export));
     expect![[r#"
         fleet/fleet.composite: b:hall -> halls/deep/hall.composite
         halls/deep/hall.composite: b:door -> halls/door.composite
         fleet/META-INF/sca-contribution.xml S0001
     "#]]
     .assert_eq(&between("<import namespace='urn:b' location='../nowhere'/>", export));
+}
+
+#[test]
+fn a_description_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
+    let damaged = description("<deployable composite=fleet/>\n<deployabel composite='t:fleet'/>\n<import/>");
+    expect![[r#"
+        sca-contribution.xml:1:94 [fleet] error S0105 the value of `composite` is not in quotes
+          put it in quotes
+        sca-contribution.xml:1:94 [fleet] warning S2051 the contribution has no composite `fleet`
+          write it with a prefix of the target namespace of the composite
+          it has none at all: is it put together from several folders?
+        sca-contribution.xml:2:2 [deployabel] error S1004 SCA 1.1 has no element `deployabel`
+          replace `deployabel` with `deployable`
+        sca-contribution.xml:3:2 [import] error S1008 `import` needs the attribute `namespace`
+          add `namespace="..."` to it
+    "#]]
+    .assert_eq(&crate::load::definitions::alone("sca-contribution.xml", damaged));
 }

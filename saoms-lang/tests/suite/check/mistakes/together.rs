@@ -403,3 +403,44 @@ fn slips_that_many_make_have_hints() {
 <component name=\"I\"><implementation.composite name=\"in.composite\"/></component>",
     ));
 }
+
+#[test]
+fn a_damaged_component_hides_unknown_ones_only_where_its_name_is_unreadable() {
+    let with_tag = |damaged: &str| {
+        of(&format!(
+            "{damaged}<implementation.java class=\"example.Gps\"/></component>
+<component name=\"C\"><implementation.java class=\"example.Conductor\"/><reference name=\"gps\" target=\"Nowhere\"/></component>"
+        ))
+    };
+    // The name is there, whatever else is wrong with the component.
+    expect![[r#"
+        2:22-28 error S1004: SCA 1.1 has no element `servce`
+          fix: replace `servce` with `service` [2:22-28 "service"]
+        2:34-35 error S0105: the value of `name` is not in quotes
+          fix: put it in quotes [2:34-35 "\"x\""]
+        2:34-35 error S2005: class `example.Gps` has no service `x`
+          help: its services are `position`
+        3:99-106 error S2011: there is no component `Nowhere`
+          help: the components are `G`
+    "#]].assert_eq(&with_tag("<component name=\"G\"><servce name=x/>"));
+    expect![[r#"
+        2:21-24 error S0112: the prefix `odd` is bound to no namespace
+          help: declare it, as `xmlns:odd="..."`, in this element or in one around it
+        3:99-106 error S2011: there is no component `Nowhere`
+          help: the components are `G`
+    "#]].assert_eq(&with_tag("<component name=\"G\" odd:is=\"x\">"));
+    // It may be the one that is meant.
+    expect![[r#"
+        2:22-23 error S0105: white space is missing between two attributes
+          fix: insert a blank [2:22-22 " "]
+    "#]].assert_eq(&with_tag("<component name=\"Now\"here\">"));
+    expect![[r#"
+        2:21-25 error S0106: the attribute `name` is given twice
+          2:12-16 first given here
+          fix: remove the second `name` [2:20-35 ""]
+    "#]].assert_eq(&with_tag("<component name=\"G\" name=\"Nowhere\">"));
+    expect![[r#"
+        2:12-16 error S0105: the attribute `name` has no value
+          help: write `name="..."`
+    "#]].assert_eq(&with_tag("<component name>"));
+}
