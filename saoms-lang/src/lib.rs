@@ -7,6 +7,7 @@ pub mod check;
 pub mod contribution;
 pub mod diagnostic;
 pub mod expression;
+mod limits;
 pub mod load;
 pub mod model;
 pub mod project;

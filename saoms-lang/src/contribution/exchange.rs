@@ -8,13 +8,11 @@ use super::finder::Finder;
 use super::imports::Imports;
 use super::index::is_of_definitions;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::limits::FOLDER_ENTRIES;
 use crate::load::description::{Description, Entry};
 
 /// The endings of files that hold no names that others could import, or of which they are known.
 const USUAL: &[&str] = &["composite", "componentType", "csv", "txt", "md", "properties"];
-/// Files of a contribution that are looked at.
-const MOST_ENTRIES: usize = 10_000;
-
 impl Finder {
     /// Warns of exported namespaces of which the contribution in `root` has nothing, and of imported ones that the contributions around it do not
     /// give. These may be elsewhere: so what nobody has is told only where the name is nearly that of another.
@@ -80,7 +78,7 @@ impl Finder {
 fn holds_others(root: &Path) -> bool {
     let root = if root.as_os_str().is_empty() { Path::new(".") } else { root };
     let mut waiting = vec![root.to_owned()];
-    let mut left = MOST_ENTRIES;
+    let mut left = FOLDER_ENTRIES;
     while let Some(next) = waiting.pop() {
         for entry in fs::read_dir(next).into_iter().flatten().flatten() {
             left = left.saturating_sub(1);

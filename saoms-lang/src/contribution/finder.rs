@@ -7,15 +7,9 @@ use super::component_types;
 use super::imports::Imports;
 use super::index::Index;
 use crate::diagnostic::{Candidates, Diagnostics, Severity, quoted};
+use crate::limits::{EXPLAINED_FILE_BYTES, EXPLAINED_FILES, EXPLAINED_NAMES, OFFERED_NAMES};
 use crate::load::{load_file, read};
 use crate::source::{OpenTexts, Sources};
-
-/// Files of a folder that are read to say why they hold no composite.
-const MOST_UNREAD: usize = 20;
-/// How large such a file may be.
-const MOST_BYTES: u64 = 1_000_000;
-/// How many of them are named.
-const SHOWN: usize = 3;
 
 /// Finds what composites name in other files, and looks at each folder and each first tag of a file once: one for all fleets of a folder lets checks
 /// of them take time that grows with their number, and not with its square.
@@ -38,9 +32,6 @@ pub struct Finder {
     unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,
 }
 
-/// More that lead nowhere are counted, and few of those are shown.
-const MOST_EXPLAINED: usize = 1000;
-
 impl Finder {
     /// Nothing is known yet but the texts that count in place of files.
     pub fn new(open: OpenTexts) -> Self {
@@ -49,7 +40,7 @@ impl Finder {
             imports: Imports::default(),
             around: None,
             candidates: Candidates::default(),
-            explained: MOST_EXPLAINED,
+            explained: EXPLAINED_NAMES,
             folders: HashMap::new(),
             side_files: HashMap::new(),
             unread: HashMap::new(),
@@ -69,7 +60,7 @@ impl Finder {
     /// Why files in a folder are not read that may hold a composite of this name, the one that is called as it first.
     pub(super) fn unread(&mut self, folder: &Path, local: &str, open: &OpenTexts) -> Vec<String> {
         if !self.unread.contains_key(folder) {
-            let all = self.index.unread(folder).into_iter().take(MOST_UNREAD);
+            let all = self.index.unread(folder).into_iter().take(EXPLAINED_FILES);
             let all = all.filter_map(|path| Some((reason(&path, open)?, path)));
             let all = all.map(|(reason, path)| (path, reason)).collect();
             self.unread.insert(folder.to_owned(), all);
@@ -81,14 +72,14 @@ impl Finder {
         let shown = |(path, reason): &(PathBuf, String)| {
             format!("{} is no composite: {reason}", quoted(&path.display().to_string()))
         };
-        first.chain(others).take(SHOWN).map(shown).collect()
+        first.chain(others).take(OFFERED_NAMES).map(shown).collect()
     }
 }
 
 /// What is wrong with a file that should be a composite.
 fn reason(path: &Path, open: &OpenTexts) -> Option<String> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
-    let file = read(path, MOST_BYTES, &mut sources, &mut diagnostics);
+    let file = read(path, EXPLAINED_FILE_BYTES, &mut sources, &mut diagnostics);
     file.and_then(|file| load_file(file, &sources, &mut diagnostics));
     let fault = diagnostics.into_sorted().into_iter().find(|one| one.severity == Severity::Error)?;
     Some(fault.message)

@@ -8,10 +8,8 @@ use std::path::{Path, PathBuf};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
+use crate::limits::FIRST_TAG_BYTES;
 use crate::source::OpenTexts;
-
-/// The part of a file in which its first tag has to be.
-const HEAD: u64 = 64 * 1024;
 
 /// A composite that was seen.
 #[derive(Clone, Debug)]
@@ -64,7 +62,7 @@ fn first_tag<T>(path: &Path, open: &OpenTexts, make: impl FnOnce(&BytesStart<'_>
         if !fs::metadata(path).ok()?.is_file() {
             return None;
         }
-        File::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
+        File::open(path).ok()?.take(FIRST_TAG_BYTES).read_to_end(&mut bytes).ok()?;
         String::from_utf8_lossy(&bytes)
     };
     let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));

@@ -7,13 +7,11 @@ use std::rc::Rc;
 
 use super::index::{self, Index};
 use crate::diagnostic::{Candidates, Diagnostics, quoted};
+use crate::limits::FOLDERS_BESIDE;
 use crate::load::MAX_SIZE;
 use crate::load::description::{self, Description, Kind};
 use crate::source::{OpenTexts, Sources, identity};
 use crate::syntax::escaped;
-
-/// Folders beside a contribution in which those that it imports from are looked for.
-const MOST_BESIDE: usize = 1_000;
 
 /// The descriptions of contributions, each read once and when it is needed.
 #[derive(Default)]
@@ -185,7 +183,7 @@ impl Imports {
         let (mut sources, mut untold) = (Sources::new(), Diagnostics::new());
         _ = self.description(root, &mut sources, &mut untold);
         let mut all = self.others(root, Kind::Namespace, namespace);
-        all.truncate(MOST_BESIDE);
+        all.truncate(FOLDERS_BESIDE);
         let mut exported = |other: PathBuf| {
             let exports = &self.description(&other, &mut sources, &mut untold)?.exports;
             let exports = exports.iter().filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
@@ -274,7 +272,7 @@ fn beside(root: &Path) -> Rc<[Neighbour]> {
         _ => root.join(".."),
     };
     let here = if around.as_os_str().is_empty() { Path::new(".") } else { &around };
-    let entries = fs::read_dir(here).into_iter().flatten().take(MOST_BESIDE).flatten();
+    let entries = fs::read_dir(here).into_iter().flatten().take(FOLDERS_BESIDE).flatten();
     let mut all: Vec<PathBuf> = entries.map(|entry| around.join(entry.file_name())).collect();
     all.retain(|folder| description::path_in(folder).is_some());
     all.sort_unstable();

@@ -8,15 +8,10 @@ use std::rc::Rc;
 
 use super::head::{Head, head};
 use crate::diagnostic::quoted;
+use crate::limits::{ASKED_FOLDER_ENTRIES, FLEET_ENTRIES, FOLDERS_ABOVE};
 use crate::load::description;
 use crate::source::{OpenTexts, identity};
 
-/// Entries of folders that are looked at because of the files of one fleet.
-const MOST_ENTRIES: usize = 20_000;
-/// Entries that are looked at in a folder that somebody asked for, and below.
-const MOST_BELOW: usize = 1_000_000;
-/// Folders above a file in which a description of the contribution is looked for.
-const MOST_ABOVE: usize = 12;
 /// The folder in a contribution whose composites are deployable, as Apache Tuscany has it.
 pub(super) const DEPLOYABLES: &str = "META-INF/sca-deployables";
 /// The name of files of intents and policy sets.
@@ -100,7 +95,7 @@ impl Index {
             roots: HashMap::new(),
             found: HashMap::new(),
             unread: HashMap::new(),
-            left: MOST_ENTRIES,
+            left: FLEET_ENTRIES,
             is_cut: false,
             open,
         }
@@ -108,12 +103,12 @@ impl Index {
 
     /// For another fleet as many entries of folders that are not known yet are looked at.
     pub(super) fn turn_to_fleet(&mut self) {
-        self.left = MOST_ENTRIES;
+        self.left = FLEET_ENTRIES;
     }
 
     /// In a folder that somebody asks for, more entries are looked at.
     pub(super) fn turn_to_folder(&mut self) {
-        self.left = MOST_BELOW;
+        self.left = ASKED_FOLDER_ENTRIES;
     }
 
     /// Lets only so many more entries be looked at.
@@ -453,7 +448,7 @@ pub(super) fn root(folder: &Path) -> PathBuf {
     // The folder that we are in, which an empty path means, has no absolute one by that name.
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(absolute) = std::path::absolute(here) else { return folder.to_owned() };
-    let found = absolute.ancestors().take(MOST_ABOVE).position(describes);
+    let found = absolute.ancestors().take(FOLDERS_ABOVE).position(describes);
     let Some(above) = found else { return folder.to_owned() };
     // As the user wrote it, where that goes up far enough.
     let written = folder.ancestors().nth(above).filter(|written| above == 0 || written.file_name().is_some());

@@ -6,15 +6,13 @@ use std::path::{Path, PathBuf};
 use super::finder::Finder;
 use super::{component_types, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
+use crate::limits::OFFERED_NAMES;
 use crate::load::description::Kind;
 use crate::load::{STANDARD_INPUT, load_component_type, load_file, read};
 use crate::model::{
     ComponentElement, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin,
 };
 use crate::source::{Location, Sources, identity};
-
-/// Names that are offered in place of one that is not found.
-const OFFERED: usize = 3;
 
 /// Reads the composites that those of a contribution include or implement components with, and what those name in turn; and the
 /// component types of implementations, the files `X.componentType` beside them.
@@ -176,7 +174,7 @@ impl Finder {
         let mut near = Vec::new();
         if self.candidates.admit(seen.heads.len()) {
             let of_namespace = seen.heads.iter().filter(|one| is_meant(&one.namespace));
-            near = nearest_few(&wanted.local, of_namespace.map(|one| one.local.as_str()), OFFERED);
+            near = nearest_few(&wanted.local, of_namespace.map(|one| one.local.as_str()), OFFERED_NAMES);
         }
         let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
         let mut searched = vec![self.index.searched(folder)];

@@ -1,7 +1,7 @@
 //! Budgets for the search of the name that was meant.
 
-/// The number of right names that are compared for all wrong ones together.
-const MOST: usize = 1_000_000;
+use crate::limits::CANDIDATES;
+
 /// Lists that are not longer are searched in any case.
 const FEW: usize = 100;
 
@@ -14,7 +14,7 @@ pub(crate) struct Candidates {
 
 impl Default for Candidates {
     fn default() -> Self {
-        Self { left: MOST }
+        Self { left: CANDIDATES }
     }
 }
 
@@ -43,7 +43,7 @@ mod tests {
     fn long_lists_are_searched_so_often_that_they_have_a_million_names_together() {
         let mut candidates = Candidates::default();
         let admitted = (0..10_000).filter(|_| candidates.admit(1000)).count();
-        assert_eq!(admitted, MOST / 1000);
+        assert_eq!(admitted, CANDIDATES / 1000);
         assert!(!candidates.admit(FEW + 1) && candidates.admit(FEW), "short ones always");
         assert_eq!(candidates.telling(), FEW + 1);
     }

@@ -4,13 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::codes::Absence;
 use super::{Code, Diagnostic, Severity, codes};
+use crate::limits::{CODE_DIAGNOSTICS, FILE_DIAGNOSTICS};
 use crate::source::{FileId, Location};
-
-/// The number of diagnostics of one code that are kept for one file. A generated file with one mistake in each of a million
-/// components must not cost a million messages.
-const LIMIT: u32 = 1000;
-/// The number of diagnostics of all codes together.
-const LIMIT_OF_FILE: u32 = 2000;
 
 /// Collects diagnostics.
 ///
@@ -109,7 +104,8 @@ impl Diagnostics {
     pub(crate) fn is_full(&self, code: &'static Code, file: FileId) -> bool {
         let kept = self.counts.get(&(file, code.id)).map_or(0, |count| count.kept);
         // The first of a kind is always told.
-        kept >= LIMIT || kept > 0 && self.kept.get(&file).is_some_and(|kept| *kept >= LIMIT_OF_FILE)
+        kept >= CODE_DIAGNOSTICS
+            || kept > 0 && self.kept.get(&file).is_some_and(|kept| *kept >= FILE_DIAGNOSTICS)
     }
 
     fn count(&mut self, code: &'static Code, severity: Severity, file: FileId) -> &mut Count {

@@ -1,7 +1,6 @@
 //! Texts of users inside messages.
 
-/// The most characters of a text that a message repeats.
-const LONGEST: usize = 60;
+use crate::limits::QUOTED_CHARACTERS;
 
 /// A text of the user between backticks: shortened when long, invisible characters escaped.
 ///
@@ -11,7 +10,7 @@ const LONGEST: usize = 60;
 pub fn quoted(text: &str) -> String {
     let mut out = String::from("`");
     for (count, character) in text.chars().enumerate() {
-        if count == LONGEST {
+        if count == QUOTED_CHARACTERS {
             out.push('…');
             break;
         }

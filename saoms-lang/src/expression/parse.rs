@@ -5,11 +5,7 @@ use std::ops::Range;
 use super::token::{Placed, Token, tokens};
 use super::{ExpressionError, ExpressionFault, ExpressionValue};
 use crate::diagnostic::quoted;
-
-/// Operators of an expression: it is evaluated by recursion that is at most so deep.
-const MOST_OPERATORS: usize = 200;
-/// Parentheses and signs inside each other: they are read and evaluated by recursion.
-const MOST_NESTED: usize = 30;
+use crate::limits::{EXPRESSION_DEPTH, EXPRESSION_OPERATORS};
 
 /// An expression with its bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,7 +113,7 @@ impl Parser<'_> {
             let right = self.level(level + 1)?;
             let at = left.at.start..right.at.end;
             self.operators += 1;
-            if self.operators > MOST_OPERATORS {
+            if self.operators > EXPRESSION_OPERATORS {
                 return Err(ExpressionError::new("the expression is too long").at(at));
             }
             left = Expression { at, node: Node::Two(Box::new(left), operator, Box::new(right)) };
@@ -149,7 +145,7 @@ impl Parser<'_> {
 
     fn deeper(&mut self, at: Range<usize>) -> Result<(), ExpressionFault> {
         self.depth += 1;
-        match self.depth > MOST_NESTED {
+        match self.depth > EXPRESSION_DEPTH {
             true => Err(ExpressionError::new("too many parentheses and signs inside each other").at(at)),
             false => Ok(()),
         }

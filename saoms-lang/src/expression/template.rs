@@ -4,9 +4,7 @@ use std::ops::Range;
 
 use super::parse::parse_from;
 use super::{Expression, ExpressionError, ExpressionFault, Lookup, integer};
-
-/// The most digits that a number is filled up to.
-const MOST_DIGITS: usize = 18;
+use crate::limits::NUMBER_DIGITS;
 
 enum Piece<'t> {
     Literal(&'t str),
@@ -129,11 +127,11 @@ fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, ExpressionF
     let width = &upto[end + 1..];
     let digits = width.strip_prefix('0').and_then(|digits| digits.parse().ok());
     match digits {
-        Some(digits @ 1..=MOST_DIGITS) => Ok(Piece::Expression(expression, digits)),
+        Some(digits @ 1..=NUMBER_DIGITS) => Ok(Piece::Expression(expression, digits)),
         _ => {
             let problem =
                 ExpressionError::new("after `:` the number of digits is expected, with a `0` before it");
-            let plain = width.parse().is_ok_and(|digits: usize| (1..=MOST_DIGITS).contains(&digits));
+            let plain = width.parse().is_ok_and(|digits: usize| (1..=NUMBER_DIGITS).contains(&digits));
             let problem = if plain { problem.instead(format!("0{width}")) } else { problem };
             Err(problem
                 .help("as in `${index:03}`, which makes 007 of 7")

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{ExpressionError, ExpressionFault};
 use crate::diagnostic::quoted;
+use crate::limits::EXPRESSION_TOKENS;
 
 /// A token.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,10 +18,6 @@ pub(super) enum Token {
 
 /// A token with its bytes.
 pub(super) type Placed = (Token, Range<usize>);
-
-/// Tokens of an expression: more than one of as many operators as there may be needs, each of its values in as many
-/// parentheses.
-const MOST_TOKENS: usize = 20_000;
 
 /// The signs, the longer ones first.
 const SIGNS: [&str; 13] = ["==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/", "%", "(", ")"];
@@ -94,8 +91,8 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), E
         } else {
             return Err(odd(rest, first, at));
         };
-        if all.len() == MOST_TOKENS {
-            let message = format!("an expression of more than {MOST_TOKENS} signs, names and numbers");
+        if all.len() == EXPRESSION_TOKENS {
+            let message = format!("an expression of more than {EXPRESSION_TOKENS} signs, names and numbers");
             return Err(ExpressionError::new(message).at(at..at + length));
         }
         all.push((token, at..at + length));

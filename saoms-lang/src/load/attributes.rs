@@ -5,12 +5,10 @@ use std::borrow::Cow;
 use super::Loader;
 use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
+use crate::limits::LIST_WORDS;
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Span, Text};
 use crate::syntax::{Attribute, Element, escaped, is_local_name};
-
-/// How long a list can be: a fleet has no more components.
-const MOST_WORDS: usize = 1_000_000;
 
 impl Loader<'_> {
     /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
@@ -299,15 +297,15 @@ impl Loader<'_> {
 
     fn words(&mut self, attribute: Attribute<'_>, name: &str) -> Vec<Text> {
         let mut words = if self.is_replicated {
-            attribute.words_with_expressions().take(MOST_WORDS + 1).collect()
+            attribute.words_with_expressions().take(LIST_WORDS + 1).collect()
         } else {
-            attribute.words().take(MOST_WORDS + 1).collect::<Vec<_>>()
+            attribute.words().take(LIST_WORDS + 1).collect::<Vec<_>>()
         };
-        if let Some(beyond) = words.get(MOST_WORDS) {
-            let message = format!("{} has more than {MOST_WORDS} words", quoted(name));
+        if let Some(beyond) = words.get(LIST_WORDS) {
+            let message = format!("{} has more than {LIST_WORDS} words", quoted(name));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, beyond.location, message);
             self.report(one.help("the others are not looked at"));
-            words.truncate(MOST_WORDS);
+            words.truncate(LIST_WORDS);
             words.shrink_to_fit();
         }
         words

@@ -4,7 +4,9 @@ use smol_str::SmolStr;
 
 use super::Loader;
 use super::attributes::is_attribute_as_element;
-use super::vocabulary::{self, EXTENSIONS, INTENTS, Kind, OPERATION, OWN_ELEMENTS, POLICY_SET, SEVERITY};
+use super::vocabulary::{
+    self, EXTENSIONS, INTENTS, Kind, OPERATION, OWN_ELEMENTS, POLICY_SET, SEVERITY, SEVERITY_PARENTS,
+};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
@@ -15,6 +17,9 @@ const ONLY_1_0: &[&str] = &["operation"];
 /// Elements that SCA 1.1 added.
 const ONLY_1_1: &[&str] =
     &["requires", "policySetAttachment", "documentation", "extensions", "externalAttachment"];
+
+/// Elements of SCA that the model does not keep.
+const NOT_KEPT: [&str; 5] = ["operation", "requires", "policySetAttachment", "documentation", "extensions"];
 
 /// Whose vocabulary an element belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +74,36 @@ impl Loader<'_> {
         Family::Sca
     }
 
-    /// The vocabulary of an element, and its name there; see [`meant_name`].
-    pub(super) fn meaning<'a>(&mut self, element: Element<'a>) -> (Family, &'a str) {
-        (self.family(element), meant_name(element))
+    /// Reads the children of an element of this kind: `read` takes those that it knows, each by its vocabulary and its name, and gives true
+    /// for them. The others are judged here; a misspelt one is read as the one that is meant.
+    #[inline]
+    pub(super) fn children(
+        &mut self,
+        parent: Element<'_>,
+        kind: &'static Kind,
+        mut read: impl FnMut(&mut Self, Element<'_>, Family, &str) -> bool,
+    ) {
+        for child in parent.children() {
+            let (family, name) = (self.family(child), meant_name(child));
+            if read(self, child, family, name) {
+                continue;
+            }
+            match family {
+                Family::Foreign | Family::Nobody => {}
+                Family::Sca if NOT_KEPT.contains(&name) && kind.children.contains(&name) => {
+                    self.beside(child)
+                }
+                Family::Own if name == SEVERITY.name && SEVERITY_PARENTS.contains(&kind.name) => {
+                    self.severity(child, parent);
+                }
+                _ => {
+                    let meant = self.unexpected(child, kind, family).filter(|meant| *meant != name);
+                    if let Some(meant) = meant.filter(|_| family == Family::Sca) {
+                        read(self, child, family, meant);
+                    }
+                }
+            }
+        }
     }
 
     /// Reports an element of SCA, or of SAOMS, that cannot be where it is. Gives the name that is meant where it is misspelt, to be read on as
@@ -99,7 +131,7 @@ impl Loader<'_> {
         if is_own && name == SEVERITY.name {
             self.meant_severity(element);
         }
-        let is_of_sca = vocabulary::is_known(name) || vocabulary::IN_DEFINITIONS.contains(&name);
+        let is_of_sca = vocabulary::is_known(name) || vocabulary::is_of_definitions(name);
         let is_misplaced = is_own || (family == Family::Sca && is_of_sca);
         let code = if is_misplaced { &codes::MISPLACED_ELEMENT } else { &codes::UNKNOWN_ELEMENT };
         let location = element.name_location();
@@ -190,10 +222,7 @@ impl Loader<'_> {
             };
             let is_known =
                 vocabulary::children(kind).any(|known| known == name) || kind.children.iter().any(is_made);
-            if family == Family::Own
-                && name == SEVERITY.name
-                && vocabulary::SEVERITY_PARENTS.contains(&kind.name)
-            {
+            if family == Family::Own && name == SEVERITY.name && SEVERITY_PARENTS.contains(&kind.name) {
                 self.severity(child, element);
                 continue;
             }

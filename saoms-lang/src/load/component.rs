@@ -42,67 +42,43 @@ impl Loader<'_> {
             details: boxed(details),
         };
         let mut has_faulty = false;
-        for child in element.children() {
-            let (family, name) = self.meaning(child);
-            has_faulty |= self.part_of(element, (child, family, name), &mut component);
-        }
+        self.children(element, &COMPONENT, |loader, child, family, name| {
+            match (family, name) {
+                (Family::Sca, "property") => {
+                    component.properties.push(loader.property(child, &COMPONENT_PROPERTY));
+                }
+                (Family::Sca, "service") => {
+                    component.services.push(loader.service(child, &COMPONENT_SERVICE));
+                }
+                (Family::Sca, "reference") => {
+                    component.references.push(loader.reference(child, &COMPONENT_REFERENCE));
+                }
+                (Family::Sca | Family::Own | Family::Foreign, name)
+                    if name.starts_with("implementation.") =>
+                {
+                    let made = loader.implementation(child, family, name);
+                    if let Some(first) = &component.implementation {
+                        loader.repeated(child, first.origin.tag, &COMPONENT, "implementation");
+                    } else {
+                        has_faulty |= made.is_none();
+                        component.implementation = made;
+                    }
+                }
+                (Family::Own, "loop") => {
+                    component.details.get_or_insert_default().loops.push(loader.looping(child));
+                }
+                _ => {
+                    has_faulty |= family != Family::Foreign && name.starts_with("impl");
+                    return false;
+                }
+            }
+            true
+        });
         self.is_replicated = false;
         if component.implementation.is_none() && !has_faulty && !element.has_damaged_content() {
             self.missing_implementation(element, &component.name);
         }
         component
-    }
-
-    /// Reads what is directly inside, as an element of this name. Gives whether it is an implementation with a fault.
-    #[inline]
-    fn part_of(
-        &mut self,
-        element: Element<'_>,
-        (child, family, name): (Element<'_>, Family, &str),
-        component: &mut ComponentElement,
-    ) -> bool {
-        match (family, name) {
-            (Family::Sca, "property") => {
-                component.properties.push(self.property(child, &COMPONENT_PROPERTY));
-            }
-            (Family::Sca, "service") => {
-                component.services.push(self.service(child, &COMPONENT_SERVICE));
-            }
-            (Family::Sca, "reference") => {
-                component.references.push(self.reference(child, &COMPONENT_REFERENCE));
-            }
-            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
-                self.beside(child);
-            }
-            (Family::Sca | Family::Own | Family::Foreign, name) if name.starts_with("implementation.") => {
-                let made = self.implementation(child, family, name);
-                match (&component.implementation, made) {
-                    (Some(first), _) => {
-                        self.repeated(child, first.origin.tag, &COMPONENT, "implementation");
-                    }
-                    (None, made) => {
-                        let is_faulty = made.is_none();
-                        component.implementation = made;
-                        return is_faulty;
-                    }
-                }
-            }
-            (Family::Own, "loop") => {
-                let one = self.looping(child);
-                component.details.get_or_insert_default().loops.push(one);
-            }
-            (Family::Own, "severity") => self.severity(child, element),
-            (Family::Foreign, _) => {}
-            (Family::Nobody, name) => return name.starts_with("implementation"),
-            (_, name) => {
-                let meant = self.unexpected(child, &COMPONENT, family).filter(|meant| *meant != name);
-                return match meant.filter(|_| family == Family::Sca) {
-                    Some(meant) => self.part_of(element, (child, family, meant), component),
-                    None => name.starts_with("impl"),
-                };
-            }
-        }
-        false
     }
 
     /// What a component says about its replicas.

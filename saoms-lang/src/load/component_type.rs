@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::children::{Family, meant_name};
+use super::children::{Family, is_defined};
 use super::root::of_another_kind;
-use super::vocabulary::{self, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPONENT_TYPE, COMPOSITE_PROPERTY};
+use super::vocabulary::{COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPONENT_TYPE, COMPOSITE_PROPERTY};
 use super::{Loader, push_faults};
 use crate::diagnostic::Diagnostics;
 use crate::model::{ComponentType, Origin, Version};
@@ -38,21 +38,17 @@ pub fn load_component_type(
     };
     loader.check_attributes(root, &COMPONENT_TYPE);
     loader.no_text(root);
-    for child in root.children() {
-        let family = loader.family(child);
-        match (family, meant_name(child)) {
+    loader.children(root, &COMPONENT_TYPE, |loader, child, family, name| {
+        match (family, name) {
             (Family::Sca, "service") => made.services.push(loader.service(child, &COMPONENT_SERVICE)),
             (Family::Sca, "reference") => made.references.push(loader.reference(child, &COMPONENT_REFERENCE)),
             (Family::Sca, "property") => made.properties.push(loader.property(child, &COMPOSITE_PROPERTY)),
-            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
-                loader.beside(child);
-            }
             // What else a component type can say is for the containers of other languages.
-            (Family::Sca, name) if vocabulary::children(&COMPONENT_TYPE).any(|known| known == name) => {}
-            (Family::Sca | Family::Own, _) => _ = loader.unexpected(child, &COMPONENT_TYPE, family),
-            _ => {}
+            (Family::Sca, name) => return name.starts_with("implementation.") && is_defined(child),
+            _ => return false,
         }
-    }
+        true
+    });
     let is_whole = faults.is_empty();
     push_faults(faults, sources, diagnostics);
     is_whole.then_some(made)

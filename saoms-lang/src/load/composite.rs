@@ -35,54 +35,33 @@ impl Loader<'_> {
             severities: Vec::new(),
             name,
         };
-        for child in root.children() {
-            let (family, name) = self.meaning(child);
-            self.part(child, family, name, &mut composite);
-        }
+        self.children(root, &COMPOSITE, |loader, child, family, name| {
+            match (family, name) {
+                (Family::Sca, "component") => composite.components.push(loader.component(child)),
+                // One without attributes is reported, and says nothing.
+                (Family::Sca, "include") => {
+                    let include = loader.include(child);
+                    composite.includes.extend(has_attributes(child).then_some(include));
+                }
+                (Family::Sca, "wire") => {
+                    let wire = loader.wire(child);
+                    composite.wires.extend(has_attributes(child).then_some(wire));
+                }
+                (Family::Sca, "property") => {
+                    composite.properties.push(loader.property(child, &COMPOSITE_PROPERTY));
+                }
+                (Family::Sca, "service") => {
+                    composite.services.push(loader.service(child, &COMPOSITE_SERVICE));
+                }
+                (Family::Sca, "reference") => {
+                    composite.references.push(loader.reference(child, &COMPOSITE_REFERENCE));
+                }
+                _ => return false,
+            }
+            true
+        });
         composite.severities = std::mem::take(&mut self.severities);
         composite
-    }
-
-    /// Reads what is directly inside, as an element of this name.
-    fn part(&mut self, child: Element<'_>, family: Family, name: &str, composite: &mut Composite) {
-        match (family, name) {
-            (Family::Foreign | Family::Nobody, _) => {}
-            (Family::Sca, "component") => {
-                composite.components.push(self.component(child));
-            }
-            // One without attributes is reported, and says nothing.
-            (Family::Sca, "include") => {
-                let include = self.include(child);
-                composite.includes.extend(Some(include).filter(|_| has_attributes(child)));
-            }
-            (Family::Sca, "wire") => {
-                let wire = self.wire(child);
-                composite.wires.extend(Some(wire).filter(|_| has_attributes(child)));
-            }
-            (Family::Sca, "property") => {
-                composite.properties.push(self.property(child, &COMPOSITE_PROPERTY));
-            }
-            (Family::Sca, "service") => {
-                composite.services.push(self.service(child, &COMPOSITE_SERVICE));
-            }
-            (Family::Sca, "reference") => {
-                composite.references.push(self.reference(child, &COMPOSITE_REFERENCE));
-            }
-            (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
-                self.beside(child);
-            }
-            (Family::Own, "severity") => {
-                if let Some(parent) = child.parent() {
-                    self.severity(child, parent);
-                }
-            }
-            _ => {
-                let meant = self.unexpected(child, &COMPOSITE, family).filter(|meant| *meant != name);
-                if let Some(meant) = meant.filter(|_| family == Family::Sca) {
-                    self.part(child, family, meant, composite);
-                }
-            }
-        }
     }
 
     fn target_namespace(&mut self, root: Element<'_>) -> Option<Text> {

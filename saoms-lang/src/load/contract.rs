@@ -1,6 +1,6 @@
 //! Services and references, their interfaces, callbacks and bindings.
 
-use super::children::{Family, is_defined, variant};
+use super::children::{Family, is_defined, meant_name, variant};
 use super::vocabulary::{
     BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST,
     INTERFACE_WSDL, Kind,
@@ -79,36 +79,23 @@ impl Loader<'_> {
     fn contract(&mut self, element: Element<'_>, kind: &'static Kind) -> Option<Box<Contract>> {
         self.no_text(element);
         let mut contract = Contract::default();
-        for child in element.children() {
-            let (family, name) = self.meaning(child);
+        self.children(element, kind, |loader, child, family, name| {
             match (family, name) {
-                (Family::Nobody, _) => {}
                 (Family::Sca, "callback") => match &contract.callback {
-                    Some(first) => self.repeated(child, first.origin.tag, kind, "callback"),
-                    None => contract.callback = Some(self.callback(child)),
+                    Some(first) => loader.repeated(child, first.origin.tag, kind, "callback"),
+                    None => contract.callback = Some(loader.callback(child)),
                 },
-                (
-                    Family::Sca,
-                    "operation" | "requires" | "policySetAttachment" | "documentation" | "extensions",
-                ) => self.beside(child),
-                (Family::Sca, name) if name.starts_with("interface.") && is_defined(child) => {
-                    self.interface(child, family, kind, &mut contract);
+                (Family::Own, "interface.rust") => loader.interface(child, family, kind, &mut contract),
+                _ if is_one(child, family, "interface.") => {
+                    loader.interface(child, family, kind, &mut contract);
                 }
-                (Family::Own, "interface.rust") => self.interface(child, family, kind, &mut contract),
-                (Family::Foreign, name) if name.starts_with("interface.") => {
-                    self.interface(child, family, kind, &mut contract);
+                _ if is_one(child, family, "binding.") => {
+                    contract.bindings.push(loader.binding(child, family));
                 }
-                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
-                    contract.bindings.push(self.binding(child, family));
-                }
-                (Family::Foreign, name) if name.starts_with("binding.") => {
-                    contract.bindings.push(self.binding(child, family));
-                }
-                (Family::Foreign, _) => {}
-                (Family::Own, "severity") => self.severity(child, element),
-                _ => _ = self.unexpected(child, kind, family),
+                _ => return false,
             }
-        }
+            true
+        });
         contract.bindings.shrink_to_fit();
         boxed(contract)
     }
@@ -123,8 +110,7 @@ impl Loader<'_> {
         if let Some(first) = &contract.interface {
             return self.repeated(element, first.origin.tag, parent, "interface");
         }
-        let (_, name) = self.meaning(element);
-        let (kind, of) = match (family, name) {
+        let (kind, of) = match (family, meant_name(element)) {
             (Family::Sca, "interface.java") => (InterfaceKind::Java, Some(&INTERFACE_JAVA)),
             (Family::Sca | Family::Own, "interface.rust") => (InterfaceKind::Rust, Some(&INTERFACE_RUST)),
             (Family::Sca, "interface.wsdl") => (InterfaceKind::Sca, Some(&INTERFACE_WSDL)),
@@ -143,7 +129,7 @@ impl Loader<'_> {
 
     fn binding(&mut self, element: Element<'_>, family: Family) -> Binding {
         // What other bindings hold is theirs.
-        if self.meaning(element) == (Family::Sca, BINDING_SCA.name) {
+        if family == Family::Sca && meant_name(element) == BINDING_SCA.name {
             self.parts_of(element, &BINDING_SCA);
         }
         let name = self.optional(element, "name");
@@ -160,23 +146,17 @@ impl Loader<'_> {
         self.check_attributes(element, &CALLBACK);
         self.no_text(element);
         let mut bindings = Vec::new();
-        for child in element.children() {
-            let (family, name) = self.meaning(child);
-            match (family, name) {
-                (Family::Nobody, _) => {}
-                (Family::Sca, name) if name.starts_with("binding.") && is_defined(child) => {
-                    bindings.push(self.binding(child, family));
-                }
-                (Family::Foreign, name) if name.starts_with("binding.") => {
-                    bindings.push(self.binding(child, family));
-                }
-                (Family::Foreign, _) => {}
-                (Family::Sca, "requires" | "policySetAttachment" | "documentation" | "extensions") => {
-                    self.beside(child);
-                }
-                _ => _ = self.unexpected(child, &CALLBACK, family),
-            }
-        }
+        self.children(element, &CALLBACK, |loader, child, family, _| {
+            let is_binding = is_one(child, family, "binding.");
+            bindings.extend(is_binding.then(|| loader.binding(child, family)));
+            is_binding
+        });
         Callback { origin: Origin::of(element), bindings }
     }
+}
+
+/// True for an interface or a binding that SCA defines, or that others do.
+fn is_one(element: Element<'_>, family: Family, prefix: &str) -> bool {
+    let is_known = family == Family::Foreign || family == Family::Sca && is_defined(element);
+    is_known && meant_name(element).starts_with(prefix)
 }

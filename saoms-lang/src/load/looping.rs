@@ -12,15 +12,14 @@ impl Loader<'_> {
         self.check_attributes(element, &LOOP);
         self.no_text(element);
         let mut properties = Vec::new();
-        for child in element.children() {
-            let family = self.family(child);
-            match (family, child.local_name()) {
-                (Family::Sca, "property") => properties.push(self.property(child, &COMPONENT_PROPERTY)),
-                (Family::Own, "property") => self.property_of_sca(child),
-                (Family::Sca, "documentation") | (Family::Foreign | Family::Nobody, _) => {}
-                _ => _ = self.unexpected(child, &LOOP, family),
+        self.children(element, &LOOP, |loader, child, family, name| {
+            match (family, name) {
+                (Family::Sca, "property") => properties.push(loader.property(child, &COMPONENT_PROPERTY)),
+                (Family::Own, "property") => loader.property_of_sca(child),
+                _ => return false,
             }
-        }
+            true
+        });
         LoopElement {
             origin: Origin::of(element),
             name: self.name(element),

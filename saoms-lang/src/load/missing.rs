@@ -4,11 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::diagnostic::{nearest_few, quoted};
-
-/// Entries of a folder that are looked at.
-const MOST: usize = 10_000;
-/// Names that are offered.
-const OFFERED: usize = 3;
+use crate::limits::{FOLDER_ENTRIES, OFFERED_NAMES};
 
 /// Help for a path that does not exist; files with the ending are shown where no name is alike.
 pub(super) fn help(path: &Path, ending: Option<&str>) -> Option<String> {
@@ -24,18 +20,18 @@ pub(super) fn help(path: &Path, ending: Option<&str>) -> Option<String> {
     let wanted = path.file_name()?.to_string_lossy();
     let names = names(folder);
     let all = names.iter().map(String::as_str);
-    let near = nearest_few(&wanted, all.clone(), OFFERED);
+    let near = nearest_few(&wanted, all.clone(), OFFERED_NAMES);
     let near = if near.is_empty() {
         // Many forget the ending.
         let stem = |name: &&str| Path::new(name).file_stem().is_some_and(|stem| stem == &*wanted);
-        all.clone().filter(stem).take(OFFERED).collect()
+        all.clone().filter(stem).take(OFFERED_NAMES).collect()
     } else {
         near
     };
     if !near.is_empty() {
         return Some(format!("there is {}", listed(&near, parent)));
     }
-    let likely: Vec<&str> = all.filter(|name| ends_with(name, ending)).take(OFFERED).collect();
+    let likely: Vec<&str> = all.filter(|name| ends_with(name, ending)).take(OFFERED_NAMES).collect();
     (!likely.is_empty()).then(|| format!("the folder has {}", listed(&likely, parent)))
 }
 
@@ -43,7 +39,7 @@ pub(super) fn help(path: &Path, ending: Option<&str>) -> Option<String> {
 pub(super) fn inside(directory: &Path, ending: Option<&str>) -> Option<String> {
     let names = names(directory);
     let likely: Vec<&str> =
-        names.iter().map(String::as_str).filter(|name| ends_with(name, ending)).take(OFFERED).collect();
+        names.iter().map(String::as_str).filter(|name| ends_with(name, ending)).take(OFFERED_NAMES).collect();
     (!likely.is_empty()).then(|| format!("it has {}", listed(&likely, directory)))
 }
 
@@ -60,8 +56,11 @@ fn listed(names: &[&str], shown_as: &Path) -> String {
 /// The names in a folder, in order; empty when it cannot be read.
 fn names(folder: &Path) -> Vec<String> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-    let mut names: Vec<String> =
-        entries.take(MOST).flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> = entries
+        .take(FOLDER_ENTRIES)
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
     names.sort_unstable();
     names
 }

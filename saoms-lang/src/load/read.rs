@@ -6,16 +6,12 @@ use std::path::Path;
 
 use super::{encoding, missing};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
+use crate::limits::ADDRESSABLE_BYTES;
+pub use crate::limits::MAX_SIZE;
 use crate::source::{FileId, Location, OpenTexts, Sources, Span};
-
-/// The size in bytes above which a file is refused unless something else is set: 256 MB.
-pub const MAX_SIZE: u64 = 256_000_000;
 
 /// What a text that comes from standard input is called. Its folder is the current one.
 pub const STANDARD_INPUT: &str = "<stdin>";
-
-/// Sources name bytes with 32 bits, and a byte behind the end must have a name.
-const LIMIT: u64 = u32::MAX as u64 - 1;
 
 /// Reads the text of a file of at most `max_size` bytes. `None`, and a diagnostic that says why, when there is no such
 /// file or it is no text in UTF-8.
@@ -27,7 +23,7 @@ pub fn read(
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<FileId> {
-    let max_size = max_size.min(LIMIT);
+    let max_size = max_size.min(ADDRESSABLE_BYTES);
     add(path, bytes(path, max_size, sources.open()), max_size, sources, diagnostics)
 }
 
@@ -39,7 +35,7 @@ pub fn read_from(
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<FileId> {
-    let max_size = max_size.min(LIMIT);
+    let max_size = max_size.min(ADDRESSABLE_BYTES);
     add(Path::new(name), limited(input, Vec::new(), max_size), max_size, sources, diagnostics)
 }
 
@@ -89,7 +85,7 @@ pub(crate) fn value(
     named: Location,
     open: &OpenTexts,
 ) -> Result<String, Box<Diagnostic>> {
-    let max_size = max_size.min(LIMIT);
+    let max_size = max_size.min(ADDRESSABLE_BYTES);
     let bytes = named_bytes(path, max_size, open).map_err(|failure| {
         let mut one = failure.diagnostic(path, max_size, named, &VALUE);
         if one.code == &codes::FILE_NOT_FOUND {

@@ -1,10 +1,8 @@
 //! Faults of a text, as diagnostics.
 
 use crate::diagnostic::{Code, Diagnostic};
+use crate::limits::TEXT_FAULTS;
 use crate::source::{FileId, Span};
-
-/// The most faults that are kept of one text.
-const MOST: usize = 1000;
 
 /// The faults found so far.
 #[derive(Debug, Default)]
@@ -13,7 +11,7 @@ pub(super) struct Faults(Vec<Diagnostic>);
 impl Faults {
     /// Adds a fault, which is not even put together when there are too many.
     pub(super) fn add(&mut self, make: impl FnOnce() -> Diagnostic) {
-        if self.0.len() < MOST {
+        if self.0.len() < TEXT_FAULTS {
             self.0.push(make());
         }
     }

@@ -12,12 +12,8 @@ use super::tags::{self, Named, holders, is_holder, local};
 use super::token::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, HAS_TEXT, TokenKind, UNSURE_TEXT};
 use super::value;
 use crate::diagnostic::{codes, nearest, quoted};
+use crate::limits::{OPEN_ELEMENTS_SEARCHED, SIBLINGS_SEARCHED};
 use crate::source::Span;
-
-/// How far back the element is looked for that an end tag could be of.
-const NEAR: usize = 1000;
-/// How many elements that are open are looked at for one that can hold another.
-const DEEPEST: usize = 64;
 
 /// The flags of start tags that are found here.
 const FOUND_HERE: u8 = CLOSED | HAS_TEXT | DAMAGED_CONTENT | UNSURE_TEXT;
@@ -182,7 +178,8 @@ impl<'l, 'a> Nest<'l, 'a> {
     fn makes_room(&mut self, at: u32, named: Named<'a>, is_bare: bool) -> bool {
         let Some(holders) = holders(local(named.name)) else { return false };
         let is_holder = |one: &&u32| tags::is_one_of(local(self.name(self.node(**one))), holders);
-        let Some(above) = self.open.iter().rev().take(DEEPEST).position(|one| is_holder(&one)) else {
+        let Some(above) = self.open.iter().rev().take(OPEN_ELEMENTS_SEARCHED).position(|one| is_holder(&one))
+        else {
             return false;
         };
         let above: Vec<u32> = self.open.iter().rev().take(above).copied().collect();
@@ -337,7 +334,7 @@ impl<'l, 'a> Nest<'l, 'a> {
 
     /// The last element of this name that is directly inside `parent`.
     fn sibling(&self, name: &str, parent: u32) -> Option<u32> {
-        let inside = (parent + 1..self.count).rev().take(NEAR);
+        let inside = (parent + 1..self.count).rev().take(SIBLINGS_SEARCHED);
         inside.filter(|one| self.node(*one).parent == parent).find(|one| self.name(self.node(*one)) == name)
     }
 

@@ -5,6 +5,7 @@ use super::names::{is_local_name, name_length};
 use super::token::TokenKind;
 use super::value::is_space;
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
+use crate::limits::SUGGESTED_EDITS;
 use crate::source::Span;
 
 /// The fault of the processing instruction from `start` to `end`, or of the XML declaration.
@@ -50,9 +51,6 @@ pub(super) fn comment(input: Input<'_>, start: u32, end: u32) -> Option<Diagnost
     Some(if edits.is_empty() { one } else { one.suggest_edits("write single dashes", edits) })
 }
 
-/// Edits of one comment that are suggested.
-const MOST_EDITS: usize = 100;
-
 /// One `-` in place of each `--` of a comment, unless there are very many.
 fn single_dashes(inside: &str, start: u32, input: Input<'_>) -> Vec<Edit> {
     let mut edits = Vec::new();
@@ -64,7 +62,7 @@ fn single_dashes(inside: &str, start: u32, input: Input<'_>) -> Vec<Edit> {
         if at - from > 1 || replacement.is_empty() {
             let place = Span::new(start + from as u32, start + at as u32).in_file(input.file);
             edits.push(Edit { location: place, replacement: replacement.to_owned() });
-            if edits.len() > MOST_EDITS {
+            if edits.len() > SUGGESTED_EDITS {
                 return Vec::new();
             }
         }

@@ -3,12 +3,10 @@
 use super::fault::Input;
 use super::value::resolve;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::limits::REFERENCE_BYTES;
 use crate::source::Span;
 
 const PREDEFINED: [&str; 5] = ["lt", "gt", "amp", "apos", "quot"];
-/// The longest reference that is looked at: no valid one is longer, leading zeros aside.
-const LONGEST: usize = 64;
-
 /// A reference that is none.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum BadReference {
@@ -28,7 +26,7 @@ pub(super) fn check(input: Input<'_>, at: u32) -> Result<u32, BadReference> {
     }
     let end = at + length as u32 + 2;
     let inside = &after[..length];
-    match length <= LONGEST && resolve(inside).is_some() || long_number(inside) {
+    match length <= REFERENCE_BYTES && resolve(inside).is_some() || long_number(inside) {
         true => Ok(end),
         false => Err(BadReference::Unknown(Span::new(at, end))),
     }
@@ -79,5 +77,5 @@ fn long_number(inside: &str) -> bool {
     let Some(number) = inside.strip_prefix('#') else { return false };
     let (start, digits) = number.strip_prefix('x').map_or(("#", number), |digits| ("#x", digits));
     let digits = digits.trim_start_matches('0');
-    inside.len() > LONGEST && digits.len() <= 8 && resolve(&format!("{start}{digits}")).is_some()
+    inside.len() > REFERENCE_BYTES && digits.len() <= 8 && resolve(&format!("{start}{digits}")).is_some()
 }

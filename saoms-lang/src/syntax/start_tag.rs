@@ -11,13 +11,11 @@ use super::names::{name_length, scan};
 use super::token::{BROKEN_OFF, DAMAGED_TAG, PREFIXED, TokenKind, UNNAMED};
 use super::{quotes, reference, slips};
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::limits::TAG_END_SEARCHES;
 use crate::source::Span;
 
 /// An element with more attributes than this has them compared through a map.
 const FEW: usize = 16;
-/// The times that the end of one tag is looked for anew, behind quotes that do not fit.
-const MOST_MEASURES: u32 = 16;
-
 /// An attribute as written, declarations of namespaces included.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RawAttribute {
@@ -157,7 +155,7 @@ impl Tag<'_, '_> {
     /// Looks for the end of the tag from a place outside of values; quick-xml knows quotes.
     fn measure(&mut self) {
         self.measures += 1;
-        if self.measures > MOST_MEASURES {
+        if self.measures > TAG_END_SEARCHES {
             self.close = None;
             return;
         }

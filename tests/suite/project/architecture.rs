@@ -10,6 +10,7 @@ const ORDERS: &[(&str, &[&str])] = &[
     (
         "saoms-lang",
         &[
+            "limits",
             "source",
             "diagnostic",
             "expression",

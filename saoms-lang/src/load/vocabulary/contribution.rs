@@ -1,67 +1,37 @@
 //! The tables of `sca-contribution.xml` and of component types.
 
-use super::elements::{known, old, required};
-use super::{Holds, Kind, Known};
+use super::{Kind, Known};
 
-const LOCATION: Known = known("location", Holds::Uri, "The folder of the contribution that it comes from.");
-const PACKAGE: Known = required("package", Holds::Text, "A package of classes.");
-const NAMESPACE: Known = required("namespace", Holds::Namespace, "The target namespace of composites.");
-const NAME: Known = required("name", Holds::Text, "The name under which files are exported.");
-const FROM: Known = required("location", Holds::Uri, "The folder of the contribution that it comes from.");
-const PATH: Known = known("path", Holds::Text, "The folder of the files, in the contribution.");
-const URI: Known = required("uri", Holds::Uri, "A file of the contribution.");
+attributes! {
+    COMPOSITE = required "composite" Composite: "Its name, with a prefix of its namespace.";
+    LOCATION = known "location" Uri: "The folder of the contribution that it comes from.";
+    PACKAGE = required "package" Text: "A package of classes.";
+    NAMESPACE = required "namespace" Namespace: "The target namespace of composites.";
+    NAME = required "name" Text: "The name under which files are exported.";
+    FROM = required "location" Uri: "The folder of the contribution that it comes from.";
+    PATH = known "path" Text: "The folder of the files, in the contribution.";
+    URI = required "uri" Uri: "A file of the contribution.";
+}
 
-/// The root of the file.
-pub static CONTRIBUTION: Kind = Kind {
-    name: "contribution",
-    doc: "What a folder of composites runs, gives to others and takes from them.",
-    attributes: &[known("targetNamespace", Holds::Uri, "Often written, as in composites. It means nothing.")],
-    children: &[
-        "deployable",
-        "import",
-        "import.java",
-        "import.resource",
-        "import.c",
-        "import.cpp",
-        "export",
-        "export.java",
-        "export.resource",
-        "export.c",
-        "export.cpp",
-        "documentation",
-        "extensions",
-    ],
-};
+kinds! {
+    /// The root of the file.
+    pub CONTRIBUTION = "contribution": "What a folder of composites runs, gives to others and takes from them." {
+        known "targetNamespace" Uri: "Often written, as in composites. It means nothing.";
+    } ["deployable", "import", "import.java", "import.resource", "import.c", "import.cpp", "export",
+        "export.java", "export.resource", "export.c", "export.cpp", "documentation", "extensions"]
 
-/// The root of a component type.
-pub(in crate::load) static COMPONENT_TYPE: Kind = Kind {
-    name: "componentType",
-    doc: "What the implementation of the same name offers, needs and can be told.",
-    attributes: &[
-        old("constrainingType", Holds::Text, "The type that this has to conform to. Not looked at."),
-        known("requires", Holds::Names, "The intents of policies that apply."),
-        known("policySets", Holds::Names, "The policy sets that apply."),
-    ],
-    children: &[
-        "implementation.",
-        "service",
-        "reference",
-        "property",
-        "requires",
-        "policySetAttachment",
-        "documentation",
-        "extensions",
-    ],
-};
+    /// The root of a component type.
+    pub(in crate::load) COMPONENT_TYPE = "componentType": "What the implementation of the same name offers, needs and can be told." {
+        old "constrainingType" Text: "The type that this has to conform to. Not looked at.";
+        known "requires" Names: "The intents of policies that apply.";
+        known "policySets" Names: "The policy sets that apply.";
+    } ["implementation.", "service", "reference", "property", "requires", "policySetAttachment",
+        "documentation", "extensions"]
+}
 
 /// The elements of a contribution that have attributes.
 pub(super) static PARTS: [Kind; 11] = [
-    Kind {
-        name: "deployable",
-        doc: "A composite that runs by itself.",
-        attributes: &[required("composite", Holds::Composite, "Its name, with a prefix of its namespace.")],
-        children: &["documentation", "extensions"],
-    },
+    Kind { doc: "A composite that runs by itself.", ..part("deployable", &[COMPOSITE]) },
     part("import", &[NAMESPACE, LOCATION]),
     part("import.java", &[PACKAGE, LOCATION]),
     part("import.resource", &[URI, LOCATION]),

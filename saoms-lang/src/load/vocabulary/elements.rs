@@ -1,162 +1,56 @@
 //! The tables.
 
-use super::{Holds, Kind, Known};
+use super::Known;
 
-pub(super) const fn known(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { name, holds, doc, required: false, only_1_0: false, only_1_1: false }
+attributes! {
+    REQUIRES = known "requires" Names: "The intents of policies that apply.";
+    POLICY_SETS = known "policySets" Names: "The policy sets that apply.";
+    AUTOWIRE = known "autowire" Boolean: "Whether references without a target are wired to services that fit them; what is said further inside wins.";
+    CONSTRAINING_TYPE = old "constrainingType" Text: "The type that this has to conform to. Not looked at.";
+    MULTIPLICITY = known "multiplicity" Multiplicity: "How many targets the reference takes: at least 0 or 1, at most 1 or n. As the class says unless given; it may narrow that only.";
+    WIRED_BY_IMPL = known "wiredByImpl" Boolean: "Whether the implementation finds the targets itself at run time; nothing here may wire it then.";
+    TARGET = known "target" Ends: "The components that the reference calls, or their services as `Component/service`, between blanks.";
 }
 
-pub(super) const fn required(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { required: true, ..known(name, holds, doc) }
+kinds! {
+    /// The root of a file.
+    pub COMPOSITE = "composite": "Components, what they are told by properties, and how they are wired: a fleet, or a part of one." {
+        required "name" Name: "The composite's name. Others refer to it by its target namespace and this name.";
+        known "targetNamespace" Namespace: "The namespace of the composite's name, such as `urn:example:fleet`.";
+        known "local" Boolean: "Whether its components have to run together in one process; a local composite is included by local ones only.";
+        AUTOWIRE; CONSTRAINING_TYPE; REQUIRES; POLICY_SETS;
+    } ["component", "property", "service", "reference", "wire", "include", "requires", "policySetAttachment",
+        "documentation", "extensions"]
+
+    /// An include in a composite.
+    pub INCLUDE = "include": "Puts everything in another composite here, as if it were written here." {
+        required "name" Composite: "The name of the composite, with a prefix of its target namespace.";
+        known "uri" Uri: "Where it is. Composites are found by their names.";
+    } ["documentation"]
+
+    /// A wire in a composite.
+    pub WIRE = "wire": "Connects a reference of one component to a service of another one, as `target` of the reference does." {
+        required "source" End: "The reference that calls: `Component/reference`.";
+        required "target" End: "The service that is called: `Component`, or `Component/service`.";
+        new "replace" Boolean: "Whether this wire takes the place of the targets that the reference names itself.";
+    } ["documentation", "extensions"]
+
+    /// A component in a composite.
+    pub COMPONENT = "component": "One instance of a class, or of a whole composite, with values for its properties and targets for its references." {
+        required "name" Name: "The component's name, which no other one in this composite has.";
+        AUTOWIRE; CONSTRAINING_TYPE; REQUIRES; POLICY_SETS;
+    } ["implementation.", "property", "service", "reference", "requires", "policySetAttachment",
+        "documentation", "extensions"]
+
+    /// A loop of a component: of SAOMS, not of SCA.
+    pub LOOP = "loop": "Adds a loop to the component, or replaces, moves, removes or parametrises one that its class brings." {
+        required "name" LoopName: "The loop's name within the component; that of a loop it has already changes that one.";
+        known "class" LoopClass: "The class of a loop that is added, or that takes the place of the one of this name.";
+        known "before" LoopName: "The loop directly before which it stands.";
+        known "after" LoopName: "The loop directly behind which it stands.";
+        known "remove" Boolean: "Whether the loop of this name is removed.";
+    } ["property", "documentation"]
 }
-
-pub(super) const fn old(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { only_1_0: true, ..known(name, holds, doc) }
-}
-
-pub(super) const fn new(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { only_1_1: true, ..known(name, holds, doc) }
-}
-
-const REQUIRES: Known = known("requires", Holds::Names, "The intents of policies that apply.");
-const POLICY_SETS: Known = known("policySets", Holds::Names, "The policy sets that apply.");
-const AUTOWIRE: Known = known(
-    "autowire",
-    Holds::Boolean,
-    "Whether references without a target are wired to services that fit them; what is said further inside wins.",
-);
-const CONSTRAINING_TYPE: Known =
-    old("constrainingType", Holds::Text, "The type that this has to conform to. Not looked at.");
-const MULTIPLICITY: Known = known(
-    "multiplicity",
-    Holds::Multiplicity,
-    "How many targets the reference takes: at least 0 or 1, at most 1 or n. As the class says unless given; it may narrow that only.",
-);
-const WIRED_BY_IMPL: Known = known(
-    "wiredByImpl",
-    Holds::Boolean,
-    "Whether the implementation finds the targets itself at run time; nothing here may wire it then.",
-);
-const TARGET: Known = known(
-    "target",
-    Holds::Ends,
-    "The components that the reference calls, or their services as `Component/service`, between blanks.",
-);
-
-/// The root of a file.
-pub static COMPOSITE: Kind = Kind {
-    name: "composite",
-    doc: "Components, what they are told by properties, and how they are wired: a fleet, or a part of one.",
-    attributes: &[
-        required(
-            "name",
-            Holds::Name,
-            "The composite's name. Others refer to it by its target namespace and this name.",
-        ),
-        known(
-            "targetNamespace",
-            Holds::Namespace,
-            "The namespace of the composite's name, such as `urn:example:fleet`.",
-        ),
-        known(
-            "local",
-            Holds::Boolean,
-            "Whether its components have to run together in one process; a local composite is included by local ones only.",
-        ),
-        AUTOWIRE,
-        CONSTRAINING_TYPE,
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: &[
-        "component",
-        "property",
-        "service",
-        "reference",
-        "wire",
-        "include",
-        "requires",
-        "policySetAttachment",
-        "documentation",
-        "extensions",
-    ],
-};
-
-/// An include in a composite.
-pub static INCLUDE: Kind = Kind {
-    name: "include",
-    doc: "Puts everything in another composite here, as if it were written here.",
-    attributes: &[
-        required(
-            "name",
-            Holds::Composite,
-            "The name of the composite, with a prefix of its target namespace.",
-        ),
-        known("uri", Holds::Uri, "Where it is. Composites are found by their names."),
-    ],
-    children: &["documentation"],
-};
-
-/// A wire in a composite.
-pub static WIRE: Kind = Kind {
-    name: "wire",
-    doc: "Connects a reference of one component to a service of another one, as `target` of the reference does.",
-    attributes: &[
-        required("source", Holds::End, "The reference that calls: `Component/reference`."),
-        required("target", Holds::End, "The service that is called: `Component`, or `Component/service`."),
-        new(
-            "replace",
-            Holds::Boolean,
-            "Whether this wire takes the place of the targets that the reference names itself.",
-        ),
-    ],
-    children: &["documentation", "extensions"],
-};
-
-/// A component in a composite.
-pub static COMPONENT: Kind = Kind {
-    name: "component",
-    doc: "One instance of a class, or of a whole composite, with values for its properties and targets for its references.",
-    attributes: &[
-        required("name", Holds::Name, "The component's name, which no other one in this composite has."),
-        AUTOWIRE,
-        CONSTRAINING_TYPE,
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: &[
-        "implementation.",
-        "property",
-        "service",
-        "reference",
-        "requires",
-        "policySetAttachment",
-        "documentation",
-        "extensions",
-    ],
-};
-
-/// A loop of a component: of SAOMS, not of SCA.
-pub static LOOP: Kind = Kind {
-    name: "loop",
-    doc: "Adds a loop to the component, or replaces, moves, removes or parametrises one that its class brings.",
-    attributes: &[
-        required(
-            "name",
-            Holds::LoopName,
-            "The loop's name within the component; that of a loop it has already changes that one.",
-        ),
-        known(
-            "class",
-            Holds::LoopClass,
-            "The class of a loop that is added, or that takes the place of the one of this name.",
-        ),
-        known("before", Holds::LoopName, "The loop directly before which it stands."),
-        known("after", Holds::LoopName, "The loop directly behind which it stands."),
-        known("remove", Holds::Boolean, "Whether the loop of this name is removed."),
-    ],
-    children: &["property", "documentation"],
-};
 
 const CONTRACT: &[&str] = &[
     "interface.",
@@ -169,234 +63,124 @@ const CONTRACT: &[&str] = &[
     "extensions",
 ];
 
-/// A service of a component.
-pub static COMPONENT_SERVICE: Kind = Kind {
-    name: "service",
-    doc: "Says more about a service that the component's class offers.",
-    attributes: &[
-        required("name", Holds::ServiceName, "The service's name, as the class has it."),
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: CONTRACT,
-};
+kinds! {
+    /// A service of a component.
+    pub COMPONENT_SERVICE = "service": "Says more about a service that the component's class offers." {
+        required "name" ServiceName: "The service's name, as the class has it.";
+        REQUIRES; POLICY_SETS;
+    } CONTRACT
 
-/// A service of a composite.
-pub static COMPOSITE_SERVICE: Kind = Kind {
-    name: "service",
-    doc: "A service that the composite offers: that of a component in it.",
-    attributes: &[
-        required("name", Holds::Name, "The service's name, by which the composite's users know it."),
-        required(
-            "promote",
-            Holds::End,
-            "The component in this composite, or its service as `Component/service`.",
-        ),
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: CONTRACT,
-};
+    /// A service of a composite.
+    pub COMPOSITE_SERVICE = "service": "A service that the composite offers: that of a component in it." {
+        required "name" Name: "The service's name, by which the composite's users know it.";
+        required "promote" End: "The component in this composite, or its service as `Component/service`.";
+        REQUIRES; POLICY_SETS;
+    } CONTRACT
 
-/// A reference of a component.
-pub static COMPONENT_REFERENCE: Kind = Kind {
-    name: "reference",
-    doc: "Says whom the component calls through a reference that its class has.",
-    attributes: &[
-        required("name", Holds::ReferenceName, "The reference's name, as the class has it."),
-        TARGET,
-        MULTIPLICITY,
-        AUTOWIRE,
-        WIRED_BY_IMPL,
-        new(
-            "nonOverridable",
-            Holds::Boolean,
-            "Whether composites around this one must not give it other targets.",
-        ),
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: CONTRACT,
-};
+    /// A reference of a component.
+    pub COMPONENT_REFERENCE = "reference": "Says whom the component calls through a reference that its class has." {
+        required "name" ReferenceName: "The reference's name, as the class has it.";
+        TARGET; MULTIPLICITY; AUTOWIRE; WIRED_BY_IMPL;
+        new "nonOverridable" Boolean: "Whether composites around this one must not give it other targets.";
+        REQUIRES; POLICY_SETS;
+    } CONTRACT
 
-/// A reference of a composite.
-pub static COMPOSITE_REFERENCE: Kind = Kind {
-    name: "reference",
-    doc: "A reference that the composite has: those of components in it, wired by whoever uses the composite.",
-    attributes: &[
-        required("name", Holds::Name, "The reference's name, by which the composite's users know it."),
-        required(
-            "promote",
-            Holds::Ends,
-            "The components in this composite, or their references as `Component/reference`, between blanks.",
-        ),
-        known(
-            "target",
-            Holds::Ends,
-            "The components around the one that the composite implements, or their services as `Component/service`, between blanks; they count where that component wires nothing.",
-        ),
-        MULTIPLICITY,
-        old("autowire", Holds::Boolean, AUTOWIRE.doc),
-        WIRED_BY_IMPL,
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: CONTRACT,
-};
+    /// A reference of a composite.
+    pub COMPOSITE_REFERENCE = "reference": "A reference that the composite has: those of components in it, wired by whoever uses the composite." {
+        required "name" Name: "The reference's name, by which the composite's users know it.";
+        required "promote" Ends: "The components in this composite, or their references as `Component/reference`, between blanks.";
+        known "target" Ends: "The components around the one that the composite implements, or their services as `Component/service`, between blanks; they count where that component wires nothing.";
+        MULTIPLICITY;
+        old "autowire" Boolean: AUTOWIRE.doc;
+        WIRED_BY_IMPL; REQUIRES; POLICY_SETS;
+    } CONTRACT
+}
 
-const TYPE: Known = known("type", Holds::Type, "The type of the value, such as `xsd:string` or `xsd:int`.");
-const ELEMENT: Known = known(
-    "element",
-    Holds::Element,
-    "The global element of a schema, instead of a type: the value is such an element, and components take what is inside.",
-);
-const MANY: Known = known("many", Holds::Boolean, "Whether it has any number of values, each in a `value`.");
-const VALUE: Known = new("value", Holds::Value, "The value, instead of the text inside.");
+attributes! {
+    TYPE = known "type" Type: "The type of the value, such as `xsd:string` or `xsd:int`.";
+    ELEMENT = known "element" Element: "The global element of a schema, instead of a type: the value is such an element, and components take what is inside.";
+    MANY = known "many" Boolean: "Whether it has any number of values, each in a `value`.";
+    VALUE = new "value" Value: "The value, instead of the text inside.";
+}
 
-/// A property of a component, or of a loop.
-pub static COMPONENT_PROPERTY: Kind = Kind {
-    name: "property",
-    doc: "Gives a property of the component a value: as text inside, as `value`, from a composite's property or from a file.",
-    attributes: &[
-        required("name", Holds::PropertyName, "The property's name, as the class has it."),
-        VALUE,
-        TYPE,
-        ELEMENT,
-        MANY,
-        known(
-            "source",
-            Holds::Source,
-            "The property of the composite that the value comes from: `$name`, or a part of a complex one: `$name/part`, `$name/part[2]/@attribute`.",
-        ),
-        known("file", Holds::File, "The file whose text is the value, beside this one."),
-        old("mustSupply", Holds::Boolean, "Of a composite's properties; not looked at here."),
-    ],
-    children: &["value"],
-};
+kinds! {
+    /// A property of a component, or of a loop.
+    pub COMPONENT_PROPERTY = "property": "Gives a property of the component a value: as text inside, as `value`, from a composite's property or from a file." {
+        required "name" PropertyName: "The property's name, as the class has it.";
+        VALUE; TYPE; ELEMENT; MANY;
+        known "source" Source: "The property of the composite that the value comes from: `$name`, or a part of a complex one: `$name/part`, `$name/part[2]/@attribute`.";
+        known "file" File: "The file whose text is the value, beside this one.";
+        old "mustSupply" Boolean: "Of a composite's properties; not looked at here.";
+    } ["value"]
 
-/// A property of a composite.
-pub static COMPOSITE_PROPERTY: Kind = Kind {
-    name: "property",
-    doc: "A value that components take with `source=\"$name\"`, and that can be set from outside.",
-    attributes: &[
-        required("name", Holds::Name, "The property's name."),
-        VALUE,
-        TYPE,
-        ELEMENT,
-        MANY,
-        known(
-            "mustSupply",
-            Holds::Boolean,
-            "Whether whoever uses the composite has to give a value, since there is none here.",
-        ),
-    ],
-    children: &["value"],
-};
+    /// A property of a composite.
+    pub COMPOSITE_PROPERTY = "property": "A value that components take with `source=\"$name\"`, and that can be set from outside." {
+        required "name" Name: "The property's name.";
+        VALUE; TYPE; ELEMENT; MANY;
+        known "mustSupply" Boolean: "Whether whoever uses the composite has to give a value, since there is none here.";
+    } ["value"]
 
-/// A callback of a service or a reference.
-pub static CALLBACK: Kind = Kind {
-    name: "callback",
-    doc: "How the service calls back those who call it.",
-    attributes: &[known("name", Holds::Name, "The callback's name."), REQUIRES, POLICY_SETS],
-    children: &["binding.", "requires", "policySetAttachment", "documentation", "extensions"],
-};
+    /// A callback of a service or a reference.
+    pub CALLBACK = "callback": "How the service calls back those who call it." {
+        known "name" Name: "The callback's name.";
+        REQUIRES; POLICY_SETS;
+    } ["binding.", "requires", "policySetAttachment", "documentation", "extensions"]
+}
 
 const POLICY_CHILDREN: &[&str] =
     &["operation", "requires", "policySetAttachment", "documentation", "extensions"];
 
-const INTERFACE_ATTRIBUTES: &[Known] = &[
-    required("interface", Holds::Interface, "The interface's name."),
-    known("callbackInterface", Holds::Interface, "The interface by which the service calls back."),
-    new("remotable", Holds::Boolean, "Whether calls may come from other processes."),
-    Known { only_1_1: true, ..REQUIRES },
-    Known { only_1_1: true, ..POLICY_SETS },
-];
+attributes! {
+    INTERFACE = required "interface" Interface: "The interface's name.";
+    CALLBACK_INTERFACE = known "callbackInterface" Interface: "The interface by which the service calls back.";
+    REMOTABLE = new "remotable" Boolean: "Whether calls may come from other processes.";
+    NEW_REQUIRES = new "requires" Names: "The intents of policies that apply.";
+    NEW_POLICY_SETS = new "policySets" Names: "The policy sets that apply.";
+}
 
-/// An interface by its name, as composites of others write it.
-pub static INTERFACE_JAVA: Kind = Kind {
-    name: "interface.java",
-    doc: "The operations that can be called, by the name of the interface.",
-    attributes: INTERFACE_ATTRIBUTES,
-    children: POLICY_CHILDREN,
-};
+kinds! {
+    /// An interface by its name, as composites of others write it.
+    pub INTERFACE_JAVA = "interface.java": "The operations that can be called, by the name of the interface." {
+        INTERFACE; CALLBACK_INTERFACE; REMOTABLE; NEW_REQUIRES; NEW_POLICY_SETS;
+    } POLICY_CHILDREN
 
-/// An interface by its name.
-pub static INTERFACE_RUST: Kind = Kind {
-    name: "interface.rust",
-    doc: "The operations that can be called, by the name of the interface.",
-    attributes: INTERFACE_ATTRIBUTES,
-    children: POLICY_CHILDREN,
-};
+    /// An interface by its name.
+    pub INTERFACE_RUST = "interface.rust": "The operations that can be called, by the name of the interface." {
+        INTERFACE; CALLBACK_INTERFACE; REMOTABLE; NEW_REQUIRES; NEW_POLICY_SETS;
+    } POLICY_CHILDREN
 
-/// An interface of a web service.
-pub static INTERFACE_WSDL: Kind = Kind {
-    name: "interface.wsdl",
-    doc: "The operations that can be called, by the URI of a port type in WSDL.",
-    attributes: INTERFACE_ATTRIBUTES,
-    children: POLICY_CHILDREN,
-};
+    /// An interface of a web service.
+    pub INTERFACE_WSDL = "interface.wsdl": "The operations that can be called, by the URI of a port type in WSDL." {
+        INTERFACE; CALLBACK_INTERFACE; REMOTABLE; NEW_REQUIRES; NEW_POLICY_SETS;
+    } POLICY_CHILDREN
 
-/// A class by its name, as composites of others write it.
-pub static IMPLEMENTATION_JAVA: Kind = Kind {
-    name: "implementation.java",
-    doc: "The class of the component, by a name that is registered; `saoms components` lists them.",
-    attributes: &[required("class", Holds::Class, "The name of the class."), REQUIRES, POLICY_SETS],
-    children: POLICY_CHILDREN,
-};
+    /// A class by its name, as composites of others write it.
+    pub IMPLEMENTATION_JAVA = "implementation.java": "The class of the component, by a name that is registered; `saoms components` lists them." {
+        required "class" Class: "The name of the class.";
+        REQUIRES; POLICY_SETS;
+    } POLICY_CHILDREN
 
-/// A composite as implementation.
-pub static IMPLEMENTATION_COMPOSITE: Kind = Kind {
-    name: "implementation.composite",
-    doc: "Another composite: the component stands for all that is in it.",
-    attributes: &[
-        required(
-            "name",
-            Holds::Composite,
-            "The name of the composite, with a prefix of its target namespace.",
-        ),
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: POLICY_CHILDREN,
-};
+    /// A composite as implementation.
+    pub IMPLEMENTATION_COMPOSITE = "implementation.composite": "Another composite: the component stands for all that is in it." {
+        required "name" Composite: "The name of the composite, with a prefix of its target namespace.";
+        REQUIRES; POLICY_SETS;
+    } POLICY_CHILDREN
 
-/// A class by its name.
-pub static IMPLEMENTATION_RUST: Kind = Kind {
-    name: "implementation.rust",
-    doc: "The class of the component, by a name that is registered; `saoms components` lists them.",
-    attributes: &[
-        required("class", Holds::Class, "The name of the class."),
-        known("library", Holds::Library, "The plugin that has the class."),
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: POLICY_CHILDREN,
-};
+    /// A class by its name.
+    pub IMPLEMENTATION_RUST = "implementation.rust": "The class of the component, by a name that is registered; `saoms components` lists them." {
+        required "class" Class: "The name of the class.";
+        known "library" Library: "The plugin that has the class.";
+        REQUIRES; POLICY_SETS;
+    } POLICY_CHILDREN
 
-/// The binding of SCA itself.
-pub static BINDING_SCA: Kind = Kind {
-    name: "binding.sca",
-    doc: "A connection within the fleet, which is what there is without any binding.",
-    attributes: &[
-        known(
-            "name",
-            Holds::Name,
-            "The binding's name, by which targets choose it: `Component/service/binding`.",
-        ),
-        known("uri", Holds::Uri, "What a reference is bound to, written as a target."),
-        REQUIRES,
-        POLICY_SETS,
-    ],
-    children: &[
-        "operation",
-        "wireFormat.",
-        "operationSelector.",
-        "requires",
-        "policySetAttachment",
-        "documentation",
-        "extensions",
-    ],
-};
+    /// The binding of SCA itself.
+    pub BINDING_SCA = "binding.sca": "A connection within the fleet, which is what there is without any binding." {
+        known "name" Name: "The binding's name, by which targets choose it: `Component/service/binding`.";
+        known "uri" Uri: "What a reference is bound to, written as a target.";
+        REQUIRES; POLICY_SETS;
+    } ["operation", "wireFormat.", "operationSelector.", "requires", "policySetAttachment", "documentation",
+        "extensions"]
+}
 
 /// Kinds of implementations, interfaces and bindings that SCA defines.
 pub const VARIANTS: &[(&str, &[&str])] = &[

@@ -3,6 +3,39 @@
 //! The loader holds files to these tables; the XML schema for editors is made of them, too. Where the schemas of the two versions differ and both
 //! could be meant, what either allows is known.
 
+/// Attributes that several elements have: `NAME = known "name" Holds: "doc";`, with `known`, `required`, `old` or `new`.
+macro_rules! attributes {
+    ($($NAME:ident = $made:ident $name:literal $holds:ident: $doc:literal;)*) => {
+        $(const $NAME: Known = attribute!($made $name $holds $doc);)*
+    };
+}
+
+/// An attribute: a row of a table, or one of [`attributes!`] by its name.
+macro_rules! attribute {
+    ($made:ident $name:literal $holds:ident $doc:expr) => {
+        super::$made($name, super::Holds::$holds, $doc)
+    };
+    ($NAME:ident) => {
+        $NAME
+    };
+}
+
+/// Elements: `NAME = "name": "doc" { attributes } [children]`.
+macro_rules! kinds {
+    ($($(#[$meta:meta])* $vis:vis $NAME:ident = $name:literal: $doc:literal {
+        $($row:ident $($attribute:literal $holds:ident: $about:expr)?;)*
+    } $children:tt)*) => {
+        $($(#[$meta])* $vis static $NAME: super::Kind = super::Kind {
+            name: $name,
+            doc: $doc,
+            attributes: &[$(attribute!($row $($attribute $holds $about)?)),*],
+            children: kinds!(@children $children),
+        };)*
+    };
+    (@children $names:ident) => { $names };
+    (@children $names:tt) => { &$names };
+}
+
 mod contribution;
 mod definitions;
 mod elements;
@@ -13,7 +46,7 @@ mod types;
 pub(super) use contribution::COMPONENT_TYPE;
 pub use contribution::CONTRIBUTION;
 pub(crate) use definitions::DEFINITIONS;
-pub(super) use definitions::{IN_DEFINITIONS, definition};
+pub(super) use definitions::{definition, is_of_definitions};
 pub use elements::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
     COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
@@ -55,6 +88,22 @@ pub struct Known {
     pub only_1_0: bool,
     /// Whether it is of 1.1 alone: understood in 1.0 as well, with a warning.
     pub only_1_1: bool,
+}
+
+const fn known(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+    Known { name, holds, doc, required: false, only_1_0: false, only_1_1: false }
+}
+
+const fn required(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+    Known { required: true, ..known(name, holds, doc) }
+}
+
+const fn old(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+    Known { only_1_0: true, ..known(name, holds, doc) }
+}
+
+const fn new(name: &'static str, holds: Holds, doc: &'static str) -> Known {
+    Known { only_1_1: true, ..known(name, holds, doc) }
 }
 
 /// What the value of an attribute is.

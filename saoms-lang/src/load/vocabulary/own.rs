@@ -1,59 +1,26 @@
 //! What SAOMS adds to SCA in its own namespace.
 
-use super::{Holds, Kind, Known};
+use super::Known;
 
-const fn own(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { name, holds, doc, required: false, only_1_0: false, only_1_1: false }
+attributes! {
+    PATH = known "path" Text: "The path that the component had before `saoms expand` resolved the composites around it.";
+    COUNT = known "count" Number: "How many replicas there are of the component. Its name has to hold an expression such as `${index}` or `${index:03}`; its values and targets can.";
+    FROM = known "from" Number: "The index of the first replica; 1 unless given.";
+    OVERRIDES = known "overrides" Table: "A table (CSV) beside the composite: a line for each replica that differs, a column for each property that does.";
+    IF = known "if" Condition: "It is there only where this is true: a comparison of properties of the composite, as `robots > 10 and site == 'north'`.";
+    ENV = known "env" Variable: "The environment variable that the value is taken from, where it is set and nothing else gives one.";
 }
-
-const fn must(name: &'static str, holds: Holds, doc: &'static str) -> Known {
-    Known { required: true, ..own(name, holds, doc) }
-}
-
-const IF: Known = own(
-    "if",
-    Holds::Condition,
-    "It is there only where this is true: a comparison of properties of the composite, as `robots > 10 and site == 'north'`.",
-);
 
 /// The attributes that SAOMS adds in its own namespace, each with the element that has it; `composite/property` is that of a composite.
 pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
-    (
-        "component",
-        own(
-            "path",
-            Holds::Text,
-            "The path that the component had before `saoms expand` resolved the composites around it.",
-        ),
-    ),
-    (
-        "component",
-        own(
-            "count",
-            Holds::Number,
-            "How many replicas there are of the component. Its name has to hold an expression such as `${index}` or `${index:03}`; its values and targets can.",
-        ),
-    ),
-    ("component", own("from", Holds::Number, "The index of the first replica; 1 unless given.")),
-    (
-        "component",
-        own(
-            "overrides",
-            Holds::Table,
-            "A table (CSV) beside the composite: a line for each replica that differs, a column for each property that does.",
-        ),
-    ),
+    ("component", PATH),
+    ("component", COUNT),
+    ("component", FROM),
+    ("component", OVERRIDES),
     ("component", IF),
     ("include", IF),
     ("wire", IF),
-    (
-        "composite/property",
-        own(
-            "env",
-            Holds::Variable,
-            "The environment variable that the value is taken from, where it is set and nothing else gives one.",
-        ),
-    ),
+    ("composite/property", ENV),
 ];
 
 /// The elements that SAOMS adds in its own namespace.
@@ -71,14 +38,11 @@ pub(in crate::load) fn own_parents(name: &str) -> &'static [&'static str] {
     }
 }
 
-/// What a composite says about how bad a diagnostic is.
-pub static SEVERITY: Kind = Kind {
-    name: "severity",
-    doc: "Sets how bad the diagnostics of one code are: in a composite for all of it, in a component, service, reference, wire or include for that.",
-    attributes: &[
-        must("code", Holds::Code, "The code of the diagnostics, such as `S4001`."),
-        must("level", Holds::Level, "What they become: `allow`, `note`, `warning` or `error`."),
-        must("reason", Holds::Text, "Why; it stands in the output for machines."),
-    ],
-    children: &["documentation"],
-};
+kinds! {
+    /// What a composite says about how bad a diagnostic is.
+    pub SEVERITY = "severity": "Sets how bad the diagnostics of one code are: in a composite for all of it, in a component, service, reference, wire or include for that." {
+        required "code" Code: "The code of the diagnostics, such as `S4001`.";
+        required "level" Level: "What they become: `allow`, `note`, `warning` or `error`.";
+        required "reason" Text: "Why; it stands in the output for machines.";
+    } ["documentation"]
+}

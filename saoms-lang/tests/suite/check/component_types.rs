@@ -234,5 +234,6 @@ fn a_file_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
           fix: replace `servce` with `service` [Run.componentType:3:2-8 "service"]
         Run.componentType:4:2-11 error S1008: `reference` needs the attribute `name`
           help: add `name="..."` to it
-    "#]].assert_eq(&found(inside, &[("Run.componentType", damaged)], true));
+    "#]]
+    .assert_eq(&found(inside, &[("Run.componentType", damaged)], true));
 }

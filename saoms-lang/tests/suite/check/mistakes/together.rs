@@ -422,25 +422,30 @@ fn a_damaged_component_hides_unknown_ones_only_where_its_name_is_unreadable() {
           help: its services are `position`
         3:99-106 error S2011: there is no component `Nowhere`
           help: the components are `G`
-    "#]].assert_eq(&with_tag("<component name=\"G\"><servce name=x/>"));
+    "#]]
+    .assert_eq(&with_tag("<component name=\"G\"><servce name=x/>"));
     expect![[r#"
         2:21-24 error S0112: the prefix `odd` is bound to no namespace
           help: declare it, as `xmlns:odd="..."`, in this element or in one around it
         3:99-106 error S2011: there is no component `Nowhere`
           help: the components are `G`
-    "#]].assert_eq(&with_tag("<component name=\"G\" odd:is=\"x\">"));
+    "#]]
+    .assert_eq(&with_tag("<component name=\"G\" odd:is=\"x\">"));
     // It may be the one that is meant.
     expect![[r#"
         2:22-23 error S0105: white space is missing between two attributes
           fix: insert a blank [2:22-22 " "]
-    "#]].assert_eq(&with_tag("<component name=\"Now\"here\">"));
+    "#]]
+    .assert_eq(&with_tag("<component name=\"Now\"here\">"));
     expect![[r#"
         2:21-25 error S0106: the attribute `name` is given twice
           2:12-16 first given here
           fix: remove the second `name` [2:20-35 ""]
-    "#]].assert_eq(&with_tag("<component name=\"G\" name=\"Nowhere\">"));
+    "#]]
+    .assert_eq(&with_tag("<component name=\"G\" name=\"Nowhere\">"));
     expect![[r#"
         2:12-16 error S0105: the attribute `name` has no value
           help: write `name="..."`
-    "#]].assert_eq(&with_tag("<component name>"));
+    "#]]
+    .assert_eq(&with_tag("<component name>"));
 }
