@@ -15,7 +15,7 @@ use saoms_api::{
     Publisher, Record, Subscription, Time, Topic, record,
 };
 use saoms_core::schedule::{Fleet, Settings};
-use saoms_lang::assembly::{Assembly, ComponentSpec, TaskSettings};
+use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties};
 use saoms_lang::registry::Registry;
 
 /// Position of a robot: the most frequent message of the airport's robots.
@@ -242,7 +242,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
             path: format!("Robot{number}"),
             class: Arc::clone(class),
             values: values.map(|(name, value)| (name.into(), PropertyValue::from(value.as_str()))).to_vec(),
-            task: Some(TaskSettings::from_values(&task, Vec::new())?),
+            task: Some(TaskProperties::from_values(&task)?),
             library: None,
             references: Vec::new(),
             loops: std::sync::Arc::default(),

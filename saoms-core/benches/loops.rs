@@ -14,7 +14,7 @@ use saoms_api::{
     Record, Time, record,
 };
 use saoms_core::schedule::{Fleet, Settings};
-use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskSettings};
+use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskProperties};
 use saoms_lang::registry::Registry;
 
 #[derive(Debug, Default, Entries)]
@@ -213,7 +213,7 @@ fn start(changes: Option<&str>) -> Result<Fleet, Box<dyn std::error::Error>> {
         path: "Robot".to_owned(),
         class: Arc::clone(class),
         values: Vec::new(),
-        task: Some(TaskSettings::from_values(&task, Vec::new())?),
+        task: Some(TaskProperties::from_values(&task)?),
         library: None,
         references: Vec::new(),
         loops: changes.map(of).into_iter().collect(),

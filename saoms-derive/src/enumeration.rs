@@ -131,6 +131,12 @@ pub(crate) fn property_field(input: &DeriveInput) -> Result<TokenStream> {
                     _ => ::core::option::Option::None,
                 }
             }
+
+            fn to_value(&self) -> ::core::option::Option<::saoms_api::host::PropertyValue> {
+                ::core::option::Option::Some(match self {
+                    #(#ident::#variants => ::saoms_api::host::PropertyValue::from(#allowed),)*
+                })
+            }
         }
     })
 }

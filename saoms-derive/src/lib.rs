@@ -40,6 +40,12 @@ pub fn properties(input: TokenStream) -> TokenStream {
     finish(properties::properties(&parse_macro_input!(input as DeriveInput)))
 }
 
+/// See `saoms_api::host::WriteProperties`.
+#[proc_macro_derive(WriteProperties, attributes(property))]
+pub fn write_properties(input: TokenStream) -> TokenStream {
+    finish(properties::write_properties(&parse_macro_input!(input as DeriveInput)))
+}
+
 /// See `saoms_api::PropertyField`.
 #[proc_macro_derive(PropertyField, attributes(property))]
 pub fn property_field(input: TokenStream) -> TokenStream {

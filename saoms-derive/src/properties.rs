@@ -38,26 +38,7 @@ struct Property<'a> {
 
 /// `#[derive(Properties)]`.
 pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
-    struct_fields(input, "a property struct")?;
-    let mut members: Vec<Member<'_>> = Vec::new();
-    let mut fields = HashMap::new();
-    if let Data::Struct(data) = &input.data
-        && let Fields::Named(named) = &data.fields
-    {
-        for field in &named.named {
-            let Some(ident) = &field.ident else { continue };
-            if is_flat(&field.attrs)? {
-                members.push(Member::Flat(ident, &field.ty));
-                continue;
-            }
-            let property = Property::of(ident, &field.ty, &field.attrs)?;
-            if let Some(other) = fields.insert(property.name.clone(), ident) {
-                let message = format!("field `{other}` is the property `{}`, too", property.name);
-                return Err(Error::new_spanned(ident, message));
-            }
-            members.push(Member::Own(Box::new(property)));
-        }
-    }
+    let members = members(input)?;
     let declaration = declaration(&members);
     let names = members.iter().map(Member::names);
     let reads = members.iter().map(Member::read);
@@ -114,6 +95,49 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
 
         #(#checks)*
     })
+}
+
+/// `#[derive(WriteProperties)]`.
+pub(crate) fn write_properties(input: &DeriveInput) -> Result<TokenStream> {
+    let (ident, members) = (&input.ident, members(input)?);
+    let writes = members.iter().map(Member::write);
+    Ok(quote! {
+        #[automatically_derived]
+        impl ::saoms_api::host::WriteProperties for #ident {
+            fn to_values(
+                &self,
+            ) -> ::std::vec::Vec<(::saoms_api::host::SmolStr, ::saoms_api::host::PropertyValue)> {
+                let mut values = ::std::vec::Vec::new();
+                #(#writes)*
+                values
+            }
+        }
+    })
+}
+
+/// The fields of a property struct.
+fn members(input: &DeriveInput) -> Result<Vec<Member<'_>>> {
+    struct_fields(input, "a property struct")?;
+    let mut members: Vec<Member<'_>> = Vec::new();
+    let mut fields = HashMap::new();
+    if let Data::Struct(data) = &input.data
+        && let Fields::Named(named) = &data.fields
+    {
+        for field in &named.named {
+            let Some(ident) = &field.ident else { continue };
+            if is_flat(&field.attrs)? {
+                members.push(Member::Flat(ident, &field.ty));
+                continue;
+            }
+            let property = Property::of(ident, &field.ty, &field.attrs)?;
+            if let Some(other) = fields.insert(property.name.clone(), ident) {
+                let message = format!("field `{other}` is the property `{}`, too", property.name);
+                return Err(Error::new_spanned(ident, message));
+            }
+            members.push(Member::Own(Box::new(property)));
+        }
+    }
+    Ok(members)
 }
 
 /// The JSON array.
@@ -187,6 +211,28 @@ impl Member<'_> {
             Member::Flat(field, of) => quote! {
                 #field: ::saoms_api::generated::flat::<#of>(given)?
             },
+        }
+    }
+
+    /// The statement of `to_values` for the field.
+    fn write(&self) -> TokenStream {
+        match self {
+            Member::Own(property) => {
+                let (field, of, name) = (property.field, property.of, &property.name);
+                quote_spanned! {field.span()=>
+                    const {
+                        let kind = <#of as ::saoms_api::PropertyField>::TYPE.rule.kind;
+                        let is_complex =
+                            ::core::matches!(kind, ::saoms_api::host::declaration::PropertyKind::Complex);
+                        ::core::assert!(!is_complex, "a complex property cannot be written");
+                    }
+                    let value = ::saoms_api::PropertyField::to_value(&self.#field);
+                    values.extend(value.map(|value| (#name.into(), value)));
+                }
+            }
+            Member::Flat(field, _) => {
+                quote!(values.extend(::saoms_api::host::WriteProperties::to_values(&self.#field));)
+            }
         }
     }
 }

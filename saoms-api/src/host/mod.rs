@@ -16,13 +16,14 @@ pub use crate::component::DynComponent;
 pub use crate::field::Arguments;
 pub use crate::message::SharedMessage;
 pub use crate::nearest::{nearest_equal, nearest_few};
-pub use crate::property::PropertyValue;
+pub use crate::property::{PropertyValue, WriteProperties};
 pub use crate::registration::Registration;
 pub use crate::service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
 pub use crate::time::{format_duration, parse_duration};
 pub use crate::topic::{TopicDeclaration, TopicKind};
 
 /// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
+pub use saoms_derive::WriteProperties;
 pub use smol_str::SmolStr;
 
 use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};

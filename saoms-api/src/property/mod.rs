@@ -123,6 +123,28 @@ pub trait Properties: Sized {
     fn from_values(values: &[(SmolStr, PropertyValue)]) -> Result<Self, Failure>;
 }
 
+/// Properties that can be written as a composite gives them. Derive it beside [`Properties`], where no field is complex.
+///
+/// ```
+/// use saoms_api::Properties;
+/// use saoms_api::host::WriteProperties;
+///
+/// #[derive(Properties, WriteProperties)]
+/// struct GuardProperties {
+///     number: u8,
+///     #[property(default = "500ms")]
+///     wait_time: std::time::Duration,
+///     title: Option<String>,
+/// }
+///
+/// let guard = GuardProperties::from_values(&[("number".into(), "+7".into())]).unwrap();
+/// assert_eq!(guard.to_values(), [("number".into(), "7".into()), ("waitTime".into(), "500ms".into())]);
+/// ```
+pub trait WriteProperties: Properties {
+    /// The values in the order of the declaration, defaults included; without those that are absent.
+    fn to_values(&self) -> Vec<(SmolStr, PropertyValue)>;
+}
+
 /// No properties.
 impl Properties for () {
     const DECLARATION: &'static str = "[]";

@@ -37,6 +37,11 @@ pub trait PropertyField: Sized {
     fn absent() -> Option<Self> {
         None
     }
+
+    /// The value as a composite gives it; `None` where it gives none, and for a type that is read alone.
+    fn to_value(&self) -> Option<PropertyValue> {
+        None
+    }
 }
 
 /// The part of a property's declaration that its type determines.

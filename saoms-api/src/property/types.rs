@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use super::{PropertyField, PropertyShape};
 use crate::host::declaration::{PropertyKind, Rule, Scalar};
-use crate::host::{PropertyValue, SmolStr};
+use crate::host::{PropertyValue, SmolStr, format_duration};
 
 /// Reads a scalar through its rule.
 fn scalar(value: &PropertyValue, rule: &Rule<'_>) -> Result<Scalar, String> {
@@ -15,7 +15,8 @@ fn scalar(value: &PropertyValue, rule: &Rule<'_>) -> Result<Scalar, String> {
 }
 
 macro_rules! scalars {
-    ($($type:ty, $rule:expr, $variant:ident($value:ident) => $result:expr $(, $text:ident => $from_text:expr)?;)*) => {
+    ($($type:ty, $rule:expr, $variant:ident($value:ident) => $result:expr $(, $text:ident => $from_text:expr)?
+        ; $own:ident => $written:expr;)*) => {
         $(impl PropertyField for $type {
             const TYPE: PropertyShape = PropertyShape::scalar($rule);
 
@@ -37,27 +38,32 @@ macro_rules! scalars {
             fn from_text($text: &SmolStr) -> Option<Self> {
                 Some($from_text)
             })?
+
+            fn to_value(&self) -> Option<PropertyValue> {
+                let $own = self;
+                Some(PropertyValue::Text($written.into()))
+            }
         })*
     };
 }
 
 scalars! {
-    bool, Rule::of(PropertyKind::Boolean), Boolean(value) => Ok(value);
-    String, Rule::of(PropertyKind::String), Text(value) => Ok(value), text => text.to_string();
-    SmolStr, Rule::of(PropertyKind::String), Text(value) => Ok(value.into()), text => text.clone();
-    Duration, Rule::of(PropertyKind::Duration), Duration(value) => Ok(value);
-    f64, Rule::of(PropertyKind::Float), Float(value) => Ok(value);
+    bool, Rule::of(PropertyKind::Boolean), Boolean(value) => Ok(value); own => own.to_string();
+    String, Rule::of(PropertyKind::String), Text(value) => Ok(value), text => text.to_string(); own => own.as_str();
+    SmolStr, Rule::of(PropertyKind::String), Text(value) => Ok(value.into()), text => text.clone(); own => own.as_str();
+    Duration, Rule::of(PropertyKind::Duration), Duration(value) => Ok(value); own => format_duration(*own);
+    f64, Rule::of(PropertyKind::Float), Float(value) => Ok(value); own => own.to_string();
     f32, Rule::of(PropertyKind::Float), Float(value) => match value as f32 {
         narrow if narrow.is_finite() => Ok(narrow),
         _ => Err(format!("`{value}` is out of range: expected at most {}", f32::MAX)),
-    };
+    }; own => own.to_string();
 }
 
 macro_rules! integers {
     ($($type:ty, $min:literal, $max:literal;)*) => {
         scalars! { $(
             $type, Rule { min: Some($min), max: Some($max), ..Rule::of(PropertyKind::Integer) },
-                Integer(value) => <$type>::try_from(value).map_err(|error| error.to_string());
+                Integer(value) => <$type>::try_from(value).map_err(|error| error.to_string()); own => own.to_string();
         )* }
     };
 }
@@ -98,6 +104,10 @@ impl<T: PropertyField> PropertyField for Option<T> {
     fn absent() -> Option<Self> {
         Some(None)
     }
+
+    fn to_value(&self) -> Option<PropertyValue> {
+        self.as_ref()?.to_value()
+    }
 }
 
 impl<T: PropertyField> PropertyField for Vec<T> {
@@ -112,5 +122,9 @@ impl<T: PropertyField> PropertyField for Vec<T> {
 
     fn absent() -> Option<Self> {
         Some(Vec::new())
+    }
+
+    fn to_value(&self) -> Option<PropertyValue> {
+        Some(PropertyValue::Many(self.iter().filter_map(T::to_value).collect()))
     }
 }

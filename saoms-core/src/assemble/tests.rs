@@ -5,7 +5,7 @@ use saoms_api::host::{PropertyValue, Registration};
 use saoms_api::{Class, Component, Failure, Properties};
 
 use super::{ChangePlan, Difference, members};
-use saoms_lang::assembly::{Assembly, ComponentSpec, TaskSettings, Wire, WireTarget};
+use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties, Wire, WireTarget};
 use saoms_lang::registry::Registry;
 
 #[derive(Properties)]
@@ -50,7 +50,7 @@ fn assembly(text: &str) -> Assembly {
             task: class.declaration().is_periodic().then(|| {
                 let values = [("ID", words[0]), ("period", "10")];
                 let values = values.map(|(name, value)| (name.into(), PropertyValue::from(value)));
-                TaskSettings::from_values(&values, Vec::new()).unwrap()
+                TaskProperties::from_values(&values).unwrap()
             }),
             class,
             library: None,

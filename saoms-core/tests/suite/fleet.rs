@@ -6,11 +6,14 @@ use std::fmt::Write;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use saoms_api::Properties;
 use saoms_api::host::{PropertyValue, Registration, parse_duration};
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use saoms_core::report::{ComponentReport, RunReport};
 use saoms_core::schedule::{Fleet, Settings, StartError};
-use saoms_lang::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings, Wire, WireTarget};
+use saoms_lang::assembly::{
+    Assembly, ComponentSpec, Loss, Overrun, Restart, TaskProperties, Wire, WireTarget,
+};
 use saoms_lang::registry::Registry;
 
 use crate::actor::{Actor, Callee};
@@ -36,23 +39,9 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
     let (path, rest) = line.split_once(' ').unwrap();
     let (class, rest) = rest.split_once(' ').unwrap_or((rest, ""));
     let class = Arc::clone(registry.get(class).unwrap());
-    let mut task = TaskSettings {
-        id: path.to_owned(),
-        period: Duration::from_millis(100),
-        delay: Duration::ZERO,
-        run_on_startup: true,
-        may_interrupt_if_running: true,
-        use_jms: true,
-        url: None,
-        user: None,
-        password: None,
-        topic_rename: Vec::new(),
-        overrun: Overrun::Skip,
-        restart: Restart::Never,
-        deadline: None,
-        queue: 16,
-        loss: Loss::Fail,
-    };
+    let task =
+        [("ID", path), ("period", "100ms"), ("queue", "16")].map(|(name, value)| (name.into(), value.into()));
+    let mut task = TaskProperties::from_values(&task).unwrap();
     let wire = |reference: &str, interface: &str| Wire {
         reference: reference.to_owned(),
         interface: interface.to_owned(),
@@ -84,12 +73,13 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
             }
             "restart" => {
                 let (backoff, limit) = value.split_once('/').unwrap();
-                let backoff = parse_duration(backoff).unwrap();
-                task.restart = Restart::OnFailure { backoff, limit: limit.parse().unwrap() };
+                task.restart = Restart::OnFailure;
+                task.restart_backoff = parse_duration(backoff).unwrap();
+                task.restart_limit = limit.parse().unwrap();
             }
             "rename" => {
                 let (old, new) = value.split_once('/').unwrap();
-                task.topic_rename.push((old.to_owned(), new.to_owned()));
+                task.topic_rename.0.push((old.to_owned(), new.to_owned()));
             }
             "peer" => references[0].targets = target("echo"),
             "task" => references[1].targets = target("TaskInterface"),

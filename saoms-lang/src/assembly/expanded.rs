@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::collections::HashSet;
 
-use saoms_api::host::{PropertyValue, format_duration};
+use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-use super::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskSettings};
+use super::{Assembly, ComponentSpec, TaskProperties};
 use crate::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
 use crate::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
 use crate::syntax::NewElement;
@@ -142,14 +142,10 @@ fn implementation(component: &ComponentSpec) -> NewElement {
 fn valued(component: &ComponentSpec) -> Vec<NewElement> {
     let presets = component.class.presets();
     let values = component.values.iter().filter(|value| !presets.contains(value));
-    let settings = component.task.iter().flat_map(task);
-    let settings =
-        settings.map(|(name, value)| (name, PropertyValue::Text(value.into()))).filter(|(name, value)| {
-            let is_known = component.values.iter().any(|(known, _)| known == name);
-            !is_known && !presets.iter().any(|(preset, given)| preset == name && given == value)
-        });
-    let values = values.map(|(name, value)| property(name, value));
-    values.chain(settings.map(|(name, value)| property(name, &value))).collect()
+    let is_own = |name: &SmolStr| component.values.iter().any(|(own, _)| own == name);
+    let task = component.task.iter().flat_map(TaskProperties::stated).filter(|(name, _)| !is_own(name));
+    let task: Vec<_> = task.collect();
+    values.chain(&task).map(|(name, value)| property(name, value)).collect()
 }
 
 /// What is said about the loops of a component of a class.
@@ -251,39 +247,4 @@ fn loops(component: &ComponentSpec) -> Vec<Said<'_>> {
 /// What a loop is called unless it is given a name: what follows the last dot of its class.
 fn simple(class: &str) -> &str {
     class.rsplit('.').next().unwrap_or(class)
-}
-
-/// The task properties that are not as they are by themselves.
-fn task(task: &TaskSettings) -> Vec<(&'static str, String)> {
-    let mut all = vec![("ID", task.id.clone()), ("period", format_duration(task.period))];
-    let mut add = |name, is_usual: bool, value: String| {
-        if !is_usual {
-            all.push((name, value));
-        }
-    };
-    add("delay", task.delay.is_zero(), format_duration(task.delay));
-    add("runOnStartup", task.run_on_startup, task.run_on_startup.to_string());
-    add("mayInterruptIfRunning", task.may_interrupt_if_running, task.may_interrupt_if_running.to_string());
-    add("useJMS", task.use_jms, task.use_jms.to_string());
-    for (name, text) in [("url", &task.url), ("user", &task.user), ("password", &task.password)] {
-        add(name, text.is_none(), text.clone().unwrap_or_default());
-    }
-    let renames: Vec<String> = task.topic_rename.iter().map(|(old, new)| format!("{old},{new}")).collect();
-    add("topicRename", renames.is_empty(), renames.join("::"));
-    match task.overrun {
-        Overrun::Skip => {}
-        Overrun::CatchUp => add("overrun", false, "catchUp".to_owned()),
-        Overrun::Stop => add("overrun", false, "stop".to_owned()),
-    }
-    if let Restart::OnFailure { backoff, limit } = task.restart {
-        add("restart", false, "onFailure".to_owned());
-        add("restartBackoff", false, format_duration(backoff));
-        add("restartLimit", false, limit.to_string());
-    }
-    if let Some(deadline) = task.deadline {
-        add("deadline", false, format_duration(deadline));
-    }
-    add("queue", task.queue == 1024, task.queue.to_string());
-    add("loss", task.loss == Loss::Fail, "accept".to_owned());
-    all
 }

@@ -4,17 +4,18 @@
 
 mod expanded;
 mod task;
+pub(crate) mod topic_rename;
 mod traffic;
 
 use std::sync::Arc;
-use std::time::Duration;
 
-use saoms_api::PropertyField;
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 pub use expanded::expanded;
-pub use task::{RestartPolicy, TaskProperties};
+pub(crate) use task::OF_RESTART;
+pub use task::{Loss, Overrun, Restart, TaskProperties};
+pub use topic_rename::TopicRenames;
 pub use traffic::{Pace, TopicEnd, Traffic, TrafficTopic};
 
 use crate::registry::{RegisteredClass, RegisteredLoop};
@@ -39,7 +40,7 @@ pub struct ComponentSpec {
     /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: Vec<(SmolStr, PropertyValue)>,
     /// How a periodic component runs; `None` for a passive one.
-    pub task: Option<TaskSettings>,
+    pub task: Option<TaskProperties>,
     /// The class's references in the order of its declaration, with the services each leads to.
     pub references: Vec<Wire>,
     /// Its loops in their order; components share those that their class gives them.
@@ -75,73 +76,4 @@ pub struct WireTarget {
     pub component: usize,
     /// The service's name.
     pub service: String,
-}
-
-/// How a periodic component runs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TaskSettings {
-    /// The task's name for people, `ID` in the composite.
-    pub id: String,
-    /// From one due execution to the next.
-    pub period: Duration,
-    /// From the start to the first due execution.
-    pub delay: Duration,
-    /// Whether it is scheduled when the fleet starts, or waits for a call.
-    pub run_on_startup: bool,
-    /// Whether unscheduling asks a running execution to end early.
-    pub may_interrupt_if_running: bool,
-    /// Whether it may publish and subscribe.
-    pub use_jms: bool,
-    /// The message broker, `host:port`; `None` is inside the process.
-    pub url: Option<String>,
-    /// The account at the broker.
-    pub user: Option<String>,
-    /// Its password.
-    pub password: Option<String>,
-    /// Topic names to replace, as (declared name, name on the bus).
-    pub topic_rename: Vec<(String, String)>,
-    /// What happens to executions that could not start in time.
-    pub overrun: Overrun,
-    /// What happens after a failure.
-    pub restart: Restart,
-    /// How long after its due time an execution has to be finished.
-    pub deadline: Option<Duration>,
-    /// How many messages wait in each of its event queues.
-    pub queue: usize,
-    /// What an overflow of such a queue means for the run.
-    pub loss: Loss,
-}
-
-/// What happens to executions that could not start before the next one was due.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
-pub enum Overrun {
-    /// They are left out and counted as missed; the grid of due times stays.
-    Skip,
-    /// They follow one after the other without a pause.
-    CatchUp,
-    /// The component is stopped and the run fails.
-    Stop,
-}
-
-/// What happens after a failure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Restart {
-    /// The component stays stopped and the run fails.
-    Never,
-    /// A new one takes its place.
-    OnFailure {
-        /// The pause before the first restart; it doubles with each further one.
-        backoff: Duration,
-        /// How many restarts there may be.
-        limit: u32,
-    },
-}
-
-/// What an overflow of an event queue means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
-pub enum Loss {
-    /// The run fails; it goes on to its end first.
-    Fail,
-    /// It is counted, nothing more.
-    Accept,
 }

@@ -3,17 +3,17 @@
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use saoms_api::host::PropertyValue;
+use saoms_api::host::{PropertyValue, WriteProperties};
 use saoms_api::{Failure, Properties, PropertyField};
 use smol_str::SmolStr;
 
-use super::{Loss, Overrun, Restart, TaskSettings};
+use super::topic_rename::TopicRenames;
 use crate::registry::PropertyDeclaration;
 
-/// The task properties.
+/// The task properties of a component: how it runs. All others take them from here.
 ///
 /// The original required all but the last four; here `ID` and `period` are required and the rest have defaults.
-#[derive(Clone, Debug, PartialEq, Properties)]
+#[derive(Clone, Debug, PartialEq, Properties, WriteProperties)]
 pub struct TaskProperties {
     /// The name of the task, for people.
     #[property(name = "ID", required_text)]
@@ -40,13 +40,13 @@ pub struct TaskProperties {
     /// The account's password.
     pub password: Option<String>,
     /// Topics to rename: `OLD,new::OLD2,new2`.
-    pub topic_rename: Option<String>,
+    pub topic_rename: TopicRenames,
     /// What happens to executions that could not start before the next one was due.
     #[property(default = "skip")]
     pub overrun: Overrun,
     /// What happens after a failure.
     #[property(default = "never")]
-    pub restart: RestartPolicy,
+    pub restart: Restart,
     /// The pause before the first restart; it doubles with each further one.
     #[property(default = "100ms", range = "1ms"..="1h")]
     pub restart_backoff: Duration,
@@ -58,20 +58,43 @@ pub struct TaskProperties {
     pub deadline: Option<Duration>,
     /// How many messages may wait in each queue of an event topic.
     #[property(default = 1024, range = 1..=1000000, unit = "messages")]
-    pub queue: u32,
+    pub queue: usize,
     /// What an overflow of such a queue means for the run.
     #[property(default = "fail")]
     pub loss: Loss,
 }
 
-/// What happens after a failure, as the property `restart` says it.
+/// What happens to executions that could not start before the next one was due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
-pub enum RestartPolicy {
+pub enum Overrun {
+    /// They are left out and counted as missed; the grid of due times stays.
+    Skip,
+    /// They follow one after the other without a pause.
+    CatchUp,
+    /// The component is stopped and the run fails.
+    Stop,
+}
+
+/// What happens after a failure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
+pub enum Restart {
     /// The component stays stopped and the run fails.
     Never,
     /// A new one takes its place.
     OnFailure,
 }
+
+/// What an overflow of an event queue means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
+pub enum Loss {
+    /// The run fails; it goes on to its end first.
+    Fail,
+    /// It is counted, nothing more.
+    Accept,
+}
+
+/// The properties that say more about `restart`: without it they have no effect, and with it `expand` writes them.
+pub(crate) const OF_RESTART: [&str; 2] = ["restartBackoff", "restartLimit"];
 
 #[expect(
     clippy::expect_used,
@@ -88,40 +111,75 @@ impl TaskProperties {
     pub fn declarations() -> &'static [PropertyDeclaration] {
         &DECLARATIONS
     }
-}
 
-impl TaskSettings {
-    /// The settings that these values of task properties make, `topic_rename` read into pairs.
+    /// Reads the values that a composite gives. Those that have no effect count as not given: empty texts, and what only a restart needs.
     ///
     /// # Errors
     /// A value is missing or wrong.
-    pub fn from_values(
-        values: &[(SmolStr, PropertyValue)],
-        topic_rename: Vec<(String, String)>,
-    ) -> Result<Self, Failure> {
-        let task = TaskProperties::from_values(values)?;
-        let given = |text: Option<String>| text.filter(|text| !text.is_empty());
-        Ok(Self {
-            id: task.id,
-            period: task.period,
-            delay: task.delay,
-            run_on_startup: task.run_on_startup,
-            may_interrupt_if_running: task.may_interrupt_if_running,
-            use_jms: task.use_jms,
-            url: given(task.url),
-            user: given(task.user),
-            password: given(task.password),
-            topic_rename,
-            overrun: task.overrun,
-            restart: match task.restart {
-                RestartPolicy::Never => Restart::Never,
-                RestartPolicy::OnFailure => {
-                    Restart::OnFailure { backoff: task.restart_backoff, limit: task.restart_limit }
-                }
-            },
-            deadline: task.deadline,
-            queue: task.queue as usize,
-            loss: task.loss,
-        })
+    pub fn read(mut values: Vec<(SmolStr, PropertyValue)>) -> Result<Self, Failure> {
+        let is_of_restart = |name: &str| OF_RESTART.contains(&name);
+        values.retain(|(_, value)| value.as_text().is_none_or(|text| !text.is_empty()));
+        let task = Self::from_values(&values)?;
+        if task.restart == Restart::OnFailure || !values.iter().any(|(name, _)| is_of_restart(name)) {
+            return Ok(task);
+        }
+        values.retain(|(name, _)| !is_of_restart(name));
+        Self::from_values(&values)
+    }
+
+    /// How many restarts there may be in a run.
+    pub fn restarts(&self) -> u32 {
+        match self.restart {
+            Restart::Never => 0,
+            Restart::OnFailure => self.restart_limit,
+        }
+    }
+
+    /// The values that a composite has to give, in order: the required ones, and those that are not the default.
+    pub fn stated(&self) -> Vec<(SmolStr, PropertyValue)> {
+        let is_required = |name: &str| DECLARATIONS.iter().any(|one| one.required && one.name == name);
+        let mut all = self.to_values();
+        let required: Vec<_> = all.iter().filter(|(name, _)| is_required(name)).cloned().collect();
+        let usual = Self::from_values(&required).map_or_else(|_| Vec::new(), |usual| usual.to_values());
+        all.retain(|one| {
+            let (name, is_usual) = (one.0.as_str(), usual.contains(one));
+            !is_usual || is_required(name) || OF_RESTART.contains(&name) && self.restart == Restart::OnFailure
+        });
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stated(values: &[(&str, &str)]) -> String {
+        let values = values.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect();
+        let stated = TaskProperties::read(values).unwrap().stated();
+        let shown = stated.iter().map(|(name, value)| format!("{name}={}", value.as_text().unwrap()));
+        shown.collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn a_composite_states_what_is_required_and_what_is_not_the_default() {
+        let task = |more: &[(&str, &str)]| stated(&[&[("ID", "a"), ("period", "1000")], more].concat());
+        assert_eq!(task(&[]), "ID=a period=1s");
+        assert_eq!(
+            task(&[("delay", "0"), ("useJMS", "true"), ("url", ""), ("queue", "01024")]),
+            "ID=a period=1s"
+        );
+        let given = [
+            ("loss", "accept"),
+            ("topicRename", " A , b ::C,d"),
+            ("overrun", "catchUp"),
+            ("deadline", "0.5s"),
+        ];
+        assert_eq!(
+            task(&given),
+            "ID=a period=1s topicRename=A,b::C,d overrun=catchUp deadline=500ms loss=accept"
+        );
+        assert_eq!(task(&[("restartLimit", "7")]), "ID=a period=1s");
+        let restart = task(&[("restartLimit", "7"), ("restart", "onFailure")]);
+        assert_eq!(restart, "ID=a period=1s restart=onFailure restartBackoff=100ms restartLimit=7");
     }
 }

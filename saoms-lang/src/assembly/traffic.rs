@@ -76,13 +76,11 @@ struct Known<'a> {
 impl<'a> Known<'a> {
     /// The topic that a component uses under the name that it gives it.
     fn topic(&mut self, declared: &'a ClassTopic, spec: &'a ComponentSpec) -> &mut TrafficTopic {
-        let renames = spec.task.as_ref().map_or(&[][..], |task| &task.topic_rename);
-        let renamed = renames.iter().find(|(old, _)| *old == declared.name);
-        let name = renamed.map_or(&declared.name, |(_, new)| new);
+        let name = spec.task.as_ref().map_or(&*declared.name, |task| task.topic_rename.name(&declared.name));
         let place = *self.places.entry(name).or_insert(self.topics.len());
         if place == self.topics.len() {
             self.topics.push(TrafficTopic {
-                name: name.clone(),
+                name: name.to_owned(),
                 kind: declared.kind,
                 message: declared.message.clone(),
                 is_optional: true,

@@ -3,7 +3,7 @@
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-use crate::assembly::TaskSettings;
+use crate::assembly::TaskProperties;
 use crate::check::fleet::Member;
 use crate::check::loops;
 use crate::check::properties::given_values::{PropertyValues, ValueOrigin};
@@ -23,7 +23,7 @@ pub(crate) struct ComponentCheck<'a> {
     /// The origins of those values that are not one text in the composite.
     pub(crate) origins: Vec<ValueOrigin>,
     /// Its task; `None` for a passive component.
-    pub(crate) task: Option<TaskSettings>,
+    pub(crate) task: Option<TaskProperties>,
     /// The new names of its topics, with their places.
     pub(crate) renamed: Vec<(String, Location)>,
     /// The place of its `queue`.

@@ -4,6 +4,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
+use crate::assembly::TopicRenames;
 use crate::check::fleet::classes;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
@@ -166,7 +167,7 @@ fn topics<'a>(
         let is_periodic = class.class.declaration().is_periodic();
         let renames = match is_periodic {
             true => tasks::check(member.component, class, &checks[at].given, report).renames,
-            false => Vec::new(),
+            false => TopicRenames::default(),
         };
         let list = lists.of((index, class), renames);
         let used = all.entry(within(&ways[member.scope], place(member.component.origin))).or_default();
@@ -177,20 +178,17 @@ fn topics<'a>(
     all.into_iter().map(|(way, used)| (way, used.joined())).collect()
 }
 
-/// The declared and the new names of topics.
-type Renames = Vec<(String, String)>;
-
 /// Lists of topics, each made once.
 #[derive(Default)]
 struct Lists {
     /// By the place of the class and what is renamed.
-    known: HashMap<(usize, Renames), Rc<[TopicUse]>>,
+    known: HashMap<(usize, TopicRenames), Rc<[TopicUse]>>,
     declared: HashMap<*const ClassTopic, Rc<ClassTopic>>,
 }
 
 impl Lists {
     /// The topics of a component of this class.
-    fn of(&mut self, (index, class): (usize, &ClassIndex<'_>), renames: Renames) -> Rc<[TopicUse]> {
+    fn of(&mut self, (index, class): (usize, &ClassIndex<'_>), renames: TopicRenames) -> Rc<[TopicUse]> {
         let Self { known, declared } = self;
         let list = known.entry((index, renames));
         if let Entry::Occupied(list) = list {
@@ -200,11 +198,9 @@ impl Lists {
         let published = class.publishes.iter().map(|topic| (*topic, true));
         let topics = published.chain(class.subscribes.iter().map(|topic| (*topic, false)));
         let uses = topics.map(|(topic, is_published)| {
-            let renamed = renames.iter().find(|(old, _)| *old == topic.name);
-            let name = renamed.map_or(&topic.name, |(_, new)| new).clone();
             let declared = declared.entry(std::ptr::from_ref(topic));
             TopicUse {
-                name,
+                name: renames.name(&topic.name).to_owned(),
                 declared: Rc::clone(declared.or_insert_with(|| Rc::new(topic.clone()))),
                 is_published,
             }

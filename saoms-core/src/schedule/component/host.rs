@@ -13,7 +13,7 @@ use crate::observe::{Occurrence, RunEvent};
 use crate::report::Sections;
 use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
 use crate::schedule::shared::Shared;
-use saoms_lang::assembly::{ComponentSpec, TaskSettings, Wire};
+use saoms_lang::assembly::{ComponentSpec, TaskProperties, Wire};
 use saoms_lang::registry::{ClassDeclaration, ClassTopic, LoopDeclaration};
 use saoms_lang::schema::Schema;
 
@@ -38,7 +38,7 @@ impl ComponentHost<'_> {
     }
 
     /// Checks that the component may use a topic now, and returns its task settings.
-    fn may_use(&self, topic: &str, use_as: Use) -> Result<Option<&TaskSettings>, Failure> {
+    fn may_use(&self, topic: &str, use_as: Use) -> Result<Option<&TaskProperties>, Failure> {
         let verb = use_as.verb();
         if !self.part.initializing {
             return Err(Failure::new(format!(
@@ -134,9 +134,8 @@ fn stamp<'a>(shared: &'a Shared, part: &Part) -> Stamp<'a> {
 }
 
 /// The name of a topic on the bus.
-fn renamed<'a>(task: Option<&'a TaskSettings>, name: &'a str) -> &'a str {
-    let renames = task.map_or(&[][..], |task| &task.topic_rename);
-    renames.iter().find(|(old, _)| old == name).map_or(name, |(_, new)| new)
+fn renamed<'a>(task: Option<&'a TaskProperties>, name: &'a str) -> &'a str {
+    task.map_or(name, |task| task.topic_rename.name(name))
 }
 
 impl Host for ComponentHost<'_> {

@@ -9,7 +9,6 @@ use super::{Engine, RunPhase};
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
 use crate::schedule::settings::nanos;
-use saoms_lang::assembly::Restart;
 
 /// Requests about a periodic component, at any time and from any thread. They take effect after the code that runs at
 /// present.
@@ -184,12 +183,9 @@ impl Engine {
             return;
         }
         let stays = self.phase == RunPhase::Running && job != Job::Shutdown && slot.wish == Wish::None;
-        let pause = match slot.policy.restart {
-            Restart::OnFailure { backoff, limit } if stays && slot.restarts < limit => {
-                Some(backoff.saturating_mul(1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX)))
-            }
-            _ => None,
-        };
+        let policy = slot.policy;
+        let longer = 1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX);
+        let pause = (stays && slot.restarts < policy.restarts).then(|| policy.backoff.saturating_mul(longer));
         self.keep_subscriptions(body);
         let slot = &mut self.slots[index as usize];
         let wish = std::mem::replace(&mut slot.wish, Wish::None);

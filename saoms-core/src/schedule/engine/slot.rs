@@ -1,5 +1,6 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use saoms_api::Work;
 
@@ -8,7 +9,7 @@ use crate::journal::Ring;
 use crate::report::Lateness;
 use crate::schedule::component::body::Body;
 use crate::schedule::settings::nanos;
-use saoms_lang::assembly::{ComponentSpec, Loss, Overrun, Restart};
+use saoms_lang::assembly::{ComponentSpec, Loss, Overrun};
 
 /// A time that never comes.
 pub(crate) const NEVER: u64 = u64::MAX;
@@ -126,7 +127,8 @@ pub(crate) struct TaskPolicy {
     pub(crate) delay: u64,
     pub(crate) deadline: u64,
     pub(crate) overrun: Overrun,
-    pub(crate) restart: Restart,
+    pub(crate) restarts: u32,
+    pub(crate) backoff: Duration,
     pub(crate) loss: Loss,
 }
 
@@ -141,7 +143,8 @@ impl TaskPolicy {
                 delay: nanos(task.delay),
                 deadline: task.deadline.map_or(NEVER, nanos),
                 overrun: task.overrun,
-                restart: task.restart,
+                restarts: task.restarts(),
+                backoff: task.restart_backoff,
                 loss: task.loss,
             },
             None => TaskPolicy {
@@ -152,7 +155,8 @@ impl TaskPolicy {
                 delay: 0,
                 deadline: NEVER,
                 overrun: Overrun::Skip,
-                restart: Restart::Never,
+                restarts: 0,
+                backoff: Duration::ZERO,
                 loss: Loss::Fail,
             },
         }

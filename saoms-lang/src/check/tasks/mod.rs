@@ -3,7 +3,6 @@
 pub(crate) mod broker_address;
 #[cfg(test)]
 mod tests;
-pub(crate) mod topic_rename;
 pub(crate) mod topic_types;
 pub(crate) mod unused_renames;
 
@@ -13,7 +12,7 @@ use std::rc::Rc;
 use saoms_api::PropertyField;
 use saoms_api::host::PropertyValue;
 
-use crate::assembly::{Restart, TaskSettings};
+use crate::assembly::{OF_RESTART, Restart, TaskProperties, TopicRenames, topic_rename};
 use crate::check::component::{ComponentCheck, State};
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
@@ -30,9 +29,9 @@ use crate::syntax::escaped;
 /// The task of a component, and the places where its topics got their names.
 pub(crate) struct Task<'a> {
     /// `None` where the properties are not sound.
-    pub(crate) settings: Option<TaskSettings>,
+    pub(crate) settings: Option<TaskProperties>,
     /// The old and the new name of each topic that is renamed.
-    pub(crate) renames: Vec<(String, String)>,
+    pub(crate) renames: TopicRenames,
     /// The place of the new name of each of `renames`.
     pub(crate) renamed_at: Vec<Location>,
     /// The old names, with those that the class does not have.
@@ -57,7 +56,7 @@ pub(crate) fn check<'a>(
         None => Default::default(),
     };
     use_jms(component, class, checked, report);
-    let settings = checked.is_sound.then(|| settings(component, class, checked, &renames, report)).flatten();
+    let settings = checked.is_sound.then(|| settings(component, class, checked, report)).flatten();
     Task { settings, renames, renamed_at, listed }
 }
 
@@ -66,9 +65,8 @@ fn settings(
     component: &ComponentElement,
     class: &ClassIndex<'_>,
     checked: &PropertyValues,
-    renames: &[(String, String)],
     report: &mut Report<'_>,
-) -> Option<TaskSettings> {
+) -> Option<TaskProperties> {
     let values = checked.of_task(&class.table).map(|(name, value)| (name, value.clone()));
     let mut values: Vec<_> = values.collect();
     for (name, value) in class.table.presets {
@@ -80,7 +78,7 @@ fn settings(
             values.push((name.clone(), value.clone()));
         }
     }
-    let settings = match TaskSettings::from_values(&values, renames.to_vec()) {
+    let settings = match TaskProperties::read(values) {
         Ok(settings) => settings,
         // Not reached with sound properties; and if it is, somebody hears of it.
         Err(failure) => {
@@ -127,7 +125,7 @@ fn renames<'a>(
     text: &Text,
     class: &ClassIndex<'a>,
     report: &mut Report<'_>,
-) -> (Vec<(String, String)>, Vec<Location>, Vec<Listed<'a>>) {
+) -> (TopicRenames, Vec<Location>, Vec<Listed<'a>>) {
     let (pairs, faults) = topic_rename::parse(text);
     let parts = report.parts(text);
     for fault in faults {
@@ -202,7 +200,7 @@ fn combinations(
     component: &ComponentElement,
     class: &ClassIndex<'_>,
     checked: &PropertyValues,
-    settings: &TaskSettings,
+    settings: &TaskProperties,
     report: &mut Report<'_>,
 ) {
     let place = |name: &str| checked.get(&class.table, name).map(|given| given.place);
@@ -223,7 +221,7 @@ fn combinations(
         });
     }
     if settings.restart == Restart::Never {
-        for name in ["restartBackoff", "restartLimit"] {
+        for name in OF_RESTART {
             if let Some(place) = place(name) {
                 let message = format!("{} has no effect: the component is never restarted", quoted(name));
                 let one = Diagnostic::new(&codes::RESTART_UNUSED, place, message);
@@ -237,7 +235,7 @@ fn combinations(
 fn credentials(
     checked: &PropertyValues,
     class: &ClassIndex<'_>,
-    settings: &TaskSettings,
+    settings: &TaskProperties,
     report: &mut Report<'_>,
 ) {
     let is_empty =
@@ -286,7 +284,7 @@ pub(crate) fn check_all<'a>(
         check.queue = check.given.get(&class.table, "queue").map(|given| given.place);
         let is_sound = check.given.is_sound && check.loops.is_some();
         if let Some(task) = task {
-            let names = task.renames.into_iter().map(|(_, new)| new);
+            let names = task.renames.0.into_iter().map(|(_, new)| new);
             check.renamed = names.zip(task.renamed_at).collect();
             check.task = task.settings;
         }

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 
-use super::{broker_address, topic_rename};
+use super::broker_address;
+use crate::assembly::topic_rename;
 
 proptest! {
     #[test]

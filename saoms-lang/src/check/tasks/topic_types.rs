@@ -38,7 +38,7 @@ impl<'a> Topics<'a> {
         task: Option<&Task<'_>>,
         report: &mut Report<'_>,
     ) {
-        let renames = task.map_or(&[][..], |task| &task.renames[..]);
+        let renames = task.map_or(&[][..], |task| &task.renames.0[..]);
         if renames.is_empty() && !self.plain.insert(index) {
             return;
         }

@@ -56,7 +56,7 @@ fn values_presets_wires_and_tasks() {
           stops = Many([Text("1")])
           number = Text("1")
           gps (example.Positions) -> 2 position
-          TaskSettings { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, topic_rename: [("POSTOPIC", "pos")], overrun: Skip, restart: OnFailure { backoff: 100ms, limit: 5 }, deadline: None, queue: 1024, loss: Fail }
+          TaskProperties { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, topic_rename: TopicRenames([("POSTOPIC", "pos")]), overrun: Skip, restart: OnFailure, restart_backoff: 100ms, restart_limit: 5, deadline: None, queue: 1024, loss: Fail }
         2 G is a example.Gps
           other (example.Positions) -> nothing
     "#]].assert_eq(&assembly(&[&text], &["pace=2 s"]));
@@ -103,7 +103,7 @@ fn the_files_of_the_manual() {
           ID = Text("Robot001")
           number = Text("1")
           gps (example.Positions) -> nothing
-          TaskSettings { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, topic_rename: [("POS001", "pos001"), ("POS002", "pos002")], overrun: Skip, restart: Never, deadline: None, queue: 1024, loss: Fail }
+          TaskProperties { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, topic_rename: TopicRenames([("POS001", "pos001"), ("POS002", "pos002")]), overrun: Skip, restart: Never, restart_backoff: 100ms, restart_limit: 5, deadline: None, queue: 1024, loss: Fail }
     "#]].assert_eq(&assembly(&[broker, &tasks], &[]));
 }
 

@@ -6,6 +6,50 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use saoms_api::PropertyField;
+use saoms_api::host::declaration::{PropertyKind, PropertyShape, Rule};
+use saoms_api::host::{PropertyValue, SmolStr};
+
+/// The new names of topics, as (declared name, name on the bus).
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct TopicRenames(pub Vec<(String, String)>);
+
+impl TopicRenames {
+    /// The name on the bus of the topic that a class declares under this name.
+    pub fn name<'a>(&'a self, declared: &'a str) -> &'a str {
+        self.0.iter().find(|(old, _)| old == declared).map_or(declared, |(_, new)| new)
+    }
+}
+
+impl PropertyField for TopicRenames {
+    const TYPE: PropertyShape =
+        PropertyShape { optional: true, ..PropertyShape::scalar(Rule::of(PropertyKind::String)) };
+
+    /// The pairs without fault: the checker reports the others.
+    fn from_value(value: &PropertyValue) -> Result<Self, String> {
+        value.as_text().and_then(Self::from_text).ok_or_else(|| "expected pairs of names".to_owned())
+    }
+
+    fn from_text(text: &SmolStr) -> Option<Self> {
+        Some(read(text).0.into_iter().map(|pair| (pair.old.text.into(), pair.new.text.into())).collect())
+    }
+
+    fn absent() -> Option<Self> {
+        Some(Self::default())
+    }
+
+    fn to_value(&self) -> Option<PropertyValue> {
+        let pairs: Vec<String> = self.0.iter().map(|(old, new)| format!("{old},{new}")).collect();
+        (!pairs.is_empty()).then(|| PropertyValue::Text(pairs.join("::").into()))
+    }
+}
+
+impl FromIterator<(String, String)> for TopicRenames {
+    fn from_iter<I: IntoIterator<Item = (String, String)>>(pairs: I) -> Self {
+        Self(pairs.into_iter().collect())
+    }
+}
+
 /// A name in the text, and the bytes it is at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Name<'a> {
@@ -33,6 +77,13 @@ pub(crate) struct Fault {
 
 /// The pairs of `text`, and all that is wrong with it.
 pub(crate) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
+    let (pairs, mut faults) = read(text);
+    contradictions(&pairs, &mut faults);
+    (pairs, faults)
+}
+
+/// The pairs of `text`, and what are none.
+fn read(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
     let mut pairs = Vec::new();
     let mut faults = Vec::new();
     if text.trim().is_empty() {
@@ -45,7 +96,6 @@ pub(crate) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
     } else {
         pair(&split(text, 0..text.len(), "::"), &(0..text.len()), text, &mut pairs, &mut faults);
     }
-    contradictions(&pairs, &mut faults);
     (pairs, faults)
 }
 
