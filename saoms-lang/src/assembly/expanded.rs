@@ -129,7 +129,7 @@ fn component(
     node.child(implementation(component))
         .children(valued(component))
         .children(references)
-        .children(looped(component))
+        .children(loops(component))
 }
 
 /// What names the class of a component.
@@ -146,21 +146,6 @@ fn valued(component: &ComponentSpec) -> Vec<NewElement> {
     let task = component.task.iter().flat_map(TaskProperties::stated).filter(|(name, _)| !is_own(name));
     let task: Vec<_> = task.collect();
     values.chain(&task).map(|(name, value)| property(name, value)).collect()
-}
-
-/// What is said about the loops of a component of a class.
-fn looped(component: &ComponentSpec) -> Vec<NewElement> {
-    loops(component).into_iter().map(looping).collect()
-}
-
-fn looping(said: Said<'_>) -> NewElement {
-    NewElement::new("s:loop")
-        .declare("s", SAOMS_NAMESPACE)
-        .with("name", said.name)
-        .maybe("class", said.class)
-        .maybe("after", said.after)
-        .maybe("remove", said.is_removed.then_some("true"))
-        .children(said.values.iter().map(|(name, value)| property(name, value)))
 }
 
 fn property(name: &str, value: &PropertyValue) -> NewElement {
@@ -197,17 +182,8 @@ fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<NewElement> 
     }
 }
 
-/// What has to be said about a loop of a component.
-struct Said<'a> {
-    name: &'a str,
-    class: Option<&'a str>,
-    after: Option<&'a str>,
-    is_removed: bool,
-    values: &'a [(SmolStr, PropertyValue)],
-}
-
 /// How the loops of a component differ from those that its class gives it.
-fn loops(component: &ComponentSpec) -> Vec<Said<'_>> {
+fn loops(component: &ComponentSpec) -> Vec<NewElement> {
     let declaration = component.class.declaration();
     let value = declaration.loops.property.as_ref().and_then(|property| {
         match component.values.iter().find(|(name, _)| name == property) {
@@ -223,22 +199,16 @@ fn loops(component: &ComponentSpec) -> Vec<Said<'_>> {
     let added = component.loops.iter().map(|one| one.name.as_str()).filter(|name| !is_usual(name));
     let is_in_order = component.loops.iter().map(|one| one.name.as_str()).eq(kept.chain(added));
     let removed = usual.iter().filter(|(name, _)| !is_there(name));
-    let mut all: Vec<Said<'_>> = removed
-        .map(|(name, _)| Said { name, class: None, after: None, is_removed: true, values: &[] })
-        .collect();
+    let element = |name: &str| NewElement::new("s:loop").declare("s", SAOMS_NAMESPACE).with("name", name);
+    let mut all: Vec<_> = removed.map(|(name, _)| element(name).with("remove", "true")).collect();
     for (place, one) in component.loops.iter().enumerate() {
         let class = one.class.name();
         let is_same = usual.iter().any(|(name, usual)| *name == one.name && *usual == class);
         let before = place.checked_sub(1).map(|before| component.loops[before].name.as_str());
-        let said = Said {
-            name: &one.name,
-            class: (!is_same).then_some(class),
-            after: before.filter(|_| !is_in_order),
-            is_removed: false,
-            values: &one.values,
-        };
-        if said.class.is_some() || said.after.is_some() || !said.values.is_empty() {
-            all.push(said);
+        let after = before.filter(|_| !is_in_order);
+        if !is_same || after.is_some() || !one.values.is_empty() {
+            let node = element(&one.name).maybe("class", (!is_same).then_some(class)).maybe("after", after);
+            all.push(node.children(one.values.iter().map(|(name, value)| property(name, value))));
         }
     }
     all

@@ -31,7 +31,8 @@ impl PropertyField for TopicRenames {
     }
 
     fn from_text(text: &SmolStr) -> Option<Self> {
-        Some(read(text).0.into_iter().map(|pair| (pair.old.text.into(), pair.new.text.into())).collect())
+        let pair = |pair: Pair<'_>| (pair.old.text.to_owned(), pair.new.text.to_owned());
+        Some(Self(read(text).0.into_iter().map(pair).collect()))
     }
 
     fn absent() -> Option<Self> {
@@ -41,12 +42,6 @@ impl PropertyField for TopicRenames {
     fn to_value(&self) -> Option<PropertyValue> {
         let pairs: Vec<String> = self.0.iter().map(|(old, new)| format!("{old},{new}")).collect();
         (!pairs.is_empty()).then(|| PropertyValue::Text(pairs.join("::").into()))
-    }
-}
-
-impl FromIterator<(String, String)> for TopicRenames {
-    fn from_iter<I: IntoIterator<Item = (String, String)>>(pairs: I) -> Self {
-        Self(pairs.into_iter().collect())
     }
 }
 
@@ -83,7 +78,7 @@ pub(crate) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
 }
 
 /// The pairs of `text`, and what are none.
-fn read(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
+pub(crate) fn read(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
     let mut pairs = Vec::new();
     let mut faults = Vec::new();
     if text.trim().is_empty() {

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::component::ComponentCheck;
 use super::fleet::classes::ClassIndex;
 use super::fleet::{Fleet, Member};
+use super::report::Report;
 use super::rules::traffic;
+use super::tasks::Task;
 use super::wiring::Wiring;
 use crate::assembly::{Assembly, ComponentSpec, Wire, WireTarget};
 use crate::model::ComponentElement;
@@ -26,12 +28,18 @@ impl CheckedFleet<'_, '_> {
     }
 
     /// The places of the components of the assembly in the files.
-    pub(crate) fn places(&self) -> Vec<traffic::ComponentPlaces> {
-        let runs = self.fleet.members.iter().zip(&self.checks).filter(|(member, _)| member.runs());
-        let place = |(member, check): (&Member<'_>, &ComponentCheck<'_>)| traffic::ComponentPlaces {
-            name: member.component.name.location,
-            renamed: check.renamed.clone(),
-            queue: check.queue,
+    pub(crate) fn places(&self, report: &Report<'_>) -> Vec<traffic::ComponentPlaces> {
+        let runs = self.fleet.members.iter().enumerate().filter(|(_, member)| member.runs());
+        let place = |(place, member): (usize, &Member<'_>)| {
+            let (component, given) = (member.component, &self.checks[place].given);
+            let class = self.fleet.class_of(place, &self.classes);
+            let task = class.filter(|class| class.class.declaration().is_periodic());
+            let task = task.map(|class| Task { component, class, given });
+            traffic::ComponentPlaces {
+                name: component.name.location,
+                renamed: task.as_ref().map_or_else(Vec::new, |task| task.renamed(report)),
+                queue: task.and_then(|task| task.place("queue")),
+            }
         };
         runs.map(place).collect()
     }
@@ -73,7 +81,7 @@ impl CheckedFleet<'_, '_> {
                 path: member.path().to_owned(),
                 class: Arc::clone(class.class),
                 library: library(member.component),
-                values: check.values,
+                values: check.given.into_own().0,
                 task: check.task,
                 references: references.collect(),
                 loops: check.loops?.specs,

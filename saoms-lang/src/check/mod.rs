@@ -65,7 +65,7 @@ pub fn check(
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly> {
     examine(contribution, registry, options, sources, diagnostics, |sound, severities, report| {
-        let places = if options.wiring { sound.places() } else { Vec::new() };
+        let places = if options.wiring { sound.places(report) } else { Vec::new() };
         let assembly = sound.assemble(|one| classes::library(one, contribution, sources))?;
         if options.wiring {
             let known = report.diagnostics().len();

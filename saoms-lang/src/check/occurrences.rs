@@ -13,7 +13,7 @@ use crate::check::options::Options;
 use crate::check::properties;
 use crate::check::report::Report;
 use crate::check::report::severities::Severities;
-use crate::check::tasks;
+use crate::check::tasks::Task;
 use crate::check::unfolding;
 use crate::check::unfolding::arena::Arena;
 use crate::check::values::parameters::Parameters;
@@ -165,10 +165,9 @@ fn topics<'a>(
         let Kind::Class(index) = member.kind else { continue };
         let class = &classes[index];
         let is_periodic = class.class.declaration().is_periodic();
-        let renames = match is_periodic {
-            true => tasks::check(member.component, class, &checks[at].given, report).renames,
-            false => TopicRenames::default(),
-        };
+        let task = Task { component: member.component, class, given: &checks[at].given };
+        let renamed = if is_periodic { task.renamed(report) } else { Vec::new() };
+        let renames = TopicRenames(renamed.into_iter().map(|one| (one.old, one.new)).collect());
         let list = lists.of((index, class), renames);
         let used = all.entry(within(&ways[member.scope], place(member.component.origin))).or_default();
         if used.seen.insert(list.as_ptr()) {

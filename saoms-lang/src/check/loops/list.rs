@@ -102,10 +102,10 @@ pub(super) fn plan<'a>(
 pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c PropertyValues) -> Option<&'c str> {
     let place = class.table.choice?;
     let slot = &class.table.all[place];
-    let given = checked.at(place).map(|given| &given.value);
+    let given = checked.at(place).map(|given| given.value);
     match given.or_else(|| class.table.preset(&slot.name)) {
         Some(PropertyValue::Text(text)) => Some(text.trim()),
-        _ => slot.own?.default.as_deref(),
+        _ => slot.own()?.default.as_deref(),
     }
 }
 

@@ -14,7 +14,7 @@ use crate::check::component::ComponentCheck;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind, Member};
 use crate::check::properties::conversion::Conversion;
-use crate::check::properties::given_values::ValueOrigin;
+use crate::check::properties::given_values::ValuePlace;
 use crate::check::properties::property_table::PropertyTable;
 use crate::check::properties::{self, Giver};
 use crate::check::report::Report;
@@ -36,17 +36,17 @@ pub(crate) struct Resolved<'a> {
 struct Changed<'a> {
     place: usize,
     element: &'a LoopElement,
-    /// Its values that are not one text in the composite, for their places.
-    origins: Vec<ValueOrigin>,
+    /// The place of each of its values.
+    places: Vec<ValuePlace>,
 }
 
 impl Resolved<'_> {
     /// Those that the composite says something about, for the judgement of their constructors: the others are as their class has them.
     pub(crate) fn changed(&self) -> impl Iterator<Item = (&RegisteredLoop, Subject<'_>)> {
         self.changed.iter().map(|one| {
-            let (spec, LoopElement { name, properties, .. }) = (&self.specs[one.place], one.element);
-            let (values, origins, properties) = (&spec.values, &one.origins, properties);
-            (&*spec.class, Subject { what: "loop", name, at: name.location, values, properties, origins })
+            let (spec, name) = (&self.specs[one.place], &one.element.name);
+            let (values, places) = (&spec.values, &one.places);
+            (&*spec.class, Subject { what: "loop", name, at: name.location, values, places })
         })
     }
 }
@@ -145,9 +145,9 @@ fn resolved<'a>(
             if !given.is_sound {
                 continue;
             }
-            let (values, origins) = given.of_class(&table);
+            let (values, places) = given.into_own();
             spec.values = values;
-            changed.push(Changed { place: specs.len(), element, origins });
+            changed.push(Changed { place: specs.len(), element, places });
         }
         specs.push(spec);
     }

@@ -1,4 +1,6 @@
-//! Conversion of the properties of one component or loop.
+//! The values of the properties of one component or loop.
+
+use std::slice;
 
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
@@ -6,92 +8,134 @@ use smol_str::SmolStr;
 use super::property_table::PropertyTable;
 use crate::source::{Location, Text};
 
-/// The values that a component or a loop gives its properties.
+/// The values of the properties of a component or a loop: each converted once, with its place from then on.
 #[derive(Default)]
 pub(crate) struct PropertyValues {
-    given: Vec<GivenValue>,
-    /// The properties whose values are not known, since a fault of theirs is reported: by their indices in the class.
+    /// In the order of the table: those of the class first, presets among them.
+    values: Vec<(SmolStr, PropertyValue)>,
+    /// The place of each of them.
+    places: Vec<ValuePlace>,
+    /// The number of those of the class.
+    own: usize,
+    /// The properties whose values are not known, since a fault of theirs is reported: by their indices in the table.
     pub(crate) unknown: Vec<usize>,
     /// True if no property has a fault, so that the class can construct a component of them.
     pub(crate) is_sound: bool,
 }
 
-/// The value of one property.
-pub(crate) struct GivenValue {
-    /// The index of the property in its class.
+/// The place of the value of a property.
+pub(crate) struct ValuePlace {
+    /// The index of the property in its table.
     property: usize,
-    pub(crate) value: PropertyValue,
-    /// The place of the value, the first one of several.
-    pub(crate) place: Location,
-    /// Absent where the value is one text in the property itself.
-    origin: Option<Box<ValueOrigin>>,
+    origin: Origin,
 }
 
-/// The origin of a value that is not one text in the property itself.
-#[derive(Clone)]
-pub(crate) struct ValueOrigin {
-    /// The name of the property.
-    pub(crate) name: SmolStr,
-    /// The places of its values.
-    pub(crate) places: Vec<Location>,
+/// The origin of a value.
+pub(crate) enum Origin {
+    /// The class presets it.
+    Preset,
+    /// It is one, which stands in the property itself.
+    Property(Location),
+    /// It is several values, or comes from elsewhere: their places, and the `source` that leads there.
+    Others(Box<(Vec<Location>, Option<Location>)>),
+}
+
+impl Origin {
+    /// The origin of values at these places.
+    pub(crate) fn of(places: Vec<Location>, source: Option<Location>) -> Self {
+        match (&places[..], source) {
+            ([place], None) => Self::Property(*place),
+            _ => Self::Others(Box::new((places, source))),
+        }
+    }
+}
+
+impl ValuePlace {
+    /// The places that the composite gives it from; none for a preset.
+    pub(crate) fn places(&self) -> &[Location] {
+        match &self.origin {
+            Origin::Preset => &[],
+            Origin::Property(place) => slice::from_ref(place),
+            Origin::Others(others) => &others.0,
+        }
+    }
+
     /// The `source` that leads there.
-    pub(crate) source: Option<Location>,
+    pub(crate) fn source(&self) -> Option<Location> {
+        match &self.origin {
+            Origin::Others(others) => others.1,
+            _ => None,
+        }
+    }
 }
 
-impl GivenValue {
-    /// The value as a text with its place; `None` if it is not one text.
+/// A value that a composite gives.
+#[derive(Clone, Copy)]
+pub(crate) struct GivenValue<'v> {
+    pub(crate) value: &'v PropertyValue,
+    /// Its place, the first one of several.
+    pub(crate) place: Location,
+}
+
+impl GivenValue<'_> {
+    /// The value as a text with its place; `None` if it is not one text, or a blank one.
     pub(crate) fn text(&self) -> Option<Text> {
-        Some(Text::new(self.value.as_text()?.clone(), self.place))
+        let text = self.value.as_text().filter(|text| !text.trim().is_empty())?;
+        Some(Text::new(text.clone(), self.place))
     }
 }
 
 impl PropertyValues {
-    pub(crate) fn add(
-        &mut self,
-        property: usize,
-        value: PropertyValue,
-        place: Location,
-        origin: Option<ValueOrigin>,
-    ) {
-        self.given.push(GivenValue { property, value, place, origin: origin.map(Box::new) });
+    /// The values of each property of a table, in its order, with what the class presets for others.
+    pub(crate) fn of(
+        table: &PropertyTable<'_>,
+        given: impl Iterator<Item = Option<(PropertyValue, Origin)>>,
+        unknown: Vec<usize>,
+        is_sound: bool,
+    ) -> Self {
+        let mut all = Self { unknown, is_sound, ..Self::default() };
+        for (property, (entry, given)) in table.all.iter().zip(given).enumerate() {
+            let preset = || Some((table.preset(&entry.name)?.clone(), Origin::Preset));
+            let Some((value, origin)) = given.or_else(preset) else { continue };
+            all.values.push((entry.name.clone(), value));
+            all.places.push(ValuePlace { property, origin });
+            all.own += usize::from(entry.own().is_some());
+        }
+        all
     }
 
-    /// The value of the property of this name.
-    pub(crate) fn get(&self, table: &PropertyTable<'_>, name: &str) -> Option<&GivenValue> {
+    /// The value that the composite gives the property of this name.
+    pub(crate) fn get(&self, table: &PropertyTable<'_>, name: &str) -> Option<GivenValue<'_>> {
         self.at(table.place(name)?)
     }
 
-    /// The value of the property of this index.
-    pub(crate) fn at(&self, property: usize) -> Option<&GivenValue> {
-        self.given.iter().find(|given| given.property == property)
+    /// The value that the composite gives the property of this index.
+    pub(crate) fn at(&self, property: usize) -> Option<GivenValue<'_>> {
+        let index = self.places.iter().position(|place| place.property == property)?;
+        Some(GivenValue { value: &self.values[index].1, place: *self.places[index].places().first()? })
     }
 
-    /// The values of task properties, by the names of these.
-    pub(crate) fn of_task(
-        &self,
-        table: &PropertyTable<'_>,
-    ) -> impl Iterator<Item = (SmolStr, &PropertyValue)> {
-        let of_task = self.given.iter().filter(|given| table.all[given.property].task.is_some());
-        of_task.map(|given| (table.all[given.property].name.clone(), &given.value))
+    /// The values of task properties, presets included.
+    pub(crate) fn of_task(&self, table: &PropertyTable<'_>) -> Vec<(SmolStr, PropertyValue)> {
+        let all = self.values.iter().zip(&self.places);
+        let of_task = all.filter(|(_, place)| table.all[place.property].task.is_some());
+        of_task.map(|(value, _)| value.clone()).collect()
     }
 
-    /// The values of the class's own properties in the order of the class, presets included, as constructors take them; and the origins of those
-    /// that have one.
-    pub(crate) fn of_class(
-        &self,
-        table: &PropertyTable<'_>,
-    ) -> (Vec<(SmolStr, PropertyValue)>, Vec<ValueOrigin>) {
-        let mut own: Vec<&GivenValue> =
-            self.given.iter().filter(|given| table.all[given.property].own.is_some()).collect();
-        own.sort_by_key(|given| given.property);
-        let origins = own.iter().filter_map(|given| given.origin.as_deref().cloned()).collect();
-        let named = own.iter().map(|given| (table.all[given.property].name.clone(), given.value.clone()));
-        let mut values: Vec<(SmolStr, PropertyValue)> = named.collect();
-        for preset in table.presets {
-            if values.iter().all(|(name, _)| *name != preset.0) {
-                values.push(preset.clone());
-            }
-        }
-        (values, origins)
+    /// The values of the class's own properties, as constructors take them.
+    pub(crate) fn own(&self) -> &[(SmolStr, PropertyValue)] {
+        &self.values[..self.own]
+    }
+
+    /// The same with the place of each.
+    pub(crate) fn into_own(mut self) -> (Vec<(SmolStr, PropertyValue)>, Vec<ValuePlace>) {
+        self.values.truncate(self.own);
+        self.values.shrink_to_fit();
+        (self.values, self.places)
+    }
+
+    /// The place of each value.
+    pub(crate) fn places(&self) -> &[ValuePlace] {
+        &self.places
     }
 }

@@ -59,7 +59,7 @@ fn stands_for<'s>(giver: &Giver<'_, '_>, table: &'s PropertyTable<'_>) -> Option
             || giver.defaults().any(|(given, _)| given.name == *name)
             || table.preset(name).is_some()
     };
-    let required = table.required.iter().filter_map(|place| table.all[*place].main());
+    let required = table.required.iter().map(|place| table.all[*place].main);
     let mut lacking = required.map(|one| one.name.as_str()).filter(|name| !is_given(name));
     let (lacking, None) = (lacking.next()?, lacking.next()) else { return None };
     Some(lacking)

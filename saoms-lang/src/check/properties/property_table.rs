@@ -26,7 +26,7 @@ pub(crate) struct PropertyTable<'r> {
     /// The places of those that have to be given.
     pub(crate) required: Vec<usize>,
     by_name: HashMap<&'r str, usize>,
-    /// Conversion that count where the composite gives none.
+    /// The values that count where the composite gives none.
     pub(crate) presets: &'r [(SmolStr, PropertyValue)],
     /// True if it is never executed, so that it has no task properties.
     pub(crate) is_passive: bool,
@@ -38,30 +38,40 @@ pub(crate) struct PropertyTable<'r> {
 /// stricter rule counts.
 pub(crate) struct TableEntry<'r> {
     pub(crate) name: SmolStr,
-    pub(crate) own: Option<&'r PropertyDeclaration>,
+    /// The declaration that people are told of: that of the class, if it has one.
+    pub(crate) main: &'r PropertyDeclaration,
+    /// True if it is the class that declares it.
+    is_own: bool,
+    /// The declaration as a task property.
     pub(crate) task: Option<&'r PropertyDeclaration>,
-    /// True if people know a task by it.
-    pub(crate) is_task_id: bool,
 }
 
 impl<'r> TableEntry<'r> {
-    fn of(own: Option<&'r PropertyDeclaration>, task: Option<&'r PropertyDeclaration>) -> Self {
-        let name = own.or(task).map_or("", |main| &main.name);
-        let is_task_id = task.is_some_and(|task| task.name == ID);
-        Self { name: name.into(), own, task, is_task_id }
+    fn of_task(task: &'r PropertyDeclaration) -> Self {
+        Self { name: task.name.as_str().into(), main: task, is_own: false, task: Some(task) }
     }
 
-    pub(crate) fn declarations(&self) -> impl Iterator<Item = &'r PropertyDeclaration> {
-        self.own.into_iter().chain(self.task)
+    fn of_class(own: &'r PropertyDeclaration) -> Self {
+        Self { name: own.name.as_str().into(), main: own, is_own: true, task: None }
+    }
+
+    /// The declaration of the class.
+    pub(crate) fn own(&self) -> Option<&'r PropertyDeclaration> {
+        self.is_own.then_some(self.main)
+    }
+
+    /// The second declaration, as a task property.
+    pub(crate) fn also(&self) -> Option<&'r PropertyDeclaration> {
+        self.task.filter(|_| self.is_own)
+    }
+
+    /// True if people know a task by it.
+    pub(crate) fn is_task_id(&self) -> bool {
+        self.task.is_some_and(|task| task.name == ID)
     }
 
     fn is_required(&self) -> bool {
-        self.declarations().any(|declaration| declaration.required)
-    }
-
-    /// The declaration that people are told of.
-    pub(crate) fn main(&self) -> Option<&'r PropertyDeclaration> {
-        self.own.or(self.task)
+        self.main.required || self.task.is_some_and(|task| task.required)
     }
 }
 
@@ -78,16 +88,15 @@ impl<'r> PropertyTable<'r> {
         let task = if table.is_passive { &[] } else { TaskProperties::declarations() };
         for task in task {
             match table.by_name.get(task.name.as_str()) {
-                Some(&place) => table.all[place] = TableEntry::of(table.all[place].own, Some(task)),
+                Some(&place) => table.all[place].task = Some(task),
                 None => {
                     table.by_name.insert(&task.name, table.all.len());
-                    table.all.push(TableEntry::of(None, Some(task)));
+                    table.all.push(TableEntry::of_task(task));
                 }
             }
         }
         table.choice = declaration.loops.property.as_deref().and_then(|name| table.place(name));
-        table.unique =
-            table.places(|slot| slot.is_task_id || slot.main().is_some_and(|main| main.unique.is_some()));
+        table.unique = table.places(|entry| entry.is_task_id() || entry.main.unique.is_some());
         table.required = table.places(TableEntry::is_required);
         table
     }
@@ -102,7 +111,7 @@ impl<'r> PropertyTable<'r> {
         Self {
             what: "",
             name: "",
-            all: properties.iter().map(|own| TableEntry::of(Some(own), None)).collect(),
+            all: properties.iter().map(TableEntry::of_class).collect(),
             by_name: places.map(|(place, own)| (own.name.as_str(), place)).collect(),
             unique: Vec::new(),
             choice: None,
@@ -113,7 +122,7 @@ impl<'r> PropertyTable<'r> {
     }
 
     fn places(&self, of: impl Fn(&TableEntry<'r>) -> bool) -> Vec<usize> {
-        let table = self.all.iter().enumerate().filter(|(_, slot)| of(slot));
+        let table = self.all.iter().enumerate().filter(|(_, entry)| of(entry));
         table.map(|(place, _)| place).collect()
     }
 
@@ -129,6 +138,6 @@ impl<'r> PropertyTable<'r> {
 
     /// The names of all properties, in order.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'r str> + Clone {
-        self.all.iter().filter_map(TableEntry::main).map(|declaration| declaration.name.as_str())
+        self.all.iter().map(|entry| entry.main.name.as_str())
     }
 }

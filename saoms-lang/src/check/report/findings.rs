@@ -5,10 +5,8 @@ use saoms_api::{Finding, Place};
 use smol_str::SmolStr;
 
 use super::{Report, replacing};
-use crate::check::fleet::Member;
-use crate::check::properties::given_values::ValueOrigin;
+use crate::check::properties::given_values::ValuePlace;
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
-use crate::model::{ComponentElement, Property};
 use crate::source::Location;
 use crate::syntax::escaped;
 
@@ -21,41 +19,20 @@ pub(crate) struct Subject<'a> {
     /// The place of its name.
     pub(crate) at: Location,
     pub(crate) values: &'a [(SmolStr, PropertyValue)],
-    /// Its properties in the composite.
-    pub(crate) properties: &'a [Property],
-    /// The origins of values that are not one text there.
-    pub(crate) origins: &'a [ValueOrigin],
-}
-
-/// The places of a property in the composite.
-struct Given {
-    places: Vec<Location>,
-    /// The `source` that leads there.
-    source: Option<Location>,
+    /// The place of each value.
+    pub(crate) places: &'a [ValuePlace],
 }
 
 impl<'a> Subject<'a> {
-    /// A component with its values.
-    pub(crate) fn of(
-        member: &Member<'a>,
-        values: &'a [(SmolStr, PropertyValue)],
-        origins: &'a [ValueOrigin],
-    ) -> Self {
-        let ComponentElement { name, properties, .. } = member.component;
-        Self { what: "component", name: name.as_str(), at: name.location, values, properties, origins }
-    }
-
     /// True if the composite gives a property of this name.
     pub(crate) fn gives(&self, name: &str) -> bool {
-        self.written(name).is_some()
+        self.value(name).is_some_and(|(_, place)| !place.places().is_empty())
     }
 
-    fn written(&self, name: &str) -> Option<Given> {
-        if let Some(ValueOrigin { places, source, .. }) = self.origins.iter().find(|one| one.name == name) {
-            return Some(Given { places: places.clone(), source: *source });
-        }
-        let text = self.properties.iter().find(|one| one.name == *name)?.only_text()?;
-        Some(Given { places: vec![text.location], source: None })
+    /// The value of the property of this name, with its place.
+    fn value(&self, name: &str) -> Option<(&'a PropertyValue, &'a ValuePlace)> {
+        let mut all = self.values.iter().zip(self.places);
+        all.find(|((given, _), _)| given == name).map(|((_, value), place)| (value, place))
     }
 }
 
@@ -110,25 +87,22 @@ struct Located<'a> {
 /// The place in the files: the component's name for a property that the composite does not give.
 fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Located<'a> {
     let nowhere = Located { at: subject.at, source: None, text: None, is_xml: false };
-    let given = place.property_name().and_then(|name| {
-        let values = &subject.values.iter().find(|(given, _)| given == name)?.1;
-        Some((values, subject.written(name)?))
-    });
-    let Some((values, written)) = given else { return nowhere };
-    let Some(&first) = written.places.first() else { return nowhere };
-    let whole = Located { at: first, source: written.source, ..nowhere };
+    let given = place.property_name().and_then(|name| subject.value(name));
+    let Some((values, given)) = given else { return nowhere };
+    let Some(&first) = given.places().first() else { return nowhere };
+    let whole = Located { at: first, source: given.source(), ..nowhere };
     let Some((index, part)) = place.value_part() else { return whole };
     let value = match values {
         PropertyValue::Many(values) => values.get(index),
         one => (index == 0).then_some(one),
     };
-    let (Some(PropertyValue::Text(value)), Some(&at)) = (value, written.places.get(index)) else {
+    let (Some(PropertyValue::Text(value)), Some(&at)) = (value, given.places().get(index)) else {
         return whole;
     };
     Located {
         text: value.get(part.clone()),
         at: report.parts_of(value, at).part(part),
-        source: written.source,
+        source: given.source(),
         is_xml: report.is_xml(at.file),
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn partly(
     report: &mut Report<'_>,
 ) {
     let unsure: Vec<&PropertyDeclaration> =
-        unsure.iter().filter_map(|place| class.table.all[*place].own).collect();
+        unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
     if unsure.is_empty() {
         return component(subject, class, without_plugin_code, report);
     }

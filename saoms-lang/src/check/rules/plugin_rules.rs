@@ -85,7 +85,7 @@ pub(crate) fn check<'s>(
     views.extend(all().zip(ends).map(|((place, check, class), end)| ComponentView {
         path: fleet.members[place].path(),
         class: views_of_classes.of(class, check),
-        values: &check.values,
+        values: check.given.own(),
         period: check.task.as_ref().map(|task| task.period),
         has_broker: check.task.as_ref().is_some_and(|task| task.url.is_some()),
         wires: &wires[std::mem::replace(&mut start, end)..end],

@@ -8,6 +8,7 @@ use saoms_api::host::{TopicKind, format_duration};
 use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic};
 use crate::check::fleet::similar_names::{Name, Similar};
 use crate::check::report::Report;
+use crate::check::tasks::renames::Renamed;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
 use crate::syntax::escaped;
@@ -15,7 +16,7 @@ use crate::syntax::escaped;
 /// The places of a component, and of the names of its topics.
 pub(crate) struct ComponentPlaces {
     pub(crate) name: Location,
-    pub(crate) renamed: Vec<(String, Location)>,
+    pub(crate) renamed: Vec<Renamed>,
     /// The place of its `queue`.
     pub(crate) queue: Option<Location>,
 }
@@ -65,8 +66,8 @@ impl All<'_> {
     /// The place from which a component has the name of a topic.
     fn at(&self, end: &TopicEnd, topic: &TrafficTopic) -> Location {
         let place = &self.places[end.component];
-        let renamed = place.renamed.iter().find(|(name, _)| *name == topic.name);
-        renamed.map_or(place.name, |(_, at)| *at)
+        let renamed = place.renamed.iter().find(|one| one.new == topic.name);
+        renamed.map_or(place.name, |one| one.at)
     }
 
     /// `component X`, or `component X and 3 others`.
@@ -103,7 +104,7 @@ impl All<'_> {
     }
 
     fn is_renamed(&self, end: &TopicEnd, topic: &TrafficTopic) -> bool {
-        self.places[end.component].renamed.iter().any(|(name, _)| *name == topic.name)
+        self.places[end.component].renamed.iter().any(|one| one.new == topic.name)
     }
 
     fn alone(&self, topic: &TrafficTopic, meant: &TrafficTopic, report: &mut Report<'_>) {

@@ -24,16 +24,15 @@ fn uses<'u, 'r>(
     member: &'u Member<'_>,
     class: &'u ClassIndex<'r>,
     given: &'u PropertyValues,
-) -> impl Iterator<Item = (Canonical, Location, &'u TableEntry<'r>, &'r PropertyDeclaration)> {
+) -> impl Iterator<Item = (Canonical, Location, &'u TableEntry<'r>)> {
     let table = class.table.unique.iter().filter(|_| !member.is_partial);
     table.filter_map(move |&place| {
-        let slot = &class.table.all[place];
-        let declaration = slot.main()?;
+        let entry = &class.table.all[place];
         let (value, place) = match given.at(place) {
-            Some(given) => (&given.value, given.place),
-            None => (class.table.preset(&declaration.name)?, member.component.name.location),
+            Some(given) => (given.value, given.place),
+            None => (class.table.preset(&entry.name)?, member.component.name.location),
         };
-        Some((Canonical::of(value, slot)?, place, slot, declaration))
+        Some((Canonical::of(value, entry.main)?, place, entry))
     })
 }
 
@@ -64,8 +63,9 @@ impl<'a> Unique<'a> {
         given: &PropertyValues,
         report: &mut Report<'_>,
     ) {
-        for (value, place, slot, declaration) in uses(&fleet.members[member], class, given) {
-            let user = User { member, place, word: declaration.unique.as_deref(), is_task: slot.is_task_id };
+        for (value, place, entry) in uses(&fleet.members[member], class, given) {
+            let (word, is_task) = (entry.main.unique.as_deref(), entry.is_task_id());
+            let user = User { member, place, word, is_task };
             let users = self.seen.entry(value.clone()).or_default();
             let of_word = users.iter().find(|one| one.word.is_some() && one.word == user.word).copied();
             let of_task = users.iter().find(|one| one.is_task && user.is_task).copied();
@@ -73,7 +73,7 @@ impl<'a> Unique<'a> {
                 users.push(user);
             }
             if let Some(first) = of_word {
-                shared(&value, first, user, declaration, fleet, report);
+                shared(&value, first, user, entry.main, fleet, report);
             }
             if let Some(first) = of_task {
                 task(&value, first, user, fleet, report);
@@ -156,8 +156,8 @@ enum Canonical {
 }
 
 impl Canonical {
-    fn of(value: &PropertyValue, slot: &TableEntry<'_>) -> Option<Self> {
-        let (text, declaration) = (value.as_text()?, slot.main()?);
+    fn of(value: &PropertyValue, declaration: &PropertyDeclaration) -> Option<Self> {
+        let text = value.as_text()?;
         if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
             return Some(Self::Text(text.trim().into()));
         }

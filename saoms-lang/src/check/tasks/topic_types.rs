@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use saoms_api::host::TopicKind;
 
-use super::Task;
+use super::renames::Renamed;
 use crate::check::fleet::Member;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::Report;
@@ -35,11 +35,10 @@ impl<'a> Topics<'a> {
         &mut self,
         member: &'a Member<'_>,
         (index, class): (usize, &ClassIndex<'a>),
-        task: Option<&Task<'_>>,
+        renamed: &[Renamed],
         report: &mut Report<'_>,
     ) {
-        let renames = task.map_or(&[][..], |task| &task.renames.0[..]);
-        if renames.is_empty() && !self.plain.insert(index) {
+        if renamed.is_empty() && !self.plain.insert(index) {
             return;
         }
         let published = class.publishes.iter().map(|topic| ("publishes", *topic));
@@ -47,13 +46,12 @@ impl<'a> Topics<'a> {
         let subscribed = class.subscribes.iter().copied().filter(|topic| !class.publishes.contains(topic));
         let subscribed = subscribed.map(|topic| ("subscribes to", topic));
         for (verb, topic) in published.chain(subscribed) {
-            let renamed = renames.iter().position(|(old, _)| *old == topic.name);
-            let name = renamed.map_or(topic.name.as_str(), |place| renames[place].1.as_str());
-            let place = renamed.zip(task).map(|(place, task)| task.renamed_at[place]);
-            let place = place.unwrap_or(member.component.name.location);
+            let renamed = renamed.iter().find(|one| one.old == topic.name);
+            let name = renamed.map_or(&topic.name, |renamed| &renamed.new);
+            let place = renamed.map_or(member.component.name.location, |renamed| renamed.at);
             let end = End { component: member.path(), place, declaration: topic, verb };
             match self.ends.get(name) {
-                None => _ = self.ends.insert(name.to_owned(), end),
+                None => _ = self.ends.insert(name.clone(), end),
                 Some(first) => compare(name, first, &end, report),
             }
         }

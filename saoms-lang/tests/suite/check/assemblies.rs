@@ -52,9 +52,9 @@ fn values_presets_wires_and_tasks() {
           task (unibg.robotics.tca.TaskInterface) -> 1 TaskInterface
         1 R is a example.Robot001
           ID = Text("Robot")
+          number = Text("1")
           charger = Complex([("x", Text("3")), ("y", Text("4"))])
           stops = Many([Text("1")])
-          number = Text("1")
           gps (example.Positions) -> 2 position
           TaskProperties { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, topic_rename: TopicRenames([("POSTOPIC", "pos")]), overrun: Skip, restart: OnFailure, restart_backoff: 100ms, restart_limit: 5, deadline: None, queue: 1024, loss: Fail }
         2 G is a example.Gps

@@ -1,0 +1,206 @@
+//! The properties that a component of a class, or a loop, is given.
+
+use saoms_api::host::PropertyValue;
+
+use super::conversion::{Conversion, Target};
+use super::given_values::{Origin, PropertyValues};
+use super::property_table::{PropertyTable, TableEntry};
+use super::{Giver, given_twice, missing};
+use crate::check::report::Report;
+use crate::check::values::parameters::{Found, Parameters, ValueSite};
+use crate::check::values::raw::{Piece, Raw, raw};
+use crate::diagnostic::{Diagnostic, codes, nearest_equal, quoted};
+use crate::expression::has_expression;
+use crate::model::{Part, Property};
+use crate::registry::PropertyDeclaration;
+use crate::source::Location;
+use crate::syntax::Document;
+
+/// Checks the properties that somebody gives to a component of a class, or to a loop: their values.
+pub(crate) fn check<'a>(
+    giver: &Giver<'_, 'a>,
+    table: &PropertyTable<'a>,
+    parameters: &mut Parameters<'a>,
+    conversion: &mut Conversion,
+    report: &mut Report<'_>,
+) -> PropertyValues {
+    let mut slots = Vec::new();
+    slots.resize_with(table.all.len(), Slot::default);
+    let (unsure, unknown) = (Vec::new(), Vec::new());
+    let mut check = PropertyCheck { giver, table, parameters, conversion, slots, unsure, unknown };
+    for property in giver.properties {
+        check.given(property, report);
+    }
+    for (default, document) in giver.defaults() {
+        check.described(default, document, report);
+    }
+    for &place in &table.required {
+        check.required(place, report);
+    }
+    check.finish()
+}
+
+struct PropertyCheck<'c, 'm, 'a> {
+    giver: &'c Giver<'m, 'a>,
+    table: &'c PropertyTable<'a>,
+    parameters: &'c mut Parameters<'a>,
+    conversion: &'c mut Conversion,
+    /// What there is of each property of the table.
+    slots: Vec<Slot<'a>>,
+    /// The places of properties whose values are not known, since a fault of theirs is reported.
+    unsure: Vec<usize>,
+    /// Names that no property has.
+    unknown: Vec<&'a str>,
+}
+
+/// What there is of a property.
+#[derive(Default)]
+struct Slot<'a> {
+    /// The first element that gives it.
+    element: Option<&'a Property>,
+    value: Option<(PropertyValue, Origin)>,
+    /// True if its `source` is right, and has no value.
+    is_unset: bool,
+}
+
+impl<'a> PropertyCheck<'_, '_, 'a> {
+    /// Checks a property that the composite gives.
+    fn given(&mut self, property: &'a Property, report: &mut Report<'_>) {
+        let (name, member) = (property.name.as_str(), self.giver.member);
+        let has_open_names = member.instance.is_some_and(|one| one.partial.is_some());
+        if name.is_empty() || has_open_names && has_expression(name) {
+            self.unknown.push("");
+            return;
+        }
+        let Some(place) = self.table.place(name) else {
+            missing::unknown(property, self.giver, self.table, report);
+            if let Some(source) = property.source() {
+                let _ = self.parameters.resolve(member.unit, source, report);
+            }
+            self.unknown.push(name);
+            return;
+        };
+        if let Some(first) = self.slots[place].element {
+            report.push(given_twice(property, first));
+            self.unsure.push(place);
+            return;
+        }
+        self.slots[place].element = Some(property);
+        many_of_one(property, &self.table.all[place], report);
+        if self.value(place, property, report).is_err() {
+            if property.only_text().is_some_and(|text| has_expression(text)) {
+                self.parameters.leave_open(member.unit);
+            }
+            self.unsure.push(place);
+        } else if member.is_partial
+            && property.simple_value().is_some_and(|text| text.value == member.component.name.value)
+        {
+            // What lacks the index as the name does, which is reported, can be anything.
+            self.unsure.push(place);
+        }
+    }
+
+    /// Finds the value of a property, and converts it. None is left where its `source` has none.
+    fn value(&mut self, place: usize, property: &'a Property, report: &mut Report<'_>) -> Result<(), ()> {
+        let member = self.giver.member;
+        let site = ValueSite { unit: member.unit, composite: member.composite, instance: member.instance };
+        let Found { raw, source } = self.parameters.taken(site, property, report)?;
+        if source.is_none() && property.source().is_some() && raw.0.is_empty() {
+            self.slots[place].is_unset = true;
+            return Ok(());
+        }
+        self.convert(place, raw, source.unwrap_or(property.tag()), source, report)
+    }
+
+    /// Checks a property that the file beside the class gives, where the composite does not.
+    fn described(&mut self, default: &'a Property, document: &'a Document, report: &mut Report<'_>) {
+        let place = self.table.place(&default.name);
+        let Some(place) = place.filter(|place| self.slots[*place].element.is_none()) else { return };
+        self.slots[place].element = Some(default);
+        let found = raw(default, document, None, report);
+        let found = found.map(|found| found.inside_elements_of(default));
+        let by = Some(self.giver.name.location);
+        if found.and_then(|found| self.convert(place, found, default.tag(), by, report)).is_err() {
+            self.unsure.push(place);
+        }
+    }
+
+    /// Converts what was found for a property to what the class takes.
+    fn convert(
+        &mut self,
+        place: usize,
+        found: Raw<'_>,
+        at: Location,
+        source: Option<Location>,
+        report: &mut Report<'_>,
+    ) -> Result<(), ()> {
+        let mut places: Vec<Location> = found.0.iter().map(Piece::location).collect();
+        if places.is_empty() {
+            places.push(at);
+        }
+        let entry = &self.table.all[place];
+        let target = Target { outer: None, declaration: entry.main, also: entry.also(), at, source };
+        let value = self.conversion.convert(found, target, report).ok_or(())?;
+        self.slots[place].value = Some((value, Origin::of(places, source)));
+        Ok(())
+    }
+
+    /// Checks that a property that has to be given is. What is given wrongly is reported already.
+    fn required(&mut self, place: usize, report: &mut Report<'_>) {
+        let (slot, declaration) = (&self.slots[place], self.table.all[place].main);
+        if slot.value.is_some() || self.table.preset(&declaration.name).is_some() {
+            return;
+        }
+        self.unsure.push(place);
+        let Some(property) = slot.element else {
+            return missing::missing(self.giver, declaration, self.table, report);
+        };
+        if !slot.is_unset {
+            return;
+        }
+        let message = format!("the property {} has no value: its source has none", quoted(&declaration.name));
+        let at = property.source().map_or(property.tag(), |source| source.location);
+        let one = Diagnostic::new(&codes::PROPERTY_MISSING, at, message);
+        let unit = self.giver.member.unit;
+        match property.source() {
+            Some(source) if self.parameters.is_told(unit, source) => {}
+            Some(source) => report.push(self.parameters.supply(unit, source, one)),
+            None => report.push(one),
+        }
+    }
+
+    /// The values, with the properties that an unknown name may stand for among those that are not known.
+    fn finish(mut self) -> PropertyValues {
+        let is_sound = self.unsure.is_empty() && self.unknown.is_empty() && !self.giver.member.is_partial;
+        for name in std::mem::take(&mut self.unknown) {
+            let meant = self.meant(name);
+            self.unsure.extend(meant);
+        }
+        self.unsure.sort_unstable();
+        self.unsure.dedup();
+        let given = self.slots.into_iter().map(|slot| slot.value);
+        PropertyValues::of(self.table, given, self.unsure, is_sound)
+    }
+
+    /// The places of the properties that an unknown name may stand for: those that are spelt most alike, or else any number that is not given.
+    fn meant(&self, name: &str) -> Vec<usize> {
+        let near = nearest_equal(name, self.table.names());
+        if !near.is_empty() {
+            return near.into_iter().filter_map(|near| self.table.place(near)).collect();
+        }
+        let all = self.table.all.iter().zip(&self.slots).enumerate();
+        let open = all.filter(|(_, (entry, slot))| {
+            slot.value.is_none() && entry.own().is_some_and(PropertyDeclaration::is_number)
+        });
+        open.map(|(place, _)| place).collect()
+    }
+}
+
+/// Reports a property that says that it takes several values, where the class takes one.
+fn many_of_one(property: &Property, entry: &TableEntry<'_>, report: &mut Report<'_>) {
+    let Some(many) = property.many().filter(|many| many.value && !entry.main.many) else { return };
+    let name = quoted(&property.name);
+    let message = format!("the property {name} takes one value, and is said here to take several");
+    let one = Diagnostic::new(&codes::MANY_VALUES, many.location, message);
+    report.push(one.help("remove `many`"));
+}

@@ -1,0 +1,99 @@
+//! The properties that a component gives the composite that implements it, and those that it has of whatever type.
+
+use std::collections::HashMap;
+
+use super::{given_twice, missing};
+use crate::check::fleet::{Member, Unit};
+use crate::check::report::Report;
+use crate::check::values::value_type::{self, Match, Typed};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::expression::has_expression;
+use crate::model::{ComponentElement, ComponentProperty, Part, Property, Version};
+use crate::syntax::escaped;
+
+/// Checks that what a component gives the composite that implements it are properties of that, of types that fit.
+pub(crate) fn check(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'_>) {
+    if member.component.properties.is_empty() {
+        return;
+    }
+    let composites = inner.composites.iter();
+    let declared =
+        composites.flat_map(|one| one.properties.iter().map(|property| (property, &*one.document)));
+    let declared = declared.map(|(property, document)| Typed { property, document });
+    let names: Vec<&str> = declared.clone().map(|one| one.property.name.as_str()).collect();
+    // The first of each name.
+    let mut by_name: HashMap<&str, Typed<'_>> = HashMap::with_capacity(names.len());
+    declared.for_each(|one| _ = by_name.entry(&one.property.name).or_insert(one));
+    let is_partial = member.instance.is_some_and(|instance| instance.partial.is_some());
+    let is_known = |one: &&Property| !(one.name.is_empty() || is_partial && has_expression(&one.name));
+    for property in member.component.properties.iter().filter(is_known) {
+        match by_name.get(property.name.as_str()) {
+            Some(declared) => {
+                let is_many = declared.property.many().is_some_and(|many| many.value);
+                if let (false, [first, second, ..]) = (is_many, property.values()) {
+                    several((property, first, second), declared.property, report);
+                }
+                let own = Typed { property, document: &member.composite.document };
+                value_type::matches(own, *declared, Match::Declaration, report);
+            }
+            // It is the one without a name, which is reported.
+            None if names.contains(&"") => {}
+            None => unknown(property, &names, inner, report),
+        }
+    }
+}
+
+/// Reports a property that a composite does not have.
+fn unknown(property: &Property, names: &[&str], inner: &Unit<'_>, report: &mut Report<'_>) {
+    let (name, at) = (&property.name, property.name.location);
+    if report.skip(&codes::UNKNOWN_PROPERTY, Severity::Error, at) {
+        return;
+    }
+    let message = format!("composite {} has no property {}", quoted(&inner.main().name), quoted(name));
+    let one = match missing::taken_inside(name, inner) {
+        Some(source) => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message)
+            .label(source, "taken here")
+            .help(format!("declare it in the composite: `<property name=\"{}\"/>`", escaped(name))),
+        None => {
+            let known = ("its properties are", names.iter().copied());
+            report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known)
+        }
+    };
+    report.push(one);
+}
+
+/// Says that a property that its declaration says takes one value is given several.
+fn several(
+    (property, first, second): (&Property, &ComponentProperty, &ComponentProperty),
+    declared: &Property,
+    report: &mut Report<'_>,
+) {
+    let (name, count) = (quoted(&property.name), property.values().len());
+    let message = format!("the property {name} takes one value, and here are {count}");
+    let mut one = Diagnostic::new(&codes::MANY_VALUES, second.tag(), message).label(first.tag(), "the first");
+    if !std::ptr::eq(property, declared) {
+        one = one.label(declared.name.location, "declared here, without `many=\"true\"`");
+    }
+    report.push(one.help("keep one of them, or write `many=\"true\"` where the property is declared"));
+}
+
+/// Checks that a composite gives its property one value, where it takes one.
+pub(crate) fn one_value(property: &Property, version: Version, report: &mut Report<'_>) {
+    // In SCA 1.0 elements of this name may be parts of a complex value.
+    if let (true, [first, second, ..]) = (version.is_1_1(), property.values())
+        && property.many().is_none_or(|many| !many.value)
+    {
+        several((property, first, second), property, report);
+    }
+}
+
+/// Reports properties that one component gives twice.
+pub(crate) fn repeated(component: &ComponentElement, report: &mut Report<'_>) {
+    let mut first: HashMap<&str, &Property> = HashMap::new();
+    for property in component.properties.iter().filter(|property| !property.name.is_empty()) {
+        match first.get(property.name.as_str()) {
+            None => _ = first.insert(&property.name, property),
+            Some(first) => report.push(given_twice(property, first)),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The fault of a text that a property does not take, and what it probably means.
+
+use saoms_api::host::declaration::{PropertyKind, parse_scalar};
+
+use super::conversion::Target;
+use crate::check::report::replacing;
+use crate::check::unfolding::replica::COUNTERS;
+use crate::check::unfolding::replica_plan::as_index;
+use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
+use crate::expression::{INDEX, has_expression, is_name};
+use crate::registry::PropertyDeclaration;
+use crate::source::Text;
+use crate::syntax::escaped;
+
+/// A text that is not what the declaration asks for, as its rule says it.
+pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_index: bool) -> Diagnostic {
+    let declaration = target.declaration;
+    // The rule repeats all of the text, however long.
+    let rest = message.strip_prefix(&format!("`{}`", text.trim()));
+    let said = rest.map_or_else(|| message.to_owned(), |rest| format!("{}{rest}", quoted(text.trim())));
+    let code = code(text, declaration, rest.unwrap_or_default());
+    let one = Diagnostic::new(code, text.location, format!("property {}: {said}", target.quoted()));
+    if let Some(meant) = meant(text.trim(), declaration) {
+        return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
+    }
+    let is_counter = text.trim() == INDEX || has_index && COUNTERS.contains(&text.trim());
+    let by_index = if is_counter { Some(format!("${{{INDEX}}}")) } else { as_index(text.trim()) };
+    match by_index.filter(|meant| meant != text.trim()) {
+        Some(meant) if has_index => {
+            return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
+        }
+        Some(meant) => {
+            return one
+                .help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant)));
+        }
+        None => {}
+    }
+    if has_expression(text) {
+        let one = one.help("`${...}` stands for a number in components with a `saoms:count` alone");
+        let name = text.trim().strip_prefix("${").and_then(|rest| rest.strip_suffix('}')).map(str::trim);
+        return match name.filter(|name| is_name(name) && *name != INDEX) {
+            Some(name) => one.help(by_source(name)),
+            None => one,
+        };
+    }
+    let argument = text.trim().strip_prefix("$(arg ").and_then(|rest| rest.strip_suffix(')'));
+    match argument.or_else(|| text.trim().strip_prefix('$')).map(str::trim).filter(|name| is_name(name)) {
+        Some(name) => one.help(by_source(name)),
+        None => one,
+    }
+}
+
+fn by_source(name: &str) -> String {
+    format!("write `source=\"${name}\"` for the value of the property {} of the composite", quoted(name))
+}
+
+fn code(text: &str, declaration: &PropertyDeclaration, said: &str) -> &'static Code {
+    if text.trim().is_empty() {
+        return &codes::VALUE_EMPTY;
+    }
+    let beyond = [" is out of range", " is negative"].into_iter().any(|what| said.starts_with(what));
+    match parse_scalar(declaration.kind, text) {
+        _ if beyond => &codes::VALUE_RANGE,
+        Some(_) => &codes::VALUE_NOT_ALLOWED,
+        None => &codes::VALUE_TYPE,
+    }
+}
+
+/// The probable meaning of a wrong text: an allowed one that is spelt alike, another way to say yes or no, a decimal comma, a
+/// number with its unit.
+fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
+    if text.is_empty() {
+        return None;
+    }
+    let allowed = declaration.allowed.iter().map(String::as_str);
+    if let Some(near) = nearest(text, allowed) {
+        return Some(near.to_owned());
+    }
+    let lower = text.to_ascii_lowercase();
+    let said = match (declaration.kind, lower.as_str()) {
+        (PropertyKind::Boolean, "yes" | "on" | "y" | "t") => "true".to_owned(),
+        (PropertyKind::Boolean, "no" | "off" | "n" | "f") => "false".to_owned(),
+        (PropertyKind::Boolean, _) => nearest(text, ["true", "false"]).unwrap_or_default().to_owned(),
+        (PropertyKind::Integer | PropertyKind::Float, _) => {
+            let unit = declaration.unit.as_deref().unwrap_or_default();
+            let text = text.strip_suffix(unit).unwrap_or(text).trim();
+            let is_whole = declaration.kind == PropertyKind::Integer;
+            let text = text.strip_suffix(".0").filter(|_| is_whole).unwrap_or(text);
+            without_unit(text).unwrap_or(text).replace(',', ".")
+        }
+        (PropertyKind::Duration, _) => duration(&lower).unwrap_or_else(|| lower.replace(',', ".")),
+        _ => lower,
+    };
+    (said != text && declaration.check(&said).is_ok()).then_some(said)
+}
+
+/// A number without the unit that people write behind numbers of its kind.
+fn without_unit(text: &str) -> Option<&str> {
+    const UNITS: [&str; 9] = ["%", "percent", "m", "cm", "mm", "ms", "s", "block", "blocks"];
+    let number = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let unit = text[number.len()..].trim();
+    UNITS.iter().any(|known| known.eq_ignore_ascii_case(unit)).then_some(number)
+}
+
+/// A duration whose unit is written out, or how often a second.
+fn duration(text: &str) -> Option<String> {
+    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let unit = text[digits.len()..].trim();
+    let digits = digits.trim();
+    let short = match unit {
+        "hz" => {
+            let often: f64 = digits.parse().ok().filter(|often| *often > 0.0)?;
+            let micros = (1e6 / often).round() as u64;
+            return Some(match micros.is_multiple_of(1000) {
+                true => format!("{}ms", micros / 1000),
+                false => format!("{micros}us"),
+            });
+        }
+        "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => "ms",
+        "usec" | "usecs" | "\u{b5}s" | "\u{3bc}s" | "micros" | "microsecond" | "microseconds" => "us",
+        "sec" | "secs" | "second" | "seconds" => "s",
+        "mins" | "minute" | "minutes" => "min",
+        "hr" | "hrs" | "hour" | "hours" => "h",
+        _ => return None,
+    };
+    Some(format!("{digits}{short}"))
+}
