@@ -180,8 +180,9 @@ pub(crate) enum Absence {
 
 /// The kind of thing that is absent by a diagnostic of this code.
 pub(crate) fn absence(code: &Code) -> Option<Absence> {
-    const PARTS: [&Code; 6] = [
+    const PARTS: [&Code; 7] = [
         &PROPERTY_MISSING,
+        &VALUE_EMPTY,
         &CONSTRUCTION,
         &CREDENTIALS,
         &UNKNOWN_PROPERTY,

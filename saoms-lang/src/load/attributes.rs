@@ -99,6 +99,7 @@ impl Loader<'_> {
                 "a composite is named by its `name`, with the prefix of its `targetNamespace`, and not by its file",
             ),
             Some(meant) if free.contains(&meant) => {
+                self.meant.push((element.id(), meant, name.to_owned()));
                 one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
             }
             Some(meant) => one.help(given_already(meant)),
@@ -159,7 +160,16 @@ impl Loader<'_> {
 
     /// The value of an attribute, white space at its ends left out.
     pub(super) fn optional(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
-        element.attribute(name).map(Attribute::trimmed)
+        self.attribute(element, name).map(Attribute::trimmed)
+    }
+
+    /// The attribute of this name, or the misspelt one that is meant by it: that is told.
+    fn attribute<'e>(&self, element: Element<'e>, name: &str) -> Option<Attribute<'e>> {
+        element.attribute(name).or_else(|| {
+            let mut meant = self.meant.iter().rev().take_while(|(of, ..)| *of == element.id());
+            let (_, _, written) = meant.find(|(_, meant, _)| *meant == name)?;
+            element.attribute(written)
+        })
     }
 
     /// The value of an attribute of SAOMS on an element of SCA.
@@ -175,7 +185,7 @@ impl Loader<'_> {
 
     /// The value of an attribute that has to be there, and not be empty.
     pub(super) fn required(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
-        let attribute = element.attribute(name);
+        let attribute = self.attribute(element, name);
         let value = attribute.map(Attribute::trimmed).filter(|value| !value.is_empty());
         if value.is_none() {
             self.empty_or_missing(element, attribute, name);
@@ -243,7 +253,7 @@ impl Loader<'_> {
 
     /// The value of a boolean attribute.
     pub(super) fn boolean(&mut self, element: Element<'_>, name: &str) -> Option<Located<bool>> {
-        let attribute = element.attribute(name)?;
+        let attribute = self.attribute(element, name)?;
         self.truth(attribute, name)
     }
 
@@ -289,7 +299,7 @@ impl Loader<'_> {
 
     /// The words of an attribute that is a list.
     pub(super) fn list(&mut self, element: Element<'_>, name: &str) -> Vec<Text> {
-        match element.attribute(name) {
+        match self.attribute(element, name) {
             Some(attribute) => self.words(attribute, name),
             None => Vec::new(),
         }

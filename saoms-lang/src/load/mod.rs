@@ -34,7 +34,7 @@ pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::model::{Composite, SeverityRule, Version};
 use crate::source::{FileId, Sources};
-use crate::syntax::{self, Parse};
+use crate::syntax::{self, ElementId, Parse};
 
 /// Makes the model of a text that was read before: of all that can be understood, also when the text is no well-formed XML, or has other
 /// errors. `None` when its root is no `composite`.
@@ -105,6 +105,8 @@ struct Loader<'d> {
     is_replicated: bool,
     /// The attributes of SCA 1.1 in a file of 1.0 that were told.
     newer: Vec<&'static str>,
+    /// The misspelt attributes that were told: their elements, the names that are meant, and those that are written.
+    meant: Vec<(ElementId, &'static str, String)>,
     /// What is said about severities.
     severities: Vec<SeverityRule>,
 }
@@ -118,6 +120,7 @@ impl<'d> Loader<'d> {
             diagnostics,
             is_replicated: false,
             newer: Vec::new(),
+            meant: Vec::new(),
             severities: Vec::new(),
         }
     }

@@ -368,10 +368,20 @@ impl<'l, 'a> Nest<'l, 'a> {
         let node = &mut self.lexer.elements[element as usize];
         (node.end, node.after) = (at, count);
         let node = *node;
-        self.flag(element, if has_end_tag { CLOSED } else { DAMAGED_CONTENT });
+        let is_in_text = !has_end_tag && self.has_end_tag_in_text(at, &node);
+        let damage = if is_in_text { DAMAGED_CONTENT | UNSURE_TEXT } else { DAMAGED_CONTENT };
+        self.flag(element, if has_end_tag { CLOSED } else { damage });
         if let Some(counts) = &mut self.counts {
             counts.close(self.input.slice(node.name, node.name + node.name_len));
         }
+    }
+
+    /// True if the text before the token `at` ends with the end tag of an element but for its `<`.
+    fn has_end_tag_in_text(&self, at: u32, node: &Node) -> bool {
+        let span = self.span(at - 1);
+        let text = self.input.slice(span.start, span.end).trim_end();
+        let name = text.strip_suffix('>').and_then(|text| text.strip_suffix(self.name(node)));
+        name.is_some_and(|text| text.ends_with('/'))
     }
 
     /// Text, a CDATA section, or an error.

@@ -63,6 +63,42 @@ pub(super) fn odd_space(name: &str) -> Option<(usize, char)> {
     name.char_indices().find(|(_, c)| is_odd(*c))
 }
 
+/// The fault of a start tag, of the element at `name`, whose `>` is missing at `at`, before the text of the element.
+pub(super) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
+    let shown = quoted(input.slice(name.start, name.end));
+    let message = format!("the start tag of {shown} is not closed before the text");
+    let one = input.fault(&codes::XML_UNCLOSED, name.start, name.end, message);
+    let place = Span::empty(at).in_file(input.file);
+    one.label(place, "the tag ends here").suggest("insert `>`", place, ">")
+}
+
+/// The quote that closes a value, of which the first character is at `at`, where the opening quote is missing or stands
+/// elsewhere: before it nothing ends the value, and behind it the tag goes on.
+pub(super) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
+    let is_end = |byte: &u8| matches!(byte, b'"' | b'\'' | b'<' | b'>' | b'=' | b' ' | b'\t' | b'\r' | b'\n');
+    let end = at + input.bytes()[at as usize..].iter().position(is_end)? as u32;
+    let is_quote = matches!(input.byte(end), Some(b'"' | b'\''));
+    let goes_on = matches!(input.byte(end + 1), Some(b' ' | b'\t' | b'\r' | b'\n' | b'/' | b'>'));
+    (is_quote && goes_on).then_some(end)
+}
+
+/// The fault of a value from `at` to `end` without its first quote.
+pub(super) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32, end: u32) -> Diagnostic {
+    let name = quoted(input.slice(one.start, one.start + one.name_len));
+    let quote = input.slice(end, end + 1);
+    let message = format!("the value of {name} has no quote before it");
+    let fault = input.fault(&codes::XML_ATTRIBUTE, at, end, message);
+    let place = Span::empty(at).in_file(input.file);
+    fault.suggest(format!("insert {}", quoted(quote)), place, quote)
+}
+
+/// The fault of the second of two quotes, at `at`.
+pub(super) fn doubled_quote(input: Input<'_>, at: u32) -> Diagnostic {
+    let shown = input.shown(at);
+    let one = input.fault(&codes::XML_ATTRIBUTE, at, at + 1, format!("{shown} stands here twice"));
+    one.suggest(format!("remove {shown}"), Span::new(at, at + 1).in_file(input.file), "")
+}
+
 /// The fault of an attribute without a value; with a quote at `quote_at`, it lacks a `=` alone.
 pub(super) fn without_value(
     input: Input<'_>,

@@ -8,7 +8,7 @@ use super::document::{NO_NAMESPACE, XMLNS};
 use super::fault::Input;
 use super::lexer::Lexer;
 use super::names::{name_length, scan};
-use super::token::{BROKEN_OFF, DAMAGED_TAG, PREFIXED, TokenKind, UNNAMED};
+use super::token::{BROKEN_OFF, DAMAGED_TAG, PREFIXED, TokenKind, UNNAMED, UNSURE_TEXT};
 use super::{quotes, reference, slips};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::TAG_END_SEARCHES;
@@ -65,6 +65,8 @@ struct Tag<'l, 'a> {
     limit: u32,
     /// The `>` of the tag, as far as quotes fit.
     close: Option<u32>,
+    /// The first quote behind the last place that was looked at for text, or the limit.
+    quote: u32,
     measures: u32,
     flags: u8,
 }
@@ -79,7 +81,9 @@ impl Lexer<'_> {
         if name.len == 0 {
             self.faults.add(|| slips::nameless(input, start));
             let Some(behind) = name_behind_blank(input, start) else {
-                self.push(start, TokenKind::Error, 0);
+                // Of two `<` one is too many, and no text.
+                let is_doubled = input.byte(start + 1) == Some(b'<');
+                self.push(start, TokenKind::Error, if is_doubled { UNSURE_TEXT } else { 0 });
                 return start + 1;
             };
             from = behind;
@@ -104,8 +108,9 @@ impl Lexer<'_> {
         let first = self.attributes.len();
         let name = Span::new(from, end);
         self.push_element(start, TokenKind::StartTag, 0, name);
-        let (limit, close, measures) = (0, None, 0);
-        let mut tag = Tag { lexer: self, input, start, name, first, at, limit, close, measures, flags };
+        let (limit, close, quote, measures) = (0, None, 0, 0);
+        let mut tag =
+            Tag { lexer: self, input, start, name, first, at, limit, close, quote, measures, flags };
         let is_empty = tag.read();
         let (at, flags) = (tag.at, tag.flags);
         let one = &mut self.tokens[token];
@@ -155,6 +160,7 @@ impl Tag<'_, '_> {
     /// Looks for the end of the tag from a place outside of values; quick-xml knows quotes.
     fn measure(&mut self) {
         self.measures += 1;
+        self.quote = 0;
         if self.measures > TAG_END_SEARCHES {
             self.close = None;
             return;
@@ -167,7 +173,7 @@ impl Tag<'_, '_> {
 
     /// Reads all behind the name up to behind the `>`. Gives whether the tag ends with `/>`.
     fn read(&mut self) -> bool {
-        let input = self.input;
+        let (input, name) = (self.input, self.name);
         self.measure();
         loop {
             let before = self.at;
@@ -193,6 +199,12 @@ impl Tag<'_, '_> {
                 }
                 Some(b'/') if input.byte(at + 1) == Some(b'>') => self.close = Some(at + 1),
                 Some(b'/') if input.skip_space(at + 1) >= self.limit => self.at = self.limit,
+                Some(_) if self.is_text(before, at) => {
+                    self.flags |= BROKEN_OFF;
+                    self.at = before;
+                    self.fault(|| slips::text_in_tag(input, name, before));
+                    return false;
+                }
                 Some(byte) if name_length(&[byte]) == 1 => {
                     if before < at || self.missing_blank(at) {
                         self.attribute(at);
@@ -204,6 +216,24 @@ impl Tag<'_, '_> {
                 self.measure();
             }
         }
+    }
+
+    /// True if what is at `at`, and behind `before` without blanks, is the text of the element, because the `>` of the tag
+    /// is missing: there is no quote up to the end tag. One word behind a blank may be an attribute that is being typed.
+    fn is_text(&mut self, before: u32, at: u32) -> bool {
+        let (input, limit) = (self.input, self.limit);
+        let name = input.slice(self.name.start, self.name.end);
+        let end_tag = &input.bytes()[limit as usize..];
+        let is_before_end = end_tag.strip_prefix(b"</").is_some_and(|tag| tag.starts_with(name.as_bytes()));
+        if self.close.is_some() || !is_before_end {
+            return false;
+        }
+        if self.quote <= at {
+            let rest = &input.bytes()[at as usize..limit as usize];
+            self.quote = memchr::memchr2(b'"', b'\'', rest).map_or(limit, |length| at + length as u32);
+        }
+        let word = name_length(&input.bytes()[at as usize..limit as usize]) as u32;
+        self.quote == limit && (before == at || input.skip_space(at + word) < limit)
     }
 
     /// The tag ends before the next one starts, or with the text.
@@ -242,7 +272,7 @@ impl Tag<'_, '_> {
         if self.lexer.attributes.len() == self.first {
             return true;
         }
-        if self.mend_last(at) {
+        if self.mend_last(at) || self.value_behind_quotes(at) {
             return false;
         }
         let input = self.input;
@@ -282,6 +312,39 @@ impl Tag<'_, '_> {
         true
     }
 
+    /// Reads the quote at `at`, directly behind a value, as the second of two where one is meant: `a="b""`.
+    fn doubled_quote(&mut self, at: u32, quote: u8) -> bool {
+        let input = self.input;
+        let Some(last) = self.lexer.attributes[self.first..].last() else { return false };
+        let is_closed = last.end() == at && last.flags & (NO_VALUE | OPEN) == 0;
+        let is_end = matches!(input.byte(at + 1), Some(b' ' | b'\t' | b'\r' | b'\n' | b'/' | b'>'));
+        if !is_closed || !is_end || input.byte(at - 1) != Some(quote) {
+            return false;
+        }
+        self.fault(|| slips::doubled_quote(input, at));
+        self.at = at + 1;
+        self.measure();
+        true
+    }
+
+    /// Reads what is behind an empty value, at `at`, as that value, where its first quote stands there twice: `a=""b"`.
+    fn value_behind_quotes(&mut self, at: u32) -> bool {
+        let input = self.input;
+        let Some(last) = self.lexer.attributes[self.first..].last_mut() else { return false };
+        if last.end() != at || !last.value.is_empty() || last.flags & (NO_VALUE | OPEN) != 0 {
+            return false;
+        }
+        let Some(end) = slips::first_quote(input, at).filter(|end| input.byte(*end) == input.byte(at - 1))
+        else {
+            return false;
+        };
+        last.value = Span::new(at, end);
+        self.fault(|| slips::doubled_quote(input, at - 1));
+        self.at = end + 1;
+        self.measure();
+        true
+    }
+
     fn end_last(&mut self, end: u32) {
         if let Some(last) = self.lexer.attributes.last_mut() {
             last.value.end = end;
@@ -292,6 +355,9 @@ impl Tag<'_, '_> {
     /// A character that cannot start an attribute.
     fn misplaced(&mut self, before: u32, at: u32, byte: u8) {
         if before == at && matches!(byte, b'"' | b'\'') && self.mend_last(at) {
+            return;
+        }
+        if before == at && self.doubled_quote(at, byte) {
             return;
         }
         let (input, name) = (self.input, self.name);
@@ -472,6 +538,12 @@ impl Tag<'_, '_> {
             self.fault(|| fault);
             one.value = inside;
             self.at = end;
+            return self.measure();
+        }
+        if let Some(end) = slips::first_quote(input, at).filter(|end| *end > at) {
+            self.fault(|| slips::without_first_quote(input, one, at, end));
+            one.value = Span::new(at, end);
+            self.at = end + 1;
             return self.measure();
         }
         let (fault, length) = slips::unquoted(input, one, at);

@@ -1,4 +1,5 @@
 //! Whole fleets and what is wrong with them.
 
+mod cascades;
 mod mistakes;
 mod rules;

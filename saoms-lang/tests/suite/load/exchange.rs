@@ -39,6 +39,8 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
     expect![[r#"
         sca-contribution.xml:2:13 [composit] error S1007 `deployable` has no attribute `composit`
           replace `composit` with `composite`
+        sca-contribution.xml:2:23 [t:a] warning S2051 the contribution has no composite `t:a`
+          it has none at all: is it put together from several folders?
         sca-contribution.xml:2:28 [now] error S1012 text in `deployable`, which holds no text
           remove it; comments stand between `<!--` and `-->`
         sca-contribution.xml:2:32 [component] error S1005 `component` cannot stand in `deployable`

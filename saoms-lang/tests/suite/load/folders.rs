@@ -78,7 +78,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         ])
     };
     expect![[r#"
-        fleet.composite
+        fleet.composite runs
         more.composite
         sca-contribution.xml:2:24 [x:flet] error S2051 the contribution has no composite `x:flet`
           replace `x:flet` with `x:fleet`
@@ -90,6 +90,8 @@ fn what_is_wrong_with_a_contribution_is_told() {
           add `composite="..."` to it
         sca-contribution.xml:6:13 [composit] error S1007 `deployable` has no attribute `composit`
           replace `composit` with `composite`
+        sca-contribution.xml:6:23 [fleet] warning S1011 `fleet` does not say its namespace
+          write it with a prefix of the target namespace of the composite
         sca-contribution.xml:8:27 [locaton] error S1007 `export` has no attribute `locaton`
           `export` has the attributes `namespace`
         sca-contribution.xml:9:2 [imports] error S1004 SCA 1.1 has no element `imports`

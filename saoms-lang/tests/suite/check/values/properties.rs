@@ -39,7 +39,7 @@ fn a_wrong_source_is_one_fault() {
 
 #[test]
 fn a_component_without_a_name_is_not_called_by_an_empty_one() {
-    let found = faults(r#"<component nmae="R"><implementation.java class="example.Robot001"/></component>"#);
+    let found = faults(r#"<component><implementation.java class="example.Robot001"/></component>"#);
     assert!(found.contains("the component lacks the property `period`"), "{found}");
 }
 
