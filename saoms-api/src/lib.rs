@@ -74,7 +74,6 @@ mod field;
 mod finding;
 pub mod host;
 mod message;
-mod nearest;
 mod property;
 mod registration;
 mod report;

@@ -1,11 +1,13 @@
 //! Rules over a whole fleet, for authors of components: what no component can see alone.
 
+pub(crate) mod nearest;
+
 use std::any::{Any, TypeId};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::time::Duration;
 
-pub use crate::nearest::nearest;
+pub use nearest::nearest;
 
 use crate::host::{PropertyValue, SmolStr};
 use crate::property::values_of;

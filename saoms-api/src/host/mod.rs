@@ -15,9 +15,9 @@ pub use crate::adaptation::{
 pub use crate::component::DynComponent;
 pub use crate::field::Arguments;
 pub use crate::message::SharedMessage;
-pub use crate::nearest::{nearest_equal, nearest_few};
 pub use crate::property::{PropertyValue, WriteProperties};
 pub use crate::registration::Registration;
+pub use crate::rule::nearest::{nearest_equal, nearest_few};
 pub use crate::service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
 pub use crate::time::{format_duration, parse_duration};
 pub use crate::topic::{TopicDeclaration, TopicKind};
