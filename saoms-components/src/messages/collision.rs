@@ -1,8 +1,11 @@
 use std::fmt;
 
-use saoms_api::Message;
+use saoms_api::{Message, Topic};
 
 use crate::grid::Block;
+
+/// Collisions of robots.
+pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC").optional();
 
 /// A collision of two robots.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]

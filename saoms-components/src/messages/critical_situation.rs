@@ -1,9 +1,13 @@
 use std::fmt;
 
-use saoms_api::{Field, Message};
+use saoms_api::{Field, Message, Topic};
 
-use crate::grid::Block;
+use crate::grid::{Block, Map};
 use crate::robot::Job;
+use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+
+/// Requests for help, and the responses of healers.
+pub const CRITICAL_SITUATION: Topic<CriticalSituation> = Topic::event("CSMSTOPIC");
 
 /// Activity of a robot when it became critical.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
@@ -72,5 +76,35 @@ impl CriticalSituation {
 impl fmt::Display for CriticalSituation {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Robot{} in {} needs help", self.critical, self.block)
+    }
+}
+
+impl Validate for CriticalSituation {
+    const WHAT: &'static str = "the critical situation";
+
+    fn about(&self) -> String {
+        of_robot(self.critical)
+    }
+
+    fn validate(
+        &self,
+        sender: u32,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
+        validator.check_known(self.critical)?;
+        if self.stage != CriticalStage::Request {
+            Problem::of_block(self.healer_block, area)?;
+            return validator.check_known_speaker(self.healer, sender);
+        }
+        Problem::of_block(self.block, area)?;
+        for block in self.job().into_iter().flat_map(|job| [job.from, job.to]) {
+            Problem::of_block(block, area)?;
+        }
+        // A healer that breaks asks again for the robot that it wanted to help.
+        if validator.is_speaker(sender) {
+            return Ok(());
+        }
+        validator.check_speaker(self.critical, sender)
     }
 }

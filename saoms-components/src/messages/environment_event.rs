@@ -1,6 +1,9 @@
-use saoms_api::Message;
+use saoms_api::{Message, Topic};
 
 use super::{EventLuggage, ExceptionalEvent, Fault};
+
+/// Events of any kind from the environment.
+pub const ENVIRONMENT: Topic<EnvironmentEvent> = Topic::event("ETOPIC");
 
 /// Events outside the fleet: new luggage, exceptional events and faults, one or several at once.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]

@@ -1,8 +1,12 @@
 use std::fmt;
 
-use saoms_api::{Field, Message};
+use saoms_api::{Field, Message, Topic};
 
-use crate::grid::Block;
+use crate::grid::{Block, Map};
+use crate::validation::{MessageValidator, Problem, Validate};
+
+/// Requests to bring luggage, and the robots' responses.
+pub const EVENT_LUGGAGE: Topic<EventLuggage> = Topic::event("ELMSTOPIC");
 
 /// Stages of an [`EventLuggage`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
@@ -57,5 +61,38 @@ impl fmt::Display for EventLuggage {
     /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Luggage to bring from {} to {}", self.from, self.to)
+    }
+}
+
+impl Validate for EventLuggage {
+    const WHAT: &'static str = "a message";
+
+    fn about(&self) -> String {
+        format!("luggage {} from {} to {}", self.luggage, self.from, self.to)
+    }
+
+    fn validate(
+        &self,
+        sender: u32,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
+        let EventLuggage { robot, from, to, block, .. } = *self;
+        match self.stage {
+            LuggageStage::Request => Problem::of_request(self, area),
+            // The component that requested luggage gives it up in nobody's name, even if the request was impossible.
+            LuggageStage::GivenUp if robot == 0 => Ok(()),
+            LuggageStage::Interest
+            | LuggageStage::Release
+            | LuggageStage::Taken
+            | LuggageStage::Delivered
+            | LuggageStage::Refused
+            | LuggageStage::GivenUp => {
+                for block in [from, to, block] {
+                    Problem::of_block(block, area)?;
+                }
+                validator.check_known_speaker(robot, sender)
+            }
+        }
     }
 }

@@ -1,6 +1,9 @@
 use std::fmt;
 
-use saoms_api::{Field, Message};
+use saoms_api::{Field, Message, Topic};
+
+/// Events that change the number of robots that are needed.
+pub const EXCEPTIONAL_EVENT: Topic<ExceptionalEvent> = Topic::event("EETOPIC").optional();
 
 /// Kinds of exceptional events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]

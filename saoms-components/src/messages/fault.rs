@@ -1,6 +1,12 @@
 use std::fmt;
 
-use saoms_api::{Field, Message};
+use saoms_api::{Field, Message, Topic};
+
+use crate::grid::Map;
+use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+
+/// Faults of robots.
+pub const FAULT: Topic<Fault> = Topic::event("FAULTTOPIC");
 
 /// Kinds of faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
@@ -31,5 +37,22 @@ impl fmt::Display for Fault {
         match self.kind {
             FaultKind::Breakdown => write!(formatter, "robot {} breaks down", self.robot),
         }
+    }
+}
+
+impl Validate for Fault {
+    const WHAT: &'static str = "a fault";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    fn validate(
+        &self,
+        _sender: u32,
+        validator: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
+        validator.check_known(self.robot)
     }
 }

@@ -1,8 +1,12 @@
 use std::fmt;
 
-use saoms_api::{Field, Message};
+use saoms_api::{Field, Message, Topic};
 
-use crate::grid::Block;
+use crate::grid::{Block, Map};
+use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+
+/// Position and next blocks of each robot, the newest message of each.
+pub const POSITION: Topic<Position> = Topic::state("POSTOPIC");
 
 /// Priority of a robot that never makes way: it handles luggage, has to charge, or cannot move.
 pub const IMMOVABLE: Priority = Priority { rank: u64::MAX, robot: 0 };
@@ -51,5 +55,33 @@ impl fmt::Display for Position {
     /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Position of Robot{} will be: {}", self.robot, self.next)
+    }
+}
+
+impl Validate for Position {
+    const WHAT: &'static str = "the position";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    /// The first message about an unknown robot is accepted: a robot sends its position before anything else, and its
+    /// block is kept free.
+    fn validate(
+        &self,
+        sender: u32,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
+        let Position { block, next, wanted, .. } = *self;
+        for block in [block, next, wanted] {
+            Problem::of_block(block, area)?;
+        }
+        for (from, to) in [(block, next), (next, wanted)] {
+            if from.distance(to) > 1 {
+                return Err(Problem::Jump { from, to });
+            }
+        }
+        validator.check_speaker(self.robot, sender)
     }
 }

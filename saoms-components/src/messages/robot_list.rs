@@ -1,8 +1,12 @@
 use std::fmt;
 
-use saoms_api::Message;
+use saoms_api::{Message, Topic};
 
-use crate::grid::Block;
+use crate::grid::{Block, Map};
+use crate::validation::{LONGEST, MessageValidator, Problem, Validate, of_robot};
+
+/// State of each robot, the newest message of each.
+pub const ROBOT_LIST: Topic<RobotList> = Topic::state("RLMSTOPIC");
 
 /// Battery level in percent below which a robot is not woken, since it would soon have to charge again; the same as for
 /// the manual's robots.
@@ -44,5 +48,31 @@ impl fmt::Display for RobotList {
     /// Format of the console in the manual's figures.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "Robot{} is active", self.robot)
+    }
+}
+
+impl Validate for RobotList {
+    const WHAT: &'static str = "the state";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    fn validate(
+        &self,
+        sender: u32,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem> {
+        if !(0.0..=100.0).contains(&self.battery) {
+            return Err(Problem::Battery { percent: self.battery });
+        }
+        if self.period > LONGEST {
+            return Err(Problem::Period { micros: self.period });
+        }
+        Problem::of_block(self.charger, area)?;
+        validator.check_speaker(self.robot, sender)?;
+        validator.expect_introductions();
+        Ok(())
     }
 }

@@ -3,10 +3,10 @@
 //! A message that is impossible, or sent in another robot's name, is rejected where it arrives. It is counted, and
 //! logged with its sender once for each sender and kind of mistake, so that nobody floods the log.
 
-mod checks;
 mod problem;
 #[cfg(test)]
 mod tests;
+mod validate;
 
 use std::mem::{Discriminant, discriminant};
 
@@ -14,8 +14,8 @@ use saoms_api::{Context, Header, Level};
 
 use crate::grid::Map;
 
-pub(crate) use checks::Validate;
 pub(crate) use problem::Problem;
+pub(crate) use validate::{LONGEST, Validate, of_robot};
 
 /// Validator of the messages that one component receives.
 ///
@@ -86,6 +86,16 @@ impl MessageValidator {
         }
     }
 
+    /// True if a component speaks for a robot.
+    pub(crate) fn is_speaker(&self, sender: u32) -> bool {
+        self.speakers.iter().any(|(_, speaker)| *speaker == sender)
+    }
+
+    /// Records that robots announce themselves.
+    pub(crate) fn expect_introductions(&mut self) {
+        self.introduced = true;
+    }
+
     /// The component that speaks for a robot.
     fn speaker(&self, robot: u32) -> Option<u32> {
         let place = self.speakers.binary_search_by_key(&robot, |(known, _)| *known).ok()?;
@@ -93,7 +103,7 @@ impl MessageValidator {
     }
 
     /// Checks that a component may announce a robot.
-    fn check_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
+    pub(crate) fn check_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
         match self.speaker(robot) {
             _ if robot == 0 => Err(Problem::NoRobot),
             Some(speaker) if speaker != sender => Err(Problem::Foreign { robot, speaker }),
@@ -106,12 +116,13 @@ impl MessageValidator {
     }
 
     /// Checks that a component may speak for a robot that was announced before.
-    fn check_known_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
+    pub(crate) fn check_known_speaker(&mut self, robot: u32, sender: u32) -> Result<(), Problem> {
         self.check_known(robot)?;
         self.check_speaker(robot, sender)
     }
 
-    fn check_known(&self, robot: u32) -> Result<(), Problem> {
+    /// Checks that a robot was announced, where robots announce themselves.
+    pub(crate) fn check_known(&self, robot: u32) -> Result<(), Problem> {
         match self.speaker(robot) {
             _ if robot == 0 => Err(Problem::NoRobot),
             None if self.introduced => Err(Problem::Unknown { robot }),

@@ -36,7 +36,7 @@ pub(crate) enum Problem {
 
 impl Problem {
     /// Checks a block where a robot is, or moves to.
-    pub(super) fn of_block(block: Block, area: Option<&Map>) -> Result<(), Problem> {
+    pub(crate) fn of_block(block: Block, area: Option<&Map>) -> Result<(), Problem> {
         let inside = area.map_or(block.x >= 0 && block.y >= 0, |area| area.contains(block));
         let size = || area.map(|area| (area.width(), area.height()));
         if inside { Ok(()) } else { Err(Problem::Outside { block, area: size() }) }

@@ -8,7 +8,7 @@ use saoms_abi::{
     Bytes, ClassTable, ComponentTable, FindingSink, HostHandle, PluginTable, PropertyView, RecordView,
     ReportView, Sink, Status, TopicView, ValueView,
 };
-use saoms_api::host::declaration::Text;
+use saoms_api::host::declaration::ConstText;
 use saoms_api::{Class, Component, Context, Failure, Message, Properties, Topic, interface};
 
 /// A message.
@@ -277,10 +277,10 @@ static CLASS: ClassTable =
     ClassTable { size: size_of::<ClassTable>(), construct, component: &raw const COMPONENT };
 static CLASSES: &[&ClassTable] = &[&CLASS];
 
-const TEXT: Text = Text::Joined(&[
-    Text::Plain(r#"{"saoms":"plugin","abi":1,"package":"test-raw","entry":"raw_entry","classes":["#),
-    Text::Plain(<Actor as Class>::DECLARATION),
-    Text::Plain("]}"),
+const TEXT: ConstText = ConstText::Joined(&[
+    ConstText::Plain(r#"{"saoms":"plugin","abi":1,"package":"test-raw","entry":"raw_entry","classes":["#),
+    ConstText::Plain(<Actor as Class>::DECLARATION),
+    ConstText::Plain("]}"),
 ]);
 
 #[used]

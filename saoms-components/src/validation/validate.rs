@@ -1,0 +1,51 @@
+use super::{MessageValidator, Problem};
+use crate::grid::Map;
+use crate::hardware::Area;
+
+/// Maximum period of a component, a day, in microseconds.
+pub(crate) const LONGEST: u64 = 24 * 60 * 60 * 1_000_000;
+
+/// A message that can be wrong.
+///
+/// Landings and take-offs are not checked: every number of pieces is possible.
+pub(crate) trait Validate {
+    /// Name of the message for people.
+    const WHAT: &'static str;
+
+    /// The robot or luggage that the message is about, for people.
+    fn about(&self) -> String;
+
+    /// Checks the message of this sender.
+    fn validate(
+        &self,
+        sender: u32,
+        validator: &mut MessageValidator,
+        area: Option<&Map>,
+    ) -> Result<(), Problem>;
+}
+
+/// The robot of a message, for people.
+pub(crate) fn of_robot(robot: u32) -> String {
+    format!("robot {robot}")
+}
+
+impl Validate for Area {
+    const WHAT: &'static str = "an area";
+
+    fn about(&self) -> String {
+        format!("{} x {} blocks", self.width, self.height)
+    }
+
+    fn validate(
+        &self,
+        _sender: u32,
+        _intake: &mut MessageValidator,
+        _area: Option<&Map>,
+    ) -> Result<(), Problem> {
+        let Area { width, height, .. } = *self;
+        match Option::<Map>::from(self.clone()) {
+            Some(_) => Ok(()),
+            None => Err(Problem::Area { width, height }),
+        }
+    }
+}
