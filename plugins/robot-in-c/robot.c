@@ -122,7 +122,7 @@ static SaomsStatus say_position(Patrol *patrol, const SaomsHostHandle *host, Sao
     return send(host, patrol->positions, patrol->number, &message, error);
 }
 
-/* Says that it is there, as a robot that takes no jobs: asleep, and with too little charge to be awaked. */
+/* Says that it is there, as a robot that takes no jobs: asleep, and with too little charge to be woken. */
 static SaomsStatus say_robot(Patrol *patrol, const SaomsHostHandle *host, int active, SaomsSink error) {
     uint8_t memory[MESSAGE];
     SaomsBuffer message = saoms_writer(memory, sizeof memory);

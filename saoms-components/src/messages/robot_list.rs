@@ -34,7 +34,7 @@ pub struct RobotList {
 
 impl RobotList {
     /// True if the robot is asleep, and charged enough to work when it is woken.
-    pub fn can_be_awaked(&self) -> bool {
+    pub fn can_be_woken(&self) -> bool {
         self.active && self.asleep && self.battery > LOW
     }
 

@@ -15,7 +15,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",
-        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them are classic ones that sleep, and none is awaked.",
+        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them are classic ones that sleep, and none is woken.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -31,9 +31,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let scenarios = fleet.all::<Environment>();
     let scenarios: Vec<(usize, FirstEvents)> =
         scenarios.map(|(index, properties)| (index, FirstEvents::of(&properties.scenario))).collect();
-    let is_awaked = scenarios.iter().any(|(_, has)| has.airplanes.is_some());
+    let is_woken = scenarios.iter().any(|(_, has)| has.airplanes.is_some());
     let judged = scenarios.iter().filter_map(|(index, has)| {
-        let (first, message, help) = find_mistake(fleet, has, is_awaked).or_else(|| airplanes(fleet, has))?;
+        let (first, message, help) = find_mistake(fleet, has, is_woken).or_else(|| airplanes(fleet, has))?;
         let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
         Some(Finding::new(place, message).help(help))
     });
@@ -69,7 +69,7 @@ impl FirstEvents {
 }
 
 /// Reason why no component handles the events of a scenario, and help.
-fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_awaked: bool) -> Option<Mistake<'h>> {
+fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_woken: bool) -> Option<Mistake<'h>> {
     if let Some(first) = &has.events
         && !publishes_beside_robots(fleet, EVENT_LUGGAGE.name())
     {
@@ -95,14 +95,14 @@ fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_awaked: bool
             "add a `saoms.Robot`",
         ));
     }
-    let message = "all robots sleep, and none is awaked to bring the luggage of this scenario";
+    let message = "all robots sleep, and none is woken to bring the luggage of this scenario";
     if !publishes_beside_robots(fleet, ROBOT_STATE.name()) {
         let help = "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for landings and take-offs";
         return Some((first, message, help));
     }
     let help =
-        "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are awaked";
-    (!is_awaked).then_some((first, message, help))
+        "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are woken";
+    (!is_woken).then_some((first, message, help))
 }
 
 /// Landings and take-offs that no component handles.

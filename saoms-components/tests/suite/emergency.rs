@@ -217,15 +217,15 @@ fn two_robots_break_at_once() {
 }
 
 #[test]
-fn who_sleeps_is_awaked_when_all_others_break() {
+fn who_sleeps_is_woken_when_all_others_break() {
     for variant in variants() {
         let slow = 1 + variant.move_time / 60;
         for moment in (6..60).step_by(3) {
             let time = moment * 50 * slow;
             let strokes = vec![(time, 1), (time + moment % 5 * 60, 3)];
             let fleet = Emergency { robots: 4, asleep: &[2, 4], strokes, ..variant }.check();
-            let awaked = fleet.log.iter().filter(|line| line.contains("Info: awakes")).count();
-            assert!(awaked <= 4 && (awaked > 0 || fleet.count("assistance") < 2), "{:#?}", fleet.log);
+            let woken = fleet.log.iter().filter(|line| line.contains("Info: awakes")).count();
+            assert!(woken <= 4 && (woken > 0 || fleet.count("assistance") < 2), "{:#?}", fleet.log);
         }
     }
 }

@@ -356,7 +356,7 @@ fn scenarios_of_which_nothing_comes_are_told() {
     let luggage = [("scenario", "at 1s luggage (1,0) to (4,0)")];
     let landing = [("scenario", "at 1s landing 2; at 2s luggage (1,0) to (4,0)")];
     let robot = ("Robot2", "saoms.Robot", &[][..], false);
-    let sleep = "warning S5008 all robots sleep, and none is awaked to bring the luggage of this scenario";
+    let sleep = "warning S5008 all robots sleep, and none is woken to bring the luggage of this scenario";
     assert_eq!(
         with(&luggage, &[robot]),
         ["warning S5008 nobody passes the events of this scenario on to the robots"]

@@ -54,7 +54,7 @@ fn a_robot_on_its_way_gets_a_healer_that_takes_its_whole_job() {
 }
 
 #[test]
-fn for_a_robot_without_a_job_the_best_charged_one_is_awaked() {
+fn for_a_robot_without_a_job_the_best_charged_one_is_woken() {
     let run = run(
         "at 3s breakdown 1",
         &["1", "3", "5 asleep=true battery=60 discharge=0.2", "6 asleep=true", "7 asleep=true"],
@@ -67,7 +67,7 @@ fn for_a_robot_without_a_job_the_best_charged_one_is_awaked() {
 "
     );
     assert_eq!(run.log("Robot005"), [""; 0]);
-    assert_eq!(run.log("Robot006"), ["5.000 s is awaked (battery 100.0 %)"]);
+    assert_eq!(run.log("Robot006"), ["5.000 s is woken (battery 100.0 %)"]);
     assert_eq!(run.log("Robot007"), [""; 0]);
 }
 

@@ -1,4 +1,4 @@
-//! The master of the robots: who is awaked for a landing or a take-off, and who is sent under charge again.
+//! The master of the robots: who is woken for a landing or a take-off, and who is sent under charge again.
 
 use super::fleet::fleet;
 use super::run::Run;
@@ -14,7 +14,7 @@ fn run(properties: &str, scenario: &str, robots: &[&str]) -> Run {
 }
 
 #[test]
-fn one_robot_for_two_pieces_is_awaked_by_battery_and_number() {
+fn one_robot_for_two_pieces_is_woken_by_battery_and_number() {
     let robots =
         ["1", "2 asleep=true battery=40", "3 asleep=true", "4 asleep=true battery=2", "5 asleep=true"];
     let run = run("", "at 2s landing 3", &robots);
@@ -56,7 +56,7 @@ fn robots_stay_where_one_shift_follows_another() {
 }
 
 #[test]
-fn only_as_many_are_sent_away_as_were_awaked() {
+fn only_as_many_are_sent_away_as_were_woken() {
     assert_eq!(
         master("", "at 3s landing 6", &["1", "2", "3 asleep=true"]),
         "3.500 s awakes robot 3\n3.500 s finds 2 robots too few asleep\n28.500 s sends under charge robot 3"

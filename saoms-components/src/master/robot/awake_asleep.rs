@@ -153,8 +153,8 @@ impl Loop for MasterAwakeAsleep {
         let cause = context.cause();
         match decision {
             AwakeAsleepDecision::Awake { robots, stay } => {
-                let awaked = self.call(robots, true, knowledge, context)?;
-                knowledge.start_shift(stay.saturating_add(awaked), cause);
+                let woken = self.call(robots, true, knowledge, context)?;
+                knowledge.start_shift(stay.saturating_add(woken), cause);
             }
             AwakeAsleepDecision::Asleep { robots, stay } => {
                 self.call(robots, false, knowledge, context)?;

@@ -84,7 +84,7 @@ impl MasterRobotKnowledge {
 
     /// The robot to wake next: the one with the highest battery level, then the one with the lowest number.
     pub fn next_to_awake(&self) -> Option<u32> {
-        self.callable(RobotList::can_be_awaked).max_by(|one, other| by_right(one, other)).map(|one| one.robot)
+        self.callable(RobotList::can_be_woken).max_by(|one, other| by_right(one, other)).map(|one| one.robot)
     }
 
     /// The robot to send to charge next: the one with the lowest battery level, then the one with the highest number.

@@ -296,7 +296,7 @@ fn is_closest(knowledge: &RobotKnowledge, help: &Help) -> bool {
 /// that needs help.
 fn best_charged(knowledge: &RobotKnowledge, critical: u32) -> Option<u32> {
     let others =
-        knowledge.lists.active.iter().filter(|other| other.can_be_awaked() && other.robot != critical);
+        knowledge.lists.active.iter().filter(|other| other.can_be_woken() && other.robot != critical);
     let best = others.max_by(|one, other| {
         one.battery.total_cmp(&other.battery).then(Reverse(one.robot).cmp(&Reverse(other.robot)))
     });

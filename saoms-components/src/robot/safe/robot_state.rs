@@ -32,7 +32,7 @@ pub struct SafeRobotState {
 #[derive(Clone, Copy, Debug)]
 pub enum SafeRobotSymptom {
     /// A command to wake, perhaps as a substitute.
-    Awaked {
+    Woken {
         /// Number of the robot to substitute; 0 for none.
         emulate: u32,
     },
@@ -71,8 +71,8 @@ pub enum SafeRobotDecision {
 impl Recordable for SafeRobotSymptom {
     fn record(&self) -> Record {
         match *self {
-            SafeRobotSymptom::Awaked { emulate: 0 } => record!("is awaked"),
-            SafeRobotSymptom::Awaked { emulate } => record!("is awaked in place of robot {emulate}", emulate),
+            SafeRobotSymptom::Woken { emulate: 0 } => record!("is woken"),
+            SafeRobotSymptom::Woken { emulate } => record!("is woken in place of robot {emulate}", emulate),
             SafeRobotSymptom::SentToSleep => record!("is sent to sleep"),
             SafeRobotSymptom::NobodyAwake { critical } => {
                 record!("robot {critical} needs help, and no robot that is awake can give it", critical)
@@ -139,7 +139,7 @@ impl Loop for SafeRobotState {
         }
         if let Some((state, cause)) = self.called.take() {
             context.because(cause);
-            let symptom = SafeRobotSymptom::Awaked { emulate: state.emulate };
+            let symptom = SafeRobotSymptom::Woken { emulate: state.emulate };
             return Ok(Some(if state.awake { symptom } else { SafeRobotSymptom::SentToSleep }));
         }
         if knowledge.variables.asleep {
@@ -165,10 +165,10 @@ impl Loop for SafeRobotState {
     ) -> Result<Option<SafeRobotDecision>, Failure> {
         let asleep = knowledge.variables.asleep;
         Ok(match symptom {
-            SafeRobotSymptom::Awaked { emulate } if asleep || knowledge.relieved => {
+            SafeRobotSymptom::Woken { emulate } if asleep || knowledge.relieved => {
                 Some(SafeRobotDecision::Awake { emulate })
             }
-            SafeRobotSymptom::Awaked { .. } => Some(SafeRobotDecision::StayAwake),
+            SafeRobotSymptom::Woken { .. } => Some(SafeRobotDecision::StayAwake),
             SafeRobotSymptom::NobodyAwake { critical } => {
                 Some(SafeRobotDecision::Awake { emulate: critical })
             }

@@ -137,7 +137,7 @@ impl Loop for SafeCriticalSituation {
         if let Some(emulates) = knowledge.stands_in_for
             && !knowledge.needs_help(emulates)
         {
-            return Ok(Some(SafeCriticalSymptom::Awaked { emulates }));
+            return Ok(Some(SafeCriticalSymptom::Woken { emulates }));
         }
         if let Some(substitution) = &mut self.substitution {
             let symptom = substitution.look(knowledge);
@@ -194,7 +194,7 @@ impl Loop for SafeCriticalSituation {
             SafeCriticalSymptom::Alone(situation) => SafeCriticalDecision::Heal(situation),
             SafeCriticalSymptom::Beaten { situation, .. } => SafeCriticalDecision::Release(situation),
             SafeCriticalSymptom::Gone => SafeCriticalDecision::Forget,
-            SafeCriticalSymptom::Awaked { emulates } => SafeCriticalDecision::StandIn { critical: emulates },
+            SafeCriticalSymptom::Woken { emulates } => SafeCriticalDecision::StandIn { critical: emulates },
             SafeCriticalSymptom::Charges { .. } => SafeCriticalDecision::AskForSubstitute,
             SafeCriticalSymptom::Missing { robot, sleeper, .. } => {
                 SafeCriticalDecision::Awake { sleeper, robot }

@@ -37,7 +37,7 @@ pub enum SafeCriticalSymptom {
     /// Another robot helps.
     Gone,
     /// This robot was woken as a substitute for a robot whose job is already taken over.
-    Awaked {
+    Woken {
         /// Number of the other robot.
         emulates: u32,
     },
@@ -145,8 +145,8 @@ impl Recordable for SafeCriticalSymptom {
                 record!("has to charge, and said that it would help robot {critical}", critical)
             }
             SafeCriticalSymptom::Gone => record!("another robot helps"),
-            SafeCriticalSymptom::Awaked { emulates } => {
-                record!("was awaked in place of robot {emulates}", emulates)
+            SafeCriticalSymptom::Woken { emulates } => {
+                record!("was woken in place of robot {emulates}", emulates)
             }
             SafeCriticalSymptom::Charges { battery } => {
                 record!("has to charge (battery {battery} %), and others sleep", battery)
