@@ -38,7 +38,7 @@ pub(crate) fn compiled<T>(
 
 /// Diagnostics as they are shown.
 #[derive(Clone, Copy)]
-pub(crate) struct Shown<'a> {
+pub(crate) struct DiagnosticReport<'a> {
     diagnostics: &'a [Diagnostic],
     sources: &'a Sources,
 }
@@ -51,19 +51,19 @@ pub(crate) struct Found<'a, W> {
     wiring: Option<W>,
 }
 
-impl<'a, T> From<&'a Compilation<T>> for Shown<'a> {
+impl<'a, T> From<&'a Compilation<T>> for DiagnosticReport<'a> {
     fn from(of: &'a Compilation<T>) -> Self {
         Self { diagnostics: &of.diagnostics, sources: &of.sources }
     }
 }
 
-impl<'a, T> From<&'a Compilations<T>> for Shown<'a> {
+impl<'a, T> From<&'a Compilations<T>> for DiagnosticReport<'a> {
     fn from(of: &'a Compilations<T>) -> Self {
         Self { diagnostics: &of.diagnostics, sources: &of.sources }
     }
 }
 
-impl<'a> Shown<'a> {
+impl<'a> DiagnosticReport<'a> {
     /// The diagnostics but for those that are allowed.
     fn reported(self) -> impl Iterator<Item = &'a Diagnostic> {
         self.diagnostics.iter().filter(|one| !one.is_allowed())

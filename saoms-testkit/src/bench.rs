@@ -12,7 +12,7 @@ use saoms_lang::registry::{RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
-use crate::stage::{Happened, Stage};
+use crate::stage::{Action, Stage};
 
 /// One component without a fleet: a test sends it messages, and sees its messages and other output.
 ///
@@ -151,7 +151,7 @@ impl Bench {
                 }
             }
         }
-        self.step = self.stage.happened.len();
+        self.step = self.stage.actions.len();
         let (component, mut context) = (&mut self.component, Context::new(&mut self.stage, &inboxes));
         let result = contained(|| component.execute(&mut context)).and_then(|result| result);
         self.stage.end_of_execution();
@@ -182,7 +182,7 @@ impl Bench {
         &mut self,
         code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        self.step = self.stage.happened.len();
+        self.step = self.stage.actions.len();
         let (component, mut context) = (&mut *self.component, Context::new(&mut self.stage, &[]));
         contained(|| code(component, &mut context)).and_then(|result| result)
     }
@@ -231,8 +231,8 @@ impl Bench {
     }
 
     fn messages(&self, topic: &str) -> impl Iterator<Item = &SharedMessage> {
-        self.stage.happened[self.step..].iter().filter_map(move |(_, what)| match what {
-            Happened::Sent(place, message) if self.stage.publishers[*place].name == topic => Some(message),
+        self.stage.actions[self.step..].iter().filter_map(move |(_, what)| match what {
+            Action::Sent(place, message) if self.stage.publishers[*place].name == topic => Some(message),
             _ => None,
         })
     }
@@ -240,7 +240,7 @@ impl Bench {
     /// Lines that the component wrote to the log.
     pub fn log(&self) -> Vec<&str> {
         self.lines(|what| match what {
-            Happened::Log(_, line) => Some(line),
+            Action::Log(_, line) => Some(line),
             _ => None,
         })
     }
@@ -248,13 +248,13 @@ impl Bench {
     /// Records of the component in the journal, and changes of entries by its loops.
     pub fn journal(&self) -> Vec<&str> {
         self.lines(|what| match what {
-            Happened::Journal(line) => Some(line),
+            Action::Journal(line) => Some(line),
             _ => None,
         })
     }
 
-    fn lines<'a>(&'a self, choose: impl Fn(&'a Happened) -> Option<&'a String>) -> Vec<&'a str> {
-        let step = self.stage.happened[self.step..].iter();
+    fn lines<'a>(&'a self, choose: impl Fn(&'a Action) -> Option<&'a String>) -> Vec<&'a str> {
+        let step = self.stage.actions[self.step..].iter();
         step.filter_map(|(_, what)| choose(what)).map(String::as_str).collect()
     }
 

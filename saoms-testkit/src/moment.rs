@@ -25,12 +25,12 @@ pub struct Moment<'r> {
     words: String,
     /// Index among the events of the component.
     place: usize,
-    record: Told,
+    record: LoggedLine,
 }
 
 /// A record of the journal, or a line of the log.
 #[derive(Clone, Debug)]
-struct Told {
+struct LoggedLine {
     time: Time,
     /// Number of a record.
     number: Option<Cause>,
@@ -111,8 +111,8 @@ impl<'r> Expect<'r> {
     #[track_caller]
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn to(self, words: &str) -> Moment<'r> {
-        let all = self.told();
-        let place = all.iter().position(|told| told.text.contains(words));
+        let all = self.logged();
+        let place = all.iter().position(|logged| logged.text.contains(words));
         let Some(place) = place else { panic!("{} did not do `{words}`; {}", self.component, did(&all)) };
         Moment { of: self, words: words.to_owned(), place, record: all[place].clone() }
     }
@@ -124,9 +124,9 @@ impl<'r> Expect<'r> {
     #[track_caller]
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn never_to(self, words: &str) {
-        let all = self.told();
-        if let Some(told) = all.iter().find(|told| told.text.contains(words)) {
-            panic!("{} did `{words}`: {} {}", self.component, told.time, told.text);
+        let all = self.logged();
+        if let Some(logged) = all.iter().find(|logged| logged.text.contains(words)) {
+            panic!("{} did `{words}`: {} {}", self.component, logged.time, logged.text);
         }
         self.all_known();
     }
@@ -138,7 +138,7 @@ impl<'r> Expect<'r> {
     #[track_caller]
     pub fn count(self, words: &str) -> usize {
         self.all_known();
-        self.told().iter().filter(|told| told.text.contains(words)).count()
+        self.logged().iter().filter(|logged| logged.text.contains(words)).count()
     }
 
     #[track_caller]
@@ -148,27 +148,28 @@ impl<'r> Expect<'r> {
     }
 
     /// All events in order. An event that is both in the journal and in the log is there twice.
-    fn told(self) -> Vec<Told> {
+    fn logged(self) -> Vec<LoggedLine> {
         let entries = self.run.journal().of(self.component);
-        let entries = entries.iter().map(|entry| Told {
+        let entries = entries.iter().map(|entry| LoggedLine {
             time: entry.time(),
             number: Some(entry.id()),
             text: entry.text(),
         });
-        let lines = self.run.log_lines(self.component).map(|(time, text)| Told { time, number: None, text });
-        let mut all: Vec<Told> = entries.chain(lines).collect();
-        all.sort_by_key(|told| told.time);
+        let lines =
+            self.run.log_lines(self.component).map(|(time, text)| LoggedLine { time, number: None, text });
+        let mut all: Vec<LoggedLine> = entries.chain(lines).collect();
+        all.sort_by_key(|logged| logged.time);
         all
     }
 }
 
 /// Events of a component, as far as they are shown.
-fn did(all: &[Told]) -> String {
+fn did(all: &[LoggedLine]) -> String {
     if all.is_empty() {
         return "it did nothing".to_owned();
     }
     let shown: String =
-        all.iter().take(SHOWN).map(|told| format!("\n  {} {}", told.time, told.text)).collect();
+        all.iter().take(SHOWN).map(|logged| format!("\n  {} {}", logged.time, logged.text)).collect();
     match all.len().checked_sub(SHOWN) {
         None | Some(0) => format!("it did{shown}"),
         Some(more) => format!("it did{shown}\n  and {more} more"),
@@ -193,8 +194,8 @@ impl<'r> Moment<'r> {
     #[track_caller]
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn again(&self) -> Moment<'r> {
-        let all = self.of.told();
-        let next = all.iter().skip(self.place + 1).position(|told| told.text.contains(&self.words));
+        let all = self.of.logged();
+        let next = all.iter().skip(self.place + 1).position(|logged| logged.text.contains(&self.words));
         match next {
             Some(next) => {
                 let place = self.place + 1 + next;

@@ -15,7 +15,7 @@ use saoms_lang::schema::Schema;
 use crate::Bench;
 
 /// An action of a component.
-pub(crate) enum Happened {
+pub(crate) enum Action {
     /// A message that it sent as the publisher with this index.
     Sent(usize, SharedMessage),
     Log(Level, String),
@@ -26,7 +26,7 @@ pub(crate) enum Happened {
 }
 
 /// A topic to which the component subscribed.
-pub(crate) struct Taken {
+pub(crate) struct BoundTopic {
     pub(crate) name: String,
     schema: Option<Schema>,
 }
@@ -42,10 +42,10 @@ pub(crate) struct Stage {
     execution: u64,
     chance: Chance,
     pub(crate) initializing: bool,
-    pub(crate) publishers: Vec<Taken>,
-    pub(crate) subscriptions: Vec<Taken>,
+    pub(crate) publishers: Vec<BoundTopic>,
+    pub(crate) subscriptions: Vec<BoundTopic>,
     pub(crate) wires: Vec<(String, String, Bench)>,
-    pub(crate) happened: Vec<(Time, Happened)>,
+    pub(crate) actions: Vec<(Time, Action)>,
     pub(crate) report: Vec<(String, ReportValue)>,
     pub(crate) work: Option<Work>,
 }
@@ -90,7 +90,7 @@ impl Stage {
             publishers: Vec::new(),
             subscriptions: Vec::new(),
             wires: Vec::new(),
-            happened: Vec::new(),
+            actions: Vec::new(),
             report: Vec::new(),
             work: None,
         }
@@ -105,8 +105,8 @@ impl Stage {
         self.now = self.now + self.period;
     }
 
-    fn tell(&mut self, what: Happened) {
-        self.happened.push((self.now, what));
+    fn log_action(&mut self, what: Action) {
+        self.actions.push((self.now, what));
     }
 
     fn declared(&self, publishes: bool) -> impl Iterator<Item = &ClassTopic> {
@@ -137,7 +137,7 @@ impl Stage {
         self.publishers.iter().find(|taken| taken.name == topic).and_then(|taken| taken.schema.clone())
     }
 
-    fn take(&self, topic: &TopicDeclaration<'_>, publishes: bool) -> Result<Taken, Failure> {
+    fn take(&self, topic: &TopicDeclaration<'_>, publishes: bool) -> Result<BoundTopic, Failure> {
         let verb = if publishes { "publishes" } else { "subscribes" };
         if !self.initializing {
             return Err(Failure::new(format!("topic `{}`: it {verb} after `initialize`", topic.name)));
@@ -149,27 +149,27 @@ impl Stage {
                 self.class.as_ref().map_or("(none)", |class| class.name())
             )));
         }
-        Ok(Taken { name: topic.name.to_owned(), schema: Schema::parse(topic.schema).ok() })
+        Ok(BoundTopic { name: topic.name.to_owned(), schema: Schema::parse(topic.schema).ok() })
     }
 
     pub(crate) fn transcript(&self) -> String {
         let mut text = String::new();
-        for (time, what) in &self.happened {
+        for (time, what) in &self.actions {
             let _ = write!(text, "{:8.3} s  ", time.as_nanos() as f64 / 1e9);
             let _ = match what {
-                Happened::Sent(place, message) => {
+                Action::Sent(place, message) => {
                     let taken = &self.publishers[*place];
                     let shown = taken.schema.as_ref().and_then(|schema| schema.decode(message.bytes()).ok());
                     let shown =
                         shown.map_or_else(|| "bytes that are no message".to_owned(), |json| json.to_string());
                     writeln!(text, "sends {} {shown}", taken.name)
                 }
-                Happened::Log(level, line) => writeln!(text, "{}: {line}", level_name(*level)),
-                Happened::Console(line) => writeln!(text, "console: {line}"),
-                Happened::Journal(line) => writeln!(text, "{line}"),
-                Happened::Report(line) => writeln!(text, "report: {line}"),
-                Happened::Work(Work::Open) => writeln!(text, "has work left"),
-                Happened::Work(Work::Done) => writeln!(text, "has no work left"),
+                Action::Log(level, line) => writeln!(text, "{}: {line}", level_name(*level)),
+                Action::Console(line) => writeln!(text, "console: {line}"),
+                Action::Journal(line) => writeln!(text, "{line}"),
+                Action::Report(line) => writeln!(text, "report: {line}"),
+                Action::Work(Work::Open) => writeln!(text, "has work left"),
+                Action::Work(Work::Done) => writeln!(text, "has no work left"),
             };
         }
         text
@@ -241,7 +241,7 @@ impl Host for Stage {
                 "this publisher belongs to no topic: keep what `Context::publish` returned",
             ));
         }
-        self.tell(Happened::Sent(place, message));
+        self.log_action(Action::Sent(place, message));
         Ok(())
     }
 
@@ -313,12 +313,12 @@ impl Host for Stage {
             Phase::Effect => "effect",
         };
         let line = format!("{}{phase}: {record}", self.acting());
-        self.tell(Happened::Journal(line));
+        self.log_action(Action::Journal(line));
     }
 
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
         let line = format!("{}{entry}: {before} -> {after}", self.acting());
-        self.tell(Happened::Journal(line));
+        self.log_action(Action::Journal(line));
     }
 
     fn listens(&self, _: Option<Level>) -> bool {
@@ -326,15 +326,15 @@ impl Host for Stage {
     }
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
-        self.tell(Happened::Log(level, line.to_string()));
+        self.log_action(Action::Log(level, line.to_string()));
     }
 
     fn console(&mut self, line: fmt::Arguments<'_>) {
-        self.tell(Happened::Console(line.to_string()));
+        self.log_action(Action::Console(line.to_string()));
     }
 
     fn report(&mut self, path: &str, value: ReportValue) {
-        self.tell(Happened::Report(format!("{path} = {value:?}")));
+        self.log_action(Action::Report(format!("{path} = {value:?}")));
         self.report.push((path.to_owned(), value));
     }
 
@@ -345,14 +345,14 @@ impl Host for Stage {
             _ => 0,
         };
         let now = before.saturating_add(more);
-        self.tell(Happened::Report(format!("{path} = {now}")));
+        self.log_action(Action::Report(format!("{path} = {now}")));
         self.report.push((path.to_owned(), ReportValue::Integer(now)));
     }
 
     fn vote(&mut self, work: Work) {
         if self.work != Some(work) {
             self.work = Some(work);
-            self.tell(Happened::Work(work));
+            self.log_action(Action::Work(work));
         }
     }
 }

@@ -11,7 +11,7 @@ use saoms_tools::format::{Formatted, WIDTH};
 use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::fleet::{Shown, compiled};
+use crate::fleet::{DiagnosticReport, compiled};
 use crate::output::{counted, eprint, print};
 
 /// Print the one composite that is left when includes, inner composites, property sources and wires are resolved
@@ -27,7 +27,7 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
         Ok(compilation) => compilation,
         Err(exit) => return exit,
     };
-    let shown = Shown::from(&compilation);
+    let shown = DiagnosticReport::from(&compilation);
     eprint(&shown.human(Severity::Error));
     let Some(text) = compilation.expanded() else {
         eprint(&format!("\n{}: nothing to expand\n", counted(shown.count(Severity::Error), "error")));

@@ -43,7 +43,7 @@ pub(super) struct Outcome {
 
 /// The kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sort {
+enum FileKind {
     Composite,
     /// Of a contribution.
     Description,
@@ -91,8 +91,8 @@ impl Checker {
         let (mut checked, mut seen) = (HashSet::new(), HashSet::new());
         let mut finder = Finder::new(job.open.clone());
         for path in &job.paths {
-            let (fleets, sort) = self.fleets(path);
-            if sort == Sort::Description {
+            let (fleets, kind) = self.fleets(path);
+            if kind == FileKind::Description {
                 contribution(path, &job, &mut finder, &mut files);
             }
             for (fleet, may_be_part) in fleets {
@@ -102,7 +102,7 @@ impl Checker {
             }
             // A fleet that is broken does not lead here.
             let alone = vec![path.clone()];
-            if sort == Sort::Composite && !seen.contains(path) && checked.insert(alone.clone()) {
+            if kind == FileKind::Composite && !seen.contains(path) && checked.insert(alone.clone()) {
                 self.one(&alone, false, &job, &mut finder, &mut files, &mut seen)?;
             }
         }
@@ -111,19 +111,19 @@ impl Checker {
     }
 
     /// The fleets that one file is part of, and of each whether others elsewhere may use it; then what it is itself.
-    fn fleets(&mut self, path: &Path) -> (Vec<(Vec<PathBuf>, bool)>, Sort) {
+    fn fleets(&mut self, path: &Path) -> (Vec<(Vec<PathBuf>, bool)>, FileKind) {
         let around = self.workspace.around(path);
         if around.file().is_none_or(|first| first.path != path) {
-            return (Vec::new(), Sort::Composite);
+            return (Vec::new(), FileKind::Composite);
         }
         let scene = Scene::new(around, self.registries.of(path, &[]));
         let paths =
             |fleet: &SceneFleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
         let fleets = scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect();
         let sort = match scene.file() {
-            one if one.is_beside => Sort::Values,
-            one if one.is_description() => Sort::Description,
-            _ => Sort::Composite,
+            one if one.is_beside => FileKind::Values,
+            one if one.is_description() => FileKind::Description,
+            _ => FileKind::Composite,
         };
         (fleets, sort)
     }
@@ -176,8 +176,8 @@ fn contribution(
     add(&found, &sources, files);
 }
 
-fn add(told: &[Diagnostic], sources: &Sources, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
-    for (path, one) in reported(told, sources) {
+fn add(diagnostics: &[Diagnostic], sources: &Sources, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
+    for (path, one) in reported(diagnostics, sources) {
         let known = files.entry(path).or_default();
         // Composites that several others name have their faults once.
         if !known.contains(&one) {

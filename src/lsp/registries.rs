@@ -18,13 +18,13 @@ use crate::plugins::search;
 #[derive(Debug)]
 pub(super) struct Registries {
     arguments: PluginArguments,
-    known: Mutex<Known>,
+    known: Mutex<ClassCache>,
 }
 
 #[derive(Debug, Default)]
-struct Known {
+struct ClassCache {
     by_file: HashMap<(PathBuf, Vec<PathBuf>), (Libraries, Arc<Registry>)>,
-    told: HashSet<String>,
+    reported: HashSet<String>,
     problems: Vec<PluginFault>,
 }
 
@@ -71,7 +71,7 @@ impl Registries {
             }
         };
         for problem in problems {
-            if known.told.insert(problem.text.clone()) {
+            if known.reported.insert(problem.text.clone()) {
                 known.problems.push(problem);
             }
         }

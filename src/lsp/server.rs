@@ -75,18 +75,18 @@ pub(super) struct Server<W> {
     jobs: Sender<Job>,
     newest: Arc<AtomicU64>,
     /// The diagnostics by file as they were shown last, with the URI and the version that they were shown for.
-    pub(super) shown: BTreeMap<PathBuf, Shown>,
+    pub(super) shown: BTreeMap<PathBuf, PublishedDiagnostics>,
 }
 
 /// The diagnostics that are shown of a file.
 #[derive(Debug)]
-pub(super) struct Shown {
+pub(super) struct PublishedDiagnostics {
     uri: String,
     version: Option<i32>,
     pub(super) all: Vec<Reported>,
 }
 
-impl Shown {
+impl PublishedDiagnostics {
     /// True if it was found in this version of the text.
     pub(super) fn is_of(&self, version: i32) -> bool {
         self.version == Some(version)
@@ -134,12 +134,12 @@ impl<W: Write> Server<W> {
                     let is_cancelled = waiting.iter().any(|later| cancels(later, &request.id));
                     self.request(request, is_cancelled)
                 }
-                Event::Incoming(Incoming::Message(Message::Notification(told))) => {
-                    if told.method == notice::Exit::METHOD {
+                Event::Incoming(Incoming::Message(Message::Notification(notification))) => {
+                    if notification.method == notice::Exit::METHOD {
                         let done = self.state == State::ShutDown;
                         return if done { Exit::Done } else { Exit::Failed };
                     }
-                    self.notified(told)
+                    self.notified(notification)
                 }
                 // Answers of the editor to what it was told to watch.
                 Event::Incoming(Incoming::Message(Message::Response(_))) => Ok(()),
@@ -181,31 +181,31 @@ impl<W: Write> Server<W> {
         self.tell_problems()
     }
 
-    fn notified(&mut self, told: Notification) -> io::Result<()> {
+    fn notified(&mut self, notification: Notification) -> io::Result<()> {
         if self.state != State::Running {
             return Ok(());
         }
-        match told.method.as_str() {
+        match notification.method.as_str() {
             notice::Initialized::METHOD if self.client.watches_files => {
                 let asked = json!({ "jsonrpc": "2.0", "id": "watch", "method": "client/registerCapability", "params": watchers() });
                 rpc::write(&mut self.output, &asked)?;
             }
             DidOpenTextDocument::METHOD => {
-                if let Some(one) = read::<notice::DidOpenTextDocument>(told) {
+                if let Some(one) = read::<notice::DidOpenTextDocument>(notification) {
                     let one = one.text_document;
                     self.documents.open(one.uri.as_str().to_owned(), one.version, one.text);
                     self.changed(true);
                 }
             }
             DidChangeTextDocument::METHOD => {
-                if let Some(one) = read::<notice::DidChangeTextDocument>(told) {
+                if let Some(one) = read::<notice::DidChangeTextDocument>(notification) {
                     let about = one.text_document;
                     self.documents.change(about.uri.as_str(), about.version, one.content_changes);
                     self.changed(false);
                 }
             }
             DidCloseTextDocument::METHOD => {
-                if let Some(one) = read::<notice::DidCloseTextDocument>(told) {
+                if let Some(one) = read::<notice::DidCloseTextDocument>(notification) {
                     self.documents.close(one.text_document.uri.as_str());
                     self.changed(true);
                 }
@@ -214,7 +214,7 @@ impl<W: Write> Server<W> {
                 self.changed(true);
             }
             DidChangeWorkspaceFolders::METHOD => {
-                if let Some(one) = read::<notice::DidChangeWorkspaceFolders>(told) {
+                if let Some(one) = read::<notice::DidChangeWorkspaceFolders>(notification) {
                     let path = |folder: &WorkspaceFolder| uri::path(folder.uri.as_str());
                     let gone: Vec<PathBuf> = one.event.removed.iter().filter_map(path).collect();
                     self.client.folders.retain(|folder| !gone.contains(folder));
@@ -271,7 +271,7 @@ impl<W: Write> Server<W> {
                 self.show(&uri, version, &all)?;
             }
             if version.is_some() || !all.is_empty() {
-                self.shown.insert(path, Shown { uri, version, all });
+                self.shown.insert(path, PublishedDiagnostics { uri, version, all });
             }
         }
         self.tell_problems()
@@ -318,16 +318,16 @@ pub(super) fn written(answer: &impl Serialize) -> Result<Box<RawValue>, Refusal>
     to_raw_value(answer).map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
 }
 
-fn read<N: notice::Notification>(told: Notification) -> Option<N::Params>
+fn read<N: notice::Notification>(notification: Notification) -> Option<N::Params>
 where
     N::Params: DeserializeOwned,
 {
     // Nobody waits for an answer to a notification, so nobody can be told that it is malformed.
-    serde_json::from_value(told.params).ok()
+    serde_json::from_value(notification.params).ok()
 }
 
 fn cancels(later: &Event, id: &RequestId) -> bool {
-    let Event::Incoming(Incoming::Message(Message::Notification(told))) = later else { return false };
+    let Event::Incoming(Incoming::Message(Message::Notification(notification))) = later else { return false };
     let wanted = serde_json::to_value(id).unwrap_or_default();
-    told.method == notice::Cancel::METHOD && told.params.get("id") == Some(&wanted)
+    notification.method == notice::Cancel::METHOD && notification.params.get("id") == Some(&wanted)
 }

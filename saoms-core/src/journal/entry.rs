@@ -16,12 +16,12 @@ pub struct JournalEntry {
     pub(super) cause: Cause,
     /// True if it records a change of an entry of the knowledge.
     pub(super) change: bool,
-    pub(super) what: What,
+    pub(super) what: Content,
 }
 
 /// Text and values.
 #[derive(Clone, Debug)]
-pub(super) enum What {
+pub(super) enum Content {
     /// Text and values as written by a component.
     Noted(Record),
     /// Text and values as read from a file.
@@ -50,7 +50,7 @@ impl JournalEntry {
             phase: Phase::Symptom,
             cause: Cause::default(),
             change: false,
-            what: What::Read { text, values: Map::new() },
+            what: Content::Read { text, values: Map::new() },
         }
     }
 
@@ -88,28 +88,28 @@ impl JournalEntry {
     /// The text with the values inserted.
     pub fn text(&self) -> String {
         match &self.what {
-            What::Noted(record) => record.to_string(),
-            What::Read { text, .. } => text.clone(),
+            Content::Noted(record) => record.to_string(),
+            Content::Read { text, .. } => text.clone(),
         }
     }
 
     /// A value of the record by its name.
     pub fn value(&self, name: &str) -> Option<Value> {
         match &self.what {
-            What::Noted(record) => {
+            Content::Noted(record) => {
                 record.values().find(|(known, _)| *known == name).map(|(_, value)| json(value))
             }
-            What::Read { values, .. } => values.get(name).cloned(),
+            Content::Read { values, .. } => values.get(name).cloned(),
         }
     }
 
     /// All values by name.
     pub fn values(&self) -> Map<String, Value> {
         match &self.what {
-            What::Noted(record) => {
+            Content::Noted(record) => {
                 record.values().map(|(name, value)| (name.to_owned(), json(value))).collect()
             }
-            What::Read { values, .. } => values.clone(),
+            Content::Read { values, .. } => values.clone(),
         }
     }
 
@@ -142,8 +142,8 @@ impl fmt::Display for JournalEntry {
         let (by, phase) = (self.loop_name().unwrap_or("-"), phase_name(self.phase));
         write!(formatter, "{time} {component} {by} {phase}: ")?;
         match &self.what {
-            What::Noted(record) => record.fmt(formatter),
-            What::Read { text, .. } => formatter.write_str(text),
+            Content::Noted(record) => record.fmt(formatter),
+            Content::Read { text, .. } => formatter.write_str(text),
         }
     }
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
 
-use super::entry::{What, phase_name};
+use super::entry::{Content, phase_name};
 use super::{Journal, JournalEntry, LoopCounts};
 
 /// A record as it is written; fields without a value are left out.
@@ -37,13 +37,13 @@ fn is_none(cause: &u64) -> bool {
     *cause == 0
 }
 
-struct Text<'a>(&'a What);
+struct Text<'a>(&'a Content);
 
 impl Serialize for Text<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self.0 {
-            What::Noted(record) => serializer.collect_str(record),
-            What::Read { text, .. } => serializer.serialize_str(text),
+            Content::Noted(record) => serializer.collect_str(record),
+            Content::Read { text, .. } => serializer.serialize_str(text),
         }
     }
 }
@@ -115,7 +115,7 @@ impl<'de> Deserialize<'de> for JournalEntry {
             },
             cause: Cause(cause),
             change,
-            what: What::Read { text: line.text, values: line.values },
+            what: Content::Read { text: line.text, values: line.values },
         })
     }
 }

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use saoms_api::Cause;
 use serde::{Deserialize, Serialize};
 
-use super::entry::What;
+use super::entry::Content;
 use super::{JournalEntry, OutsideRing, Ring, Selection};
 
 /// The kept records of a run, and counts of all that were written.
@@ -90,7 +90,7 @@ impl Journal {
                     phase: head.phase,
                     cause: head.cause,
                     change: head.change,
-                    what: What::Noted(batch.record(head)),
+                    what: Content::Noted(batch.record(head)),
                 }));
             }
         }

@@ -4,7 +4,7 @@ use std::time::Duration;
 use saoms_api::Time;
 
 use super::batch::Batch;
-use super::entry::What;
+use super::entry::Content;
 use super::recorder::{Notice, Recorder};
 use super::ring::LoopNames;
 use super::{ComponentName, JournalEntry};
@@ -26,7 +26,7 @@ pub(crate) struct RecordQueue {
     emptied: Condvar,
     /// True if those who write wait for room, as in virtual time; otherwise records that find no room are counted and
     /// lost.
-    is_patient: bool,
+    blocks_when_full: bool,
 }
 
 #[derive(Debug, Default)]
@@ -53,13 +53,13 @@ struct Reader {
 }
 
 impl RecordQueue {
-    pub(crate) fn new(is_patient: bool) -> RecordQueue {
+    pub(crate) fn new(blocks_when_full: bool) -> RecordQueue {
         RecordQueue {
             waiting: Mutex::default(),
             reader: Mutex::default(),
             filled: Condvar::new(),
             emptied: Condvar::new(),
-            is_patient,
+            blocks_when_full,
         }
     }
 
@@ -85,7 +85,7 @@ impl RecordQueue {
                 waiting.names.push((component, *place, name.clone()));
             }
         }
-        if waiting.batch.len() >= CAPACITY && !self.is_patient {
+        if waiting.batch.len() >= CAPACITY && !self.blocks_when_full {
             waiting.lost += recorder.batch.len() as u64;
             return;
         }
@@ -98,7 +98,7 @@ impl RecordQueue {
 
     /// True if writers that wait for room (in virtual time) have to wait.
     pub(crate) fn is_full(&self) -> bool {
-        self.is_patient && self.lock().batch.len() >= CAPACITY
+        self.blocks_when_full && self.lock().batch.len() >= CAPACITY
     }
 
     /// Waits until it is not full any more.
@@ -160,7 +160,7 @@ impl RecordQueue {
                 phase: head.phase,
                 cause: head.cause,
                 change: head.change,
-                what: What::Noted(batch.record(head)),
+                what: Content::Noted(batch.record(head)),
             }
         }));
         (lost, end)

@@ -98,7 +98,7 @@ struct Joined {
 
 /// The last line.
 #[derive(Deserialize)]
-struct Last {
+struct EndLine {
     end: End,
 }
 
@@ -126,7 +126,7 @@ pub fn read(text: &str) -> Result<JournalDocument, JournalReadError> {
 fn report(text: &str) -> Result<JournalDocument, JournalReadError> {
     let report: Report = serde_json::from_str(text).map_err(|error| malformed(0, &error, REPORT))?;
     let journal = report.journal.ok_or(JournalReadError::NoJournal)?;
-    let end = time(report.time_s).map_err(|wrong| whole(1, wrong.to_string()))?;
+    let end = time(report.time_s).map_err(|wrong| incomplete(1, wrong.to_string()))?;
     Ok(JournalDocument { journal, components: report.components, end: Some(end), is_report: true })
 }
 
@@ -139,7 +139,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
     if head.journal != 1 {
         let message =
             format!("this file has the form {}, which a newer version of the program writes", head.journal);
-        return Err(whole(1, message));
+        return Err(incomplete(1, message));
     }
     let (mut entries, mut end) = (Vec::new(), None);
     while let Some((number, line)) = lines.next() {
@@ -147,7 +147,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
             continue;
         }
         if line.starts_with("{\"end\"") {
-            let last: Last = serde_json::from_str(line)
+            let last: EndLine = serde_json::from_str(line)
                 .map_err(|error| malformed(number, &error, "this is not how a journal ends"))?;
             end = Some(last.end);
             continue;
@@ -165,7 +165,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
             Err(error) => return Err(malformed(number, &error, "this is no record of a journal")),
         }
     }
-    let entries = in_order(entries).map_err(|wrong| whole(1, wrong.to_string()))?;
+    let entries = in_order(entries).map_err(|wrong| incomplete(1, wrong.to_string()))?;
     let newest = entries.last().map_or(0, |entry: &JournalEntry| entry.id().0);
     let lost = newest - entries.len() as u64;
     let journal = Journal {
@@ -174,7 +174,8 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
         entries,
         ..Journal::default()
     };
-    let end = end.map(|end| time(end.time_s)).transpose().map_err(|wrong| whole(1, wrong.to_string()))?;
+    let end =
+        end.map(|end| time(end.time_s)).transpose().map_err(|wrong| incomplete(1, wrong.to_string()))?;
     Ok(JournalDocument { journal, components: head.components, end, is_report: false })
 }
 
@@ -186,6 +187,6 @@ fn malformed(lines_before: usize, error: &serde_json::Error, about: &str) -> Jou
     JournalReadError::Malformed { line, column: error.column(), message: format!("{about}: {what}") }
 }
 
-fn whole(line: usize, message: String) -> JournalReadError {
+fn incomplete(line: usize, message: String) -> JournalReadError {
     JournalReadError::Malformed { line, column: 0, message }
 }

@@ -12,8 +12,8 @@ use super::fingerprint::fingerprint;
 pub(crate) struct Recorder {
     present: Option<u16>,
     /// State of the component outside all loops.
-    outside: Trail,
-    loops: Vec<Way>,
+    outside: CauseChain,
+    loops: Vec<LoopState>,
     /// The newest change of each entry by each loop.
     changes: Vec<(&'static str, u16, Cause)>,
     /// Records to be delivered.
@@ -38,17 +38,18 @@ pub(crate) struct Stamp<'a> {
     pub(crate) time: u64,
 }
 
-/// One execution of one loop.
+/// The causal chain of one execution of one loop: symptom, decision, newest effect.
 #[derive(Clone, Copy, Debug, Default)]
-struct Trail {
+struct CauseChain {
     because: Cause,
-    symptom: Option<Noted>,
-    decision: Option<Noted>,
+    symptom: Option<RecordRef>,
+    decision: Option<RecordRef>,
     newest: Cause,
 }
 
+/// A reference to a record that was written.
 #[derive(Clone, Copy, Debug)]
-struct Noted {
+struct RecordRef {
     fingerprint: u64,
     id: Cause,
     /// Its index in the batch, if it is new.
@@ -56,13 +57,13 @@ struct Noted {
     acted: bool,
 }
 
-/// A loop in its present execution and in the one before.
+/// The state of a loop in its present execution and in the one before.
 #[derive(Debug, Default)]
-struct Way {
+struct LoopState {
     /// The number of the present execution, from 1.
     execution: u64,
-    trail: Trail,
-    last: Trail,
+    chain: CauseChain,
+    last: CauseChain,
     /// Digests, causes and numbers of its effects.
     effects: Vec<(u64, Cause, Cause)>,
     last_effects: Vec<(u64, Cause, Cause)>,
@@ -79,7 +80,7 @@ impl Recorder {
     #[inline]
     pub(crate) fn begin(&mut self, because: Cause) {
         self.present = None;
-        self.outside = Trail::because(because);
+        self.outside = CauseChain::because(because);
     }
 
     /// Clears the state, for a new instance of the component.
@@ -97,47 +98,47 @@ impl Recorder {
         self.present = place.map(bounded);
         let Some(place) = self.present.map(usize::from) else { return };
         if self.loops.len() <= place {
-            self.loops.resize_with(place + 1, Way::default);
+            self.loops.resize_with(place + 1, LoopState::default);
         }
-        let way = &mut self.loops[place];
+        let state = &mut self.loops[place];
         let number = execution + 1;
-        if way.execution == number {
+        if state.execution == number {
             return;
         }
-        let trail = std::mem::take(&mut way.trail);
-        std::mem::swap(&mut way.effects, &mut way.last_effects);
-        way.effects.clear();
+        let chain = std::mem::take(&mut state.chain);
+        std::mem::swap(&mut state.effects, &mut state.last_effects);
+        state.effects.clear();
         // A loop that skipped an execution starts with an empty state.
-        way.last = if way.execution + 1 == number { trail } else { Trail::default() };
-        if way.execution + 1 != number {
-            way.last_effects.clear();
+        state.last = if state.execution + 1 == number { chain } else { CauseChain::default() };
+        if state.execution + 1 != number {
+            state.last_effects.clear();
         }
-        way.execution = number;
+        state.execution = number;
     }
 
     pub(crate) fn because(&mut self, cause: Cause) {
-        match self.way() {
-            Some(way) => way.trail.because = cause,
-            None => self.outside = Trail::because(cause),
+        match self.loop_state() {
+            Some(state) => state.chain.because = cause,
+            None => self.outside = CauseChain::because(cause),
         }
     }
 
     #[inline]
     pub(crate) fn cause(&self) -> Cause {
-        let trail = match self.present {
-            Some(place) => &self.loops[usize::from(place)].trail,
+        let chain = match self.present {
+            Some(place) => &self.loops[usize::from(place)].chain,
             None => &self.outside,
         };
-        if trail.newest == Cause::default() { trail.because } else { trail.newest }
+        if chain.newest == Cause::default() { chain.because } else { chain.newest }
     }
 
-    fn way(&mut self) -> Option<&mut Way> {
+    fn loop_state(&mut self) -> Option<&mut LoopState> {
         self.present.and_then(|place| self.loops.get_mut(usize::from(place)))
     }
 
-    fn trail(&mut self) -> &mut Trail {
+    fn chain(&mut self) -> &mut CauseChain {
         match self.present {
-            Some(place) => &mut self.loops[usize::from(place)].trail,
+            Some(place) => &mut self.loops[usize::from(place)].chain,
             None => &mut self.outside,
         }
     }
@@ -159,21 +160,25 @@ impl Recorder {
     }
 
     fn symptom(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record, senses: &[String]) {
-        let before = self.way().and_then(|way| way.last.symptom);
-        let noted = match before.filter(|before| before.fingerprint == fingerprint) {
+        let before = self.loop_state().and_then(|state| state.last.symptom);
+        let reference = match before.filter(|before| before.fingerprint == fingerprint) {
             Some(before) => before,
             None => {
-                let because = self.trail().because;
-                let cause = if because == Cause::default() { self.sensed(senses) } else { because };
+                let because = self.chain().because;
+                let cause = if because == Cause::default() { self.newest_sensed(senses) } else { because };
                 self.push(stamp, Phase::Symptom, fingerprint, cause, false, record)
             }
         };
-        *self.trail() =
-            Trail { because: Cause::default(), symptom: Some(noted), decision: None, newest: noted.id };
+        *self.chain() = CauseChain {
+            because: Cause::default(),
+            symptom: Some(reference),
+            decision: None,
+            newest: reference.id,
+        };
     }
 
     /// The newest change of one of these entries by another loop.
-    fn sensed(&self, senses: &[String]) -> Cause {
+    fn newest_sensed(&self, senses: &[String]) -> Cause {
         let Some(present) = self.present else { return Cause::default() };
         let others = self.changes.iter().filter(|(_, by, _)| *by != present);
         let sensed = others.filter(|(entry, ..)| senses.iter().any(|name| name == entry));
@@ -181,28 +186,30 @@ impl Recorder {
     }
 
     fn decision(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
-        let cause = self.trail().reason();
-        let before = self.way().and_then(|way| way.last.decision.filter(|_| way.last.symptom_id() == cause));
-        let noted = match before.filter(|before| before.fingerprint == fingerprint) {
-            Some(before) => Noted { at: None, ..before },
+        let cause = self.chain().reason();
+        let before = self
+            .loop_state()
+            .and_then(|state| state.last.decision.filter(|_| state.last.symptom_id() == cause));
+        let reference = match before.filter(|before| before.fingerprint == fingerprint) {
+            Some(before) => RecordRef { at: None, ..before },
             None => self.push(stamp, Phase::Decision, fingerprint, cause, false, record),
         };
-        let trail = self.trail();
-        (trail.decision, trail.newest) = (Some(noted), noted.id);
+        let chain = self.chain();
+        (chain.decision, chain.newest) = (Some(reference), reference.id);
     }
 
     fn effect(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
         self.acted();
-        let cause = self.trail().cause_of_effect();
+        let cause = self.chain().cause_of_effect();
         let same = |(digest, reason, _): &&(u64, Cause, Cause)| *digest == fingerprint && *reason == cause;
-        let before = self.way().and_then(|way| way.last_effects.iter().find(same).copied());
+        let before = self.loop_state().and_then(|state| state.last_effects.iter().find(same).copied());
         let effect = before.unwrap_or_else(|| {
-            let noted = self.push(stamp, Phase::Effect, fingerprint, cause, false, record);
-            (fingerprint, cause, noted.id)
+            let reference = self.push(stamp, Phase::Effect, fingerprint, cause, false, record);
+            (fingerprint, cause, reference.id)
         });
-        self.trail().newest = effect.2;
-        if let Some(way) = self.way() {
-            way.effects.push(effect);
+        self.chain().newest = effect.2;
+        if let Some(state) = self.loop_state() {
+            state.effects.push(effect);
         }
     }
 
@@ -213,10 +220,10 @@ impl Recorder {
         }
         self.acted();
         let record = saoms_api::record!("{entry}: {before} -> {after}", entry, before, after);
-        let cause = self.trail().cause_of_effect();
+        let cause = self.chain().cause_of_effect();
         let fingerprint = fingerprint(Phase::Effect, &record);
         let id = self.push(stamp, Phase::Effect, fingerprint, cause, true, &record).id;
-        self.trail().newest = id;
+        self.chain().newest = id;
         let by = self.present.unwrap_or(OUTSIDE);
         match self.changes.iter_mut().find(|(name, place, _)| *name == entry && *place == by) {
             Some(known) => known.2 = id,
@@ -227,7 +234,7 @@ impl Recorder {
     /// Marks the present decision as one with an effect, a message or a call.
     #[inline]
     pub(crate) fn acted(&mut self) {
-        let Some(decision) = self.trail().decision.as_mut().filter(|decision| !decision.acted) else {
+        let Some(decision) = self.chain().decision.as_mut().filter(|decision| !decision.acted) else {
             return;
         };
         decision.acted = true;
@@ -249,19 +256,19 @@ impl Recorder {
         cause: Cause,
         change: bool,
         record: &Record,
-    ) -> Noted {
+    ) -> RecordRef {
         let Stamp { ids, component, time } = stamp;
         let id = Cause(ids.fetch_add(1, Ordering::Relaxed) + 1);
         let at = Some(self.batch.len() as u32);
         let place = self.present.unwrap_or(OUTSIDE);
         self.batch.push(&Note { id, time, cause, fingerprint, component, place, phase, change, record });
-        Noted { fingerprint, id, at, acted: false }
+        RecordRef { fingerprint, id, at, acted: false }
     }
 }
 
-impl Trail {
-    fn because(cause: Cause) -> Trail {
-        Trail { because: cause, ..Trail::default() }
+impl CauseChain {
+    fn because(cause: Cause) -> CauseChain {
+        CauseChain { because: cause, ..CauseChain::default() }
     }
 
     fn symptom_id(&self) -> Cause {

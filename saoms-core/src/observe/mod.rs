@@ -17,5 +17,5 @@ pub use event::{Occurrence, RunEvent, RunProgress, SentMessage};
 pub use journal_file::JournalFile;
 pub(crate) use observer::Observers;
 pub use observer::{Beginning, Interest, Observer, Records};
-pub(crate) use queue::{EventQueue, News};
+pub(crate) use queue::{EventQueue, Notification};
 pub(crate) use records::{RecordDelivery, deliver_records};

@@ -10,32 +10,32 @@ use super::{Interest, Observers, Occurrence, RunEvent, RunProgress, SentMessage}
 const CAPACITY: usize = 65_536;
 
 /// An event or a message on its way to the observers.
-pub(crate) enum News {
+pub(crate) enum Notification {
     /// An event of the run.
     Event(RunEvent),
     /// A component sent a message on a topic that the observers of these numbers want.
     Sent(SentMessage, Arc<[u32]>),
 }
 
-impl News {
+impl Notification {
     fn time(&self) -> Time {
         match self {
-            News::Event(event) => event.time,
-            News::Sent(sent, _) => sent.message.header().sent,
+            Notification::Event(event) => event.time,
+            Notification::Sent(sent, _) => sent.message.header().sent,
         }
     }
 
-    fn tell(&self, observers: &Observers) {
+    fn deliver(&self, observers: &Observers) {
         match self {
-            News::Event(event) => observers.event(event),
-            News::Sent(sent, who) => observers.message(sent, who),
+            Notification::Event(event) => observers.event(event),
+            Notification::Sent(sent, who) => observers.message(sent, who),
         }
     }
 }
 
-impl From<RunEvent> for News {
-    fn from(event: RunEvent) -> News {
-        News::Event(event)
+impl From<RunEvent> for Notification {
+    fn from(event: RunEvent) -> Notification {
+        Notification::Event(event)
     }
 }
 
@@ -45,13 +45,13 @@ pub(crate) struct EventQueue {
     filled: Condvar,
     emptied: Condvar,
     /// True if a writer waits when the queue is full, as in virtual time.
-    is_patient: bool,
+    blocks_when_full: bool,
     interest: Interest,
 }
 
 #[derive(Default)]
 struct Waiting {
-    news: VecDeque<News>,
+    notifications: VecDeque<Notification>,
     lost: u64,
     reader_sleeps: bool,
     writers_sleep: bool,
@@ -59,12 +59,12 @@ struct Waiting {
 }
 
 impl EventQueue {
-    pub(crate) fn new(interest: Interest, is_patient: bool) -> EventQueue {
+    pub(crate) fn new(interest: Interest, blocks_when_full: bool) -> EventQueue {
         EventQueue {
             waiting: Mutex::default(),
             filled: Condvar::new(),
             emptied: Condvar::new(),
-            is_patient,
+            blocks_when_full,
             interest,
         }
     }
@@ -85,28 +85,28 @@ impl EventQueue {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub(crate) fn put(&self, news: impl Into<News>) {
+    pub(crate) fn put(&self, notification: impl Into<Notification>) {
         let mut waiting = self.lock();
-        while waiting.news.len() >= CAPACITY && !waiting.closed {
-            if !self.is_patient {
+        while waiting.notifications.len() >= CAPACITY && !waiting.closed {
+            if !self.blocks_when_full {
                 waiting.lost += 1;
                 return;
             }
             waiting.writers_sleep = true;
             waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
-        waiting.news.push_back(news.into());
+        waiting.notifications.push_back(notification.into());
         if std::mem::take(&mut waiting.reader_sleeps) {
             self.filled.notify_one();
         }
     }
 
     /// True if a writer waits for room.
-    pub(crate) fn is_jammed(&self) -> bool {
+    pub(crate) fn has_waiting_writers(&self) -> bool {
         self.lock().writers_sleep
     }
 
-    /// Closes the queue: [`tell`](EventQueue::tell) returns when it has delivered the waiting events.
+    /// Closes the queue: [`deliver`](EventQueue::deliver) returns when it has delivered the waiting events.
     pub(crate) fn close(&self) {
         self.lock().closed = true;
         self.filled.notify_all();
@@ -114,16 +114,16 @@ impl EventQueue {
     }
 
     /// Delivers events as they come, until the queue is closed and empty.
-    pub(crate) fn tell(&self, observers: &Observers, progress: impl Fn() -> RunProgress) {
+    pub(crate) fn deliver(&self, observers: &Observers, progress: impl Fn() -> RunProgress) {
         let every = self.interest.progress;
         let mut next_progress = every.map(|every| Instant::now() + every);
         let mut batch = VecDeque::new();
         loop {
             let (lost, closed) = self.next_batch(&mut batch, next_progress);
             let mut last = Time::START;
-            for news in batch.drain(..) {
-                last = news.time();
-                news.tell(observers);
+            for notification in batch.drain(..) {
+                last = notification.time();
+                notification.deliver(observers);
             }
             if lost > 0 {
                 let text = format!("{lost} events came faster than they could be shown, and are lost");
@@ -141,9 +141,9 @@ impl EventQueue {
     }
 
     /// Waits for events and takes all of them. The flag is true if the queue is closed.
-    fn next_batch(&self, batch: &mut VecDeque<News>, until: Option<Instant>) -> (u64, bool) {
+    fn next_batch(&self, batch: &mut VecDeque<Notification>, until: Option<Instant>) -> (u64, bool) {
         let mut waiting = self.lock();
-        while waiting.news.is_empty() && !waiting.closed {
+        while waiting.notifications.is_empty() && !waiting.closed {
             waiting.reader_sleeps = true;
             waiting = match until {
                 None => self.filled.wait(waiting).unwrap_or_else(PoisonError::into_inner),
@@ -156,7 +156,7 @@ impl EventQueue {
                 }
             };
         }
-        std::mem::swap(batch, &mut waiting.news);
+        std::mem::swap(batch, &mut waiting.notifications);
         if std::mem::take(&mut waiting.writers_sleep) {
             self.emptied.notify_all();
         }

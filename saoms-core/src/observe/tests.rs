@@ -47,7 +47,7 @@ fn events_beyond_the_bound_are_counted_and_lost_in_real_time() {
         queue.put(event(number));
     }
     queue.close();
-    queue.tell(&observers, RunProgress::default);
+    queue.deliver(&observers, RunProgress::default);
     let told = listener.told.lock().unwrap();
     assert_eq!(told.len(), 65_536 + 1);
     assert_eq!(told[65_535], "[0.000 s] A: 65535");
@@ -60,15 +60,15 @@ fn events_beyond_the_bound_wait_in_virtual_time() {
     let listener = Arc::new(Listener::default());
     let observers = Observers::new(vec![listener.clone()]);
     let queue = Arc::new(EventQueue::new(observers.interest(), true));
-    let teller = {
+    let deliverer = {
         let queue = Arc::clone(&queue);
-        thread::spawn(move || queue.tell(&observers, RunProgress::default))
+        thread::spawn(move || queue.deliver(&observers, RunProgress::default))
     };
     for number in 0..200_000 {
         queue.put(event(number));
     }
     queue.close();
-    teller.join().unwrap();
+    deliverer.join().unwrap();
     let told = listener.told.lock().unwrap();
     assert_eq!(told.len(), 200_000);
     assert_eq!(told[199_999], "[0.000 s] A: 199999");
@@ -103,12 +103,12 @@ fn an_observer_gets_the_lines_that_it_wants_and_panics_alone() {
 }
 
 /// An observer that fails after a number of records.
-struct Shelf {
+struct FailingObserver {
     room: usize,
     records: AtomicUsize,
 }
 
-impl Observer for Shelf {
+impl Observer for FailingObserver {
     fn interest(&self) -> Interest {
         Interest { journal: true, ..Interest::NONE }
     }
@@ -132,18 +132,18 @@ fn recorder(records: usize) -> Recorder {
 
 #[test]
 fn an_observer_that_takes_no_records_is_told_once_and_all_that_is_missing_is_counted() {
-    let small = Arc::new(Shelf { room: 0, records: AtomicUsize::new(0) });
-    let large = Arc::new(Shelf { room: 99, records: AtomicUsize::new(0) });
+    let small = Arc::new(FailingObserver { room: 0, records: AtomicUsize::new(0) });
+    let large = Arc::new(FailingObserver { room: 99, records: AtomicUsize::new(0) });
     let observers = Observers::new(vec![small, large.clone()]);
     let queue = RecordQueue::new(true);
     queue.join(ComponentName { name: "A".to_owned(), id: None }, false);
     queue.put(0, &recorder(5));
     queue.close(Time::START);
     let said = AtomicU64::new(0);
-    let told = deliver_records(&queue, &observers, |_| {
+    let delivery = deliver_records(&queue, &observers, |_| {
         said.fetch_add(1, Ordering::Relaxed);
     });
-    assert_eq!((told.lost, told.failures), (5, vec![Failure::new("full")]));
+    assert_eq!((delivery.lost, delivery.failures), (5, vec![Failure::new("full")]));
     assert_eq!(said.into_inner(), 1);
     assert_eq!(large.records.load(Ordering::Relaxed), 5);
 }
@@ -162,8 +162,8 @@ fn in_real_time_records_that_find_no_room_are_counted() {
         queue.put(0, &recorder);
     }
     queue.close(Time::from_nanos(5));
-    let told = deliver_records(&queue, &Observers::new(vec![file]), |_| {});
-    assert_eq!((told.lost, told.failures), (4000, Vec::new()));
+    let delivery = deliver_records(&queue, &Observers::new(vec![file]), |_| {});
+    assert_eq!((delivery.lost, delivery.failures), (4000, Vec::new()));
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(text.lines().last(), Some(r#"{"end":{"lost":4000,"records":70000,"time_s":5e-9}}"#));
 }

@@ -24,7 +24,7 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
     };
     let file = copy.as_deref().unwrap_or(&absolute);
     // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
-    let library = unsafe { Library::new(file) }.map_err(|error| unloadable(whole(&error)));
+    let library = unsafe { Library::new(file) }.map_err(|error| unloadable(with_causes(&error)));
     if let Some(copy) = &copy {
         // The loaded library does not need the file name any more.
         let _ = fs::remove_file(copy);
@@ -36,7 +36,7 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
         let entry: Symbol<'_, EntryPoint> =
             unsafe { library.get(metadata.entry.as_bytes()) }.map_err(|error| {
-                unloadable(format!("it has no function `{}`: {}", metadata.entry, whole(&error)))
+                unloadable(format!("it has no function `{}`: {}", metadata.entry, with_causes(&error)))
             })?;
         // SAFETY: the same.
         unsafe { entry(VERSION) }
@@ -132,10 +132,10 @@ unsafe fn tables<T>(first: *const *const T, count: usize) -> Result<Vec<&'static
 }
 
 /// An error with its causes: libloading's own text hides them.
-fn whole(error: &dyn error::Error) -> String {
-    struct Whole<'a>(&'a dyn error::Error);
+fn with_causes(error: &dyn error::Error) -> String {
+    struct WithCauses<'a>(&'a dyn error::Error);
 
-    impl fmt::Display for Whole<'_> {
+    impl fmt::Display for WithCauses<'_> {
         fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
             write!(out, "{}", self.0)?;
             let mut cause = self.0.source();
@@ -147,5 +147,5 @@ fn whole(error: &dyn error::Error) -> String {
         }
     }
 
-    Whole(error).to_string()
+    WithCauses(error).to_string()
 }

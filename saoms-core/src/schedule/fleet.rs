@@ -50,7 +50,7 @@ pub struct Fleet {
     /// Under `realtime`, the open file that keeps the processors awake.
     _awake: Option<File>,
     /// The thread that delivers events to observers.
-    teller: Option<JoinHandle<()>>,
+    deliverer: Option<JoinHandle<()>>,
     /// The thread that delivers records of the journal to observers.
     journal: Option<JoinHandle<RecordDelivery>>,
 }
@@ -110,10 +110,10 @@ impl Fleet {
         let (seed, is_virtual) = (shared.settings.seed, simulated);
         let beginning = Beginning { seed, is_virtual, components: &components };
         shared.observers.begin(&beginning).map_err(StartError::Observer)?;
-        let teller = Arc::clone(&shared);
-        let teller = thread::Builder::new()
+        let deliverer = Arc::clone(&shared);
+        let deliverer = thread::Builder::new()
             .name("saoms-events".to_owned())
-            .spawn(move || teller.events.tell(&teller.observers, || teller.progress()))
+            .spawn(move || deliverer.events.deliver(&deliverer.observers, || deliverer.progress()))
             .map_err(StartError::Thread)?;
         // From here on, dropping the fleet ends the run.
         let handle = Handle { shared };
@@ -124,7 +124,7 @@ impl Fleet {
             handle.shared.note(Level::Warning, text);
         }
         let mut fleet =
-            Fleet { handle, _awake: awake.unwrap_or_default(), teller: Some(teller), journal: None };
+            Fleet { handle, _awake: awake.unwrap_or_default(), deliverer: Some(deliverer), journal: None };
         fleet.journal = spawn_journal(&fleet.handle.shared).map_err(StartError::Thread)?;
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
@@ -194,19 +194,19 @@ impl Fleet {
             records.close(end);
         }
         // The panic of an observer was written to standard error.
-        let Ok(told) = journal.join() else { return };
+        let Ok(delivery) = journal.join() else { return };
         let mut engine = shared.lock();
-        engine.lost_records = told.lost;
-        engine.reasons.extend(told.failures.iter().map(ToString::to_string));
+        engine.lost_records = delivery.lost;
+        engine.reasons.extend(delivery.failures.iter().map(ToString::to_string));
     }
 
     /// Waits until the last events are delivered.
     fn finish(&mut self) {
         self.finish_journal();
         self.handle.shared.close_events();
-        if let Some(teller) = self.teller.take() {
+        if let Some(deliverer) = self.deliverer.take() {
             // The panic of an observer was written to standard error.
-            let _ = teller.join();
+            let _ = deliverer.join();
         }
     }
 }
@@ -215,15 +215,15 @@ impl Fleet {
 fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDelivery>>> {
     let Some(records) = shared.lock().records.clone() else { return Ok(None) };
     let shared = Arc::clone(shared);
-    let tell = move || {
+    let deliver = move || {
         deliver_records(&records, &shared.observers, |failure| shared.note(Level::Error, failure.to_string()))
     };
-    thread::Builder::new().name("saoms-journal".to_owned()).spawn(tell).map(Some)
+    thread::Builder::new().name("saoms-journal".to_owned()).spawn(deliver).map(Some)
 }
 
 impl Drop for Fleet {
     fn drop(&mut self) {
-        if self.teller.is_none() {
+        if self.deliverer.is_none() {
             return;
         }
         let shared = &self.handle.shared;

@@ -14,7 +14,7 @@ use super::engine::{Engine, RunPhase};
 use super::shared::Shared;
 use crate::bus::TopicId;
 use crate::journal::JournalEntry;
-use crate::observe::{News, SentMessage};
+use crate::observe::{Notification, SentMessage};
 
 /// The number of the sender of messages from outside.
 pub(super) const OUTSIDE: u32 = u32::MAX;
@@ -225,7 +225,7 @@ impl Engine {
         if let Some(observers) = self.bus.observers(topic) {
             let component = Arc::from(OUTSIDE_NAME);
             let sent = SentMessage { topic: name, component, message: message.clone() };
-            self.news.push(News::Sent(sent, Arc::clone(observers)));
+            self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
         }
         self.bus.publish(topic, message);
     }

@@ -48,7 +48,7 @@ pub(super) struct Shared {
     pub(super) records: Arc<AtomicU64>,
     executions: Arc<AtomicU64>,
     /// Number of threads that have unlocked the engine and not yet queued their events.
-    telling: AtomicUsize,
+    delivering: AtomicUsize,
     /// The queue of events is about to be closed.
     closing: AtomicBool,
 }
@@ -82,7 +82,7 @@ impl Shared {
             stop: AtomicBool::new(false),
             ended: AtomicBool::new(false),
             records,
-            telling: AtomicUsize::new(0),
+            delivering: AtomicUsize::new(0),
             closing: AtomicBool::new(false),
         }
     }
@@ -99,19 +99,19 @@ impl Shared {
         if std::mem::take(&mut engine.has_returned) {
             self.returned.notify_all();
         }
-        let news = std::mem::take(&mut engine.news);
-        let is_telling = !news.is_empty();
-        if is_telling {
-            self.telling.fetch_add(1, Ordering::Relaxed);
+        let notifications = std::mem::take(&mut engine.notifications);
+        let is_delivering = !notifications.is_empty();
+        if is_delivering {
+            self.delivering.fetch_add(1, Ordering::Relaxed);
         }
         drop(engine);
-        for event in news {
+        for event in notifications {
             self.events.put(event);
         }
         // Both are sequentially consistent: either the thread that closes the queue sees the lower count, or it is
         // woken.
-        if is_telling
-            && self.telling.fetch_sub(1, Ordering::SeqCst) == 1
+        if is_delivering
+            && self.delivering.fetch_sub(1, Ordering::SeqCst) == 1
             && self.closing.load(Ordering::SeqCst)
         {
             self.end.wake();
@@ -128,7 +128,7 @@ impl Shared {
         self.closing.store(true, Ordering::SeqCst);
         loop {
             let ticket = self.end.ticket();
-            if self.telling.load(Ordering::SeqCst) == 0 {
+            if self.delivering.load(Ordering::SeqCst) == 0 {
                 break;
             }
             self.end.wait(ticket, None);

@@ -3,22 +3,22 @@ use std::thread;
 use std::time::Duration;
 
 use super::engine::queue::Queue;
-use super::engine::slot::Apart;
+use super::engine::slot::Isolation;
 use super::os::sys::{self, Gate};
 use saoms_api::host::contain::{contained, install_hook};
 
 #[test]
 fn a_component_comes_back_after_it_behaved_and_has_to_behave_longer_each_time() {
-    let mut apart = Apart::default();
+    let mut isolation = Isolation::default();
     for needed in [100, 200, 400] {
-        apart.send_away();
-        apart.ran(false);
-        apart.ran(true);
+        isolation.isolate();
+        isolation.count_execution(false);
+        isolation.count_execution(true);
         for execution in 1..=needed {
-            assert!(apart.now, "back after {execution} of {needed}");
-            apart.ran(false);
+            assert!(isolation.active, "back after {execution} of {needed}");
+            isolation.count_execution(false);
         }
-        assert!(!apart.now, "{needed}");
+        assert!(!isolation.active, "{needed}");
     }
 }
 

@@ -14,7 +14,7 @@ use serde::ser::Serializer;
 use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::fleet::{Shown, project};
+use crate::fleet::{DiagnosticReport, project};
 use crate::output::{counted, eprint, print, print_json};
 use crate::plugins::{CommandClasses, usable};
 use wiring::Wiring;
@@ -56,13 +56,13 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
     let project = project(&arguments.fleet).assume_classes(arguments.assume_classes).wiring(arguments.wiring);
     let format = arguments.format;
     match arguments.wiring {
-        true => tell(&project.compile_each(&classes), |one| one.components.len(), |one| Some(one), format),
-        false => tell(&project.check_each(&classes), |count| *count, |_| None, format),
+        true => report(&project.compile_each(&classes), |one| one.components.len(), |one| Some(one), format),
+        false => report(&project.check_each(&classes), |count| *count, |_| None, format),
     }
 }
 
 /// Writes the diagnostics, with the wiring report if there are assemblies.
-fn tell<T>(
+fn report<T>(
     found: &Compilations<T>,
     components: impl Fn(&T) -> usize,
     assembly: impl Fn(&T) -> Option<&Assembly>,
@@ -72,7 +72,7 @@ fn tell<T>(
     if let Err(exit) = usable(problems) {
         return exit;
     }
-    let shown = Shown::from(found);
+    let shown = DiagnosticReport::from(found);
     let wired: Vec<(&Path, Wiring<'_>)> = outputs
         .iter()
         .filter_map(|FleetOutput { file, output }| Some((file.as_path(), Wiring(assembly(output)?))))

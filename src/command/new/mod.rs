@@ -16,11 +16,11 @@ use files::Names;
 #[derive(Debug, Args)]
 pub(crate) struct NewArguments {
     #[command(subcommand)]
-    pub(crate) what: NewWhat,
+    pub(crate) what: NewKind,
 }
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum NewWhat {
+pub(crate) enum NewKind {
     /// Make the crate of a plugin: its code, its tests, and a composite that uses it
     Plugin {
         /// The folder to make; its name becomes that of the package
@@ -52,8 +52,8 @@ pub(crate) enum PluginKind {
 /// Creates the files. Existing files are never changed.
 pub(crate) fn new(arguments: &NewArguments) -> Exit {
     let made = match &arguments.what {
-        NewWhat::Plugin { path, kind, api } => plugin(path, *kind, api.as_deref()),
-        NewWhat::Composite { path } => composite(path),
+        NewKind::Plugin { path, kind, api } => plugin(path, *kind, api.as_deref()),
+        NewKind::Composite { path } => composite(path),
     };
     match made {
         Ok(next) => {

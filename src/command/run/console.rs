@@ -18,7 +18,7 @@ const NAMES: (usize, usize) = (14, 32);
 
 /// The console of a run.
 pub(crate) struct Console {
-    shown: Shown,
+    verbosity: Verbosity,
     /// The width of the column with the names of components.
     width: usize,
     /// On a terminal, the line below the others that says how far the run is.
@@ -26,7 +26,7 @@ pub(crate) struct Console {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Shown {
+enum Verbosity {
     /// Errors alone, on standard error.
     Quiet,
     /// A line per event, with time and component.
@@ -38,22 +38,22 @@ enum Shown {
 impl Console {
     /// The console that the command line asks for.
     pub(crate) fn new(arguments: &RunArguments, assembly: &Assembly) -> Console {
-        let shown = match arguments.console {
-            _ if arguments.quiet => Shown::Quiet,
-            ConsoleStyle::Plain => Shown::Plain,
-            ConsoleStyle::Classic => Shown::Classic,
+        let verbosity = match arguments.console {
+            _ if arguments.quiet => Verbosity::Quiet,
+            ConsoleStyle::Plain => Verbosity::Plain,
+            ConsoleStyle::Classic => Verbosity::Classic,
         };
-        if shown == Shown::Classic {
+        if verbosity == Verbosity::Classic {
             print("Starting...\n");
         }
         let on_terminal = std::io::stdout().is_terminal() && std::io::stderr().is_terminal();
-        let bar = (shown == Shown::Plain && on_terminal).then(|| {
+        let bar = (verbosity == Verbosity::Plain && on_terminal).then(|| {
             let style = ProgressStyle::with_template("{spinner} {msg}");
             ProgressBar::new_spinner().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
         });
         let names = assembly.components.iter().map(|component| component.path.chars().count());
         let width = names.max().unwrap_or(0).clamp(NAMES.0, NAMES.1);
-        Console { shown, width, bar }
+        Console { verbosity, width, bar }
     }
 
     fn line(&self, text: &str) {
@@ -67,25 +67,25 @@ impl Console {
 impl Observer for Console {
     fn event(&self, event: &RunEvent) {
         let level = event.what.level();
-        match (self.shown, &event.what) {
-            (Shown::Classic, Occurrence::Console { text }) => print(&format!("{text}\n")),
+        match (self.verbosity, &event.what) {
+            (Verbosity::Classic, Occurrence::Console { text }) => print(&format!("{text}\n")),
             (_, Occurrence::Console { .. }) => {}
-            (Shown::Quiet, _) if level == Level::Error => eprint(&plain(event, self.width)),
-            (Shown::Classic, _) if level <= Level::Warning => eprint(&plain(event, self.width)),
-            (Shown::Plain, _) if level <= Level::Info => self.line(&plain(event, self.width)),
+            (Verbosity::Quiet, _) if level == Level::Error => eprint(&plain(event, self.width)),
+            (Verbosity::Classic, _) if level <= Level::Warning => eprint(&plain(event, self.width)),
+            (Verbosity::Plain, _) if level <= Level::Info => self.line(&plain(event, self.width)),
             _ => {}
         }
     }
 
     fn interest(&self) -> Interest {
-        let log = match self.shown {
-            Shown::Quiet => Level::Error,
-            Shown::Classic => Level::Warning,
-            Shown::Plain => Level::Info,
+        let log = match self.verbosity {
+            Verbosity::Quiet => Level::Error,
+            Verbosity::Classic => Level::Warning,
+            Verbosity::Plain => Level::Info,
         };
         Interest {
             log: Some(log),
-            console: self.shown == Shown::Classic,
+            console: self.verbosity == Verbosity::Classic,
             progress: self.bar.as_ref().map(|_| Duration::from_millis(100)),
             journal: false,
         }
@@ -104,7 +104,7 @@ impl Observer for Console {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
-        if self.shown != Shown::Quiet {
+        if self.verbosity != Verbosity::Quiet {
             print(&summary(report));
         }
     }

@@ -28,7 +28,7 @@ use signal_hook::iterator::Signals;
 use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
-use crate::fleet::{Shown, compiled};
+use crate::fleet::{DiagnosticReport, compiled};
 use crate::output::{counted, eprint, eprint_json, print_json};
 use console::Console;
 use events::Events;
@@ -191,7 +191,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 /// for days.
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly> {
     let compilation = compiled(files, |project, classes| project.compile(classes)).ok()?;
-    let shown = Shown::from(&compilation);
+    let shown = DiagnosticReport::from(&compilation);
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &compilation.output) {
         (Format::Json, None) => print_json(&shown.json(None::<()>)),

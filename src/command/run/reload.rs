@@ -14,7 +14,7 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Severity;
 
 use crate::arguments::FleetArguments;
-use crate::fleet::{Shown, compiled};
+use crate::fleet::{DiagnosticReport, compiled};
 use crate::output::eprint;
 
 /// The time between two looks at the files. A file is loaded when two looks in a row find it unchanged.
@@ -36,13 +36,13 @@ struct Watcher {
     handle: Handle,
     /// The paths of all components, in the order of the assembly.
     components: Vec<String>,
-    files: BTreeMap<PathBuf, Known>,
+    files: BTreeMap<PathBuf, FileStamps>,
     /// Components that have to be asked again.
     waiting: Vec<ComponentSpec>,
     asked: Instant,
 }
 
-struct Known {
+struct FileStamps {
     loaded: Option<Stamp>,
     /// The file at the last look.
     seen: Option<Stamp>,
@@ -54,7 +54,7 @@ impl Reload {
         let (end, ended) = channel();
         let known = |path: &PathBuf| {
             let stamp = stamp(path);
-            (path.clone(), Known { loaded: stamp, seen: stamp })
+            (path.clone(), FileStamps { loaded: stamp, seen: stamp })
         };
         let watcher = Watcher {
             arguments: arguments.clone(),
@@ -128,7 +128,7 @@ impl Watcher {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
         let Some(assembly) = &compilation.output else {
-            eprint(&Shown::from(&compilation).human(Severity::Error));
+            eprint(&DiagnosticReport::from(&compilation).human(Severity::Error));
             return self.handle.note(Level::Error, kept("the composites do not fit to it"));
         };
         if paths(assembly) != self.components {
@@ -175,7 +175,7 @@ impl Watcher {
     }
 }
 
-impl Known {
+impl FileStamps {
     /// The path, if its file differs from the loaded one and is complete.
     fn look(&mut self, path: &Path) -> Option<PathBuf> {
         let now = stamp(path);

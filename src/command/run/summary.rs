@@ -19,7 +19,7 @@ pub(crate) fn summary(report: &RunReport) -> String {
     }
     text.push('\n');
     text.push_str(&table(&report.components));
-    text.push_str(&troubles(&report.components));
+    text.push_str(&problem_lines(&report.components));
     text.push_str(&journal(&report.journal));
     if let Some(hash) = &report.trace_hash {
         let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
@@ -62,23 +62,23 @@ fn journal(journal: &Journal) -> String {
 }
 
 /// Rare counts, for which the table has no column: a line for each component that had trouble.
-fn troubles(components: &[ComponentReport]) -> String {
-    let told = components.iter().filter_map(|one| {
+fn problem_lines(components: &[ComponentReport]) -> String {
+    let lines = components.iter().filter_map(|one| {
         let counts = [
             (one.failures, "failure", ""),
             (one.deadline_misses, "execution", " ended after the deadline"),
             (one.slow, "execution", " took longer than the budget"),
         ];
-        let told: Vec<String> = counts
+        let lines: Vec<String> = counts
             .iter()
             .filter(|(count, ..)| *count > 0)
             .map(|(count, noun, what)| {
                 format!("{}{what}", counted(usize::try_from(*count).unwrap_or(usize::MAX), noun))
             })
             .collect();
-        (!told.is_empty()).then(|| format!("{}: {}\n", one.name, told.join(", ")))
+        (!lines.is_empty()).then(|| format!("{}: {}\n", one.name, lines.join(", ")))
     });
-    let mut lines: Vec<String> = told.collect();
+    let mut lines: Vec<String> = lines.collect();
     let more = lines.len().saturating_sub(ROWS);
     lines.truncate(ROWS);
     let mut text = if lines.is_empty() { String::new() } else { format!("\n{}", lines.concat()) };
@@ -130,15 +130,15 @@ mod tests {
     #[test]
     fn trouble_is_told_below_the_table() {
         let quiet = ComponentReport { name: "Quiet".to_owned(), executions: 9, ..ComponentReport::default() };
-        assert_eq!(troubles(std::slice::from_ref(&quiet)), "");
+        assert_eq!(problem_lines(std::slice::from_ref(&quiet)), "");
         let late = ComponentReport { name: "Late".to_owned(), deadline_misses: 2, ..quiet.clone() };
         let weak =
             ComponentReport { name: "Weak".to_owned(), failures: 1, slow: 1, ..ComponentReport::default() };
         assert_eq!(
-            troubles(&[quiet, late.clone(), weak]),
+            problem_lines(&[quiet, late.clone(), weak]),
             "\nLate: 2 executions ended after the deadline\nWeak: 1 failure, 1 execution took longer than the budget\n"
         );
-        let many = troubles(&vec![late; ROWS + 3]);
+        let many = problem_lines(&vec![late; ROWS + 3]);
         assert!(many.ends_with("and 3 more: see --report\n"), "{many}");
     }
 }

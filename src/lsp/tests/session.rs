@@ -25,19 +25,22 @@ fn ask(id: i32, method: &str, params: Value) -> Event {
     Event::Incoming(Incoming::Message(Message::Request(request)))
 }
 
-fn tell(method: &str, params: Value) -> Event {
-    let told = Notification { method: method.to_owned(), params };
-    Event::Incoming(Incoming::Message(Message::Notification(told)))
+fn notification(method: &str, params: Value) -> Event {
+    let message = Notification { method: method.to_owned(), params };
+    Event::Incoming(Incoming::Message(Message::Notification(message)))
 }
 
 fn open(text: &str) -> Event {
     let document = json!({ "uri": URI, "languageId": "saoms", "version": 1, "text": text });
-    tell("textDocument/didOpen", json!({ "textDocument": document }))
+    notification("textDocument/didOpen", json!({ "textDocument": document }))
 }
 
 fn change(version: i32, text: &str) -> Event {
     let document = json!({ "uri": URI, "version": version });
-    tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": [{ "text": text }] }))
+    notification(
+        "textDocument/didChange",
+        json!({ "textDocument": document, "contentChanges": [{ "text": text }] }),
+    )
 }
 
 fn fixes(id: i32) -> Event {
@@ -106,7 +109,7 @@ fn fixes_are_those_of_the_text_as_it_is() {
         checked(1, &wrong),
         checked(2, &right),
         ask(4, "shutdown", Value::Null),
-        tell("exit", Value::Null),
+        notification("exit", Value::Null),
     ]);
     assert_eq!(said, ["1: 0", "shows S3001 of 1", "2: 1", "3: 0", "shows  of 2", "4: 0"]);
     assert_eq!(exit, Exit::Done);
@@ -119,9 +122,9 @@ fn what_was_shown_is_taken_back_when_its_file_is_closed() {
     let (said, exit) = session(vec![
         open(&wrong),
         checked(1, &wrong),
-        tell("textDocument/didClose", json!({ "textDocument": { "uri": URI } })),
+        notification("textDocument/didClose", json!({ "textDocument": { "uri": URI } })),
         nothing,
-        tell("exit", Value::Null),
+        notification("exit", Value::Null),
     ]);
     assert_eq!(said, ["shows S3001 of 1", "shows  of null"]);
     assert_eq!(exit, Exit::Failed, "the session was not shut down");
@@ -134,7 +137,7 @@ fn what_is_cancelled_in_time_is_not_answered() {
         open(&wrong),
         fixes(7),
         fixes(8),
-        tell("$/cancelRequest", json!({ "id": 8 })),
+        notification("$/cancelRequest", json!({ "id": 8 })),
         Event::Closed,
     ]);
     assert_eq!(said, ["7: 0", "8: error -32800"]);

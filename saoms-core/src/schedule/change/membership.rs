@@ -7,7 +7,7 @@ use crate::journal::ComponentName;
 use crate::observe::Occurrence;
 use crate::schedule::component::body::Body;
 use crate::schedule::engine::lifecycle::Request;
-use crate::schedule::engine::slot::{NEVER, Slot, SlotState, TaskPolicy, Wish};
+use crate::schedule::engine::slot::{NEVER, PendingRequest, Slot, SlotState, TaskPolicy};
 use crate::schedule::engine::trace::TraceStep;
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::shared::Shared;
@@ -77,7 +77,7 @@ impl Engine {
             std::mem::forget(body);
             return;
         }
-        self.came_back();
+        self.note_return();
         self.slots[number as usize].body = Some(body);
     }
 
@@ -95,7 +95,7 @@ impl Engine {
         let slot = &mut self.slots[number as usize];
         if slot.state != SlotState::Abandoned {
             slot.state = SlotState::Removed;
-            (slot.entry, slot.wish, slot.vote) = (NEVER, Wish::None, None);
+            (slot.entry, slot.pending, slot.vote) = (NEVER, PendingRequest::None, None);
         }
     }
 
@@ -116,16 +116,16 @@ impl Engine {
         if is_active {
             self.deliver(&mut body.part, now);
             self.step(now, number, TraceStep::Started);
-            self.tell(now, number, Occurrence::Started);
+            self.emit(now, number, Occurrence::Started);
         }
         let slot = &mut self.slots[number as usize];
         slot.body = Some(body);
         if is_active && slot.policy.periodic {
             slot.due = now.saturating_add(slot.policy.delay);
             let when = slot.due.min(slot.until);
-            match slot.wish {
-                Wish::None => self.enqueue(number, when),
-                Wish::Leave | Wish::Return { .. } => self.resume(number, now),
+            match slot.pending {
+                PendingRequest::None => self.enqueue(number, when),
+                PendingRequest::Leave | PendingRequest::Return { .. } => self.resume(number, now),
             }
         } else if std::mem::take(&mut slot.waiting) {
             self.enqueue(number, now);
@@ -151,7 +151,7 @@ impl Engine {
         slot.body = Some(body);
         slot.held = false;
         slot.statistics.replaced += 1;
-        self.tell(now, number, Occurrence::Replaced { continued: done == Takeover::Continued });
+        self.emit(now, number, Occurrence::Replaced { continued: done == Takeover::Continued });
         if let Some(vote) = vote {
             self.note_vote(number, vote, now);
         }

@@ -34,11 +34,11 @@ pub(crate) enum Refusal {
 /// The earlier instance after a takeover, kept until the change is committed.
 pub(crate) struct Predecessor {
     instance: Box<dyn DynComponent>,
-    ties: Ties,
+    endpoints: Endpoints,
 }
 
 /// Topics and subscriptions of an instance.
-struct Ties {
+struct Endpoints {
     spec: Arc<ComponentSpec>,
     publishers: Vec<TopicId>,
     subscriptions: Vec<TopicReader>,
@@ -60,11 +60,11 @@ impl Body {
         };
         let saved = contained(|| present.save()).map_err(Refusal::Failed)?;
         let saved = saved.map_err(|failure| Refusal::NotNow(failure.to_string()))?;
-        let ties = Ties::take(&mut self.part, spec);
+        let endpoints = Endpoints::take(&mut self.part, spec);
         let Some(instance) = self.instance.replace(successor) else {
             return Err(Refusal::NotNow("it has just ended".to_owned()));
         };
-        let predecessor = Predecessor { instance, ties };
+        let predecessor = Predecessor { instance, endpoints };
         if let Err(failure) = self.begin_instead(shared, &saved) {
             self.give_back(&mut shared.lock().bus, predecessor);
             return Err(Refusal::Failed(failure));
@@ -89,8 +89,8 @@ impl Body {
     /// Commits the takeover: the new instance gets the read positions of the earlier one; its other subscriptions are
     /// released.
     pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) {
-        let Predecessor { instance, ties } = predecessor;
-        let Ties { publishers, mut subscriptions, .. } = ties;
+        let Predecessor { instance, endpoints } = predecessor;
+        let Endpoints { publishers, mut subscriptions, .. } = endpoints;
         let queue = self.part.spec.task.as_ref().map(|task| task.queue);
         for fresh in &mut self.part.subscriptions {
             let topic = bus.topic_of(fresh);
@@ -125,7 +125,7 @@ impl Body {
         part.outbox.clear();
         part.vote = None;
         part.held = false;
-        let Ties { spec, publishers, subscriptions, recorder } = predecessor.ties;
+        let Endpoints { spec, publishers, subscriptions, recorder } = predecessor.endpoints;
         (part.spec, part.publishers) = (spec, publishers);
         (part.subscriptions, part.recorder) = (subscriptions, recorder);
         self.inboxes.clear();
@@ -133,10 +133,10 @@ impl Body {
     }
 }
 
-impl Ties {
-    /// Takes the ties of the present instance, and sets the specification of the new one.
-    fn take(part: &mut Part, spec: Arc<ComponentSpec>) -> Ties {
-        Ties {
+impl Endpoints {
+    /// Takes the endpoints of the present instance, and sets the specification of the new one.
+    fn take(part: &mut Part, spec: Arc<ComponentSpec>) -> Endpoints {
+        Endpoints {
             spec: std::mem::replace(&mut part.spec, spec),
             publishers: std::mem::take(&mut part.publishers),
             subscriptions: std::mem::take(&mut part.subscriptions),

@@ -9,7 +9,7 @@ use super::{ChangeError, Changed, as_members};
 use crate::assemble::{ChangePlan, Difference, providers_first};
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
-use crate::schedule::engine::slot::{SlotState, Wish};
+use crate::schedule::engine::slot::{PendingRequest, SlotState};
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::shared::Shared;
 
@@ -35,7 +35,7 @@ pub(super) struct Change<'a> {
 
 /// Kinds of change of a component of the wanted fleet.
 #[derive(Clone, Copy)]
-enum Fate {
+enum MemberChange {
     Kept,
     Added(u32),
     Replaced(u32),
@@ -66,21 +66,21 @@ impl<'a> Change<'a> {
         let removed: Vec<u32> =
             plan.remove.iter().chain(anew.iter().map(|one| &one.current)).map(|&one| one as u32).collect();
         let mut engine = self.wait_for(&removed, replaced.iter().map(|one| one.current as u32))?;
-        let mut fates = vec![Fate::Kept; wanted.len()];
+        let mut member_changes = vec![MemberChange::Kept; wanted.len()];
         let mut numbers = vec![u32::MAX; wanted.len()];
         plan.keep.iter().for_each(|(current, wanted)| numbers[*wanted] = *current as u32);
         for one in &replaced {
             numbers[one.wanted] = one.current as u32;
-            fates[one.wanted] = Fate::Replaced(one.current as u32);
+            member_changes[one.wanted] = MemberChange::Replaced(one.current as u32);
         }
         let mut added: Vec<usize> =
             plan.add.iter().copied().chain(anew.iter().map(|one| one.wanted)).collect();
         added.sort_unstable();
         self.added = engine.number(added.iter().filter_map(|&place| wanted[place].as_ref()));
         for (&place, &number) in added.iter().zip(&self.added) {
-            (numbers[place], fates[place]) = (number, Fate::Added(number));
+            (numbers[place], member_changes[place]) = (number, MemberChange::Added(number));
         }
-        for place in (0..wanted.len()).filter(|place| !matches!(fates[*place], Fate::Kept)) {
+        for place in (0..wanted.len()).filter(|place| !matches!(member_changes[*place], MemberChange::Kept)) {
             wanted[place] = wanted[place].take().map(|spec| retargeted(spec, &numbers));
         }
         engine.prepare(self.shared, added.iter().filter_map(|&place| wanted[place].clone()), &self.added);
@@ -92,10 +92,10 @@ impl<'a> Change<'a> {
         self.shared.release(engine);
         for place in order {
             let Some(spec) = wanted[place].take() else { continue };
-            let result = match fates[place] {
-                Fate::Kept => Ok(()),
-                Fate::Added(number) => self.begin(number),
-                Fate::Replaced(number) => self.replace(number, spec),
+            let result = match member_changes[place] {
+                MemberChange::Kept => Ok(()),
+                MemberChange::Added(number) => self.begin(number),
+                MemberChange::Replaced(number) => self.replace(number, spec),
             };
             if let Err(error) = result {
                 self.undo();
@@ -265,7 +265,7 @@ impl<'a> Change<'a> {
         engine.put_back(number, body);
         if let Err(failure) = result {
             let message = format!("could not shut down: {failure}");
-            engine.tell(now, number, Occurrence::Failed { message, restart: None });
+            engine.emit(now, number, Occurrence::Failed { message, restart: None });
         }
         self.shared.release(engine);
     }
@@ -325,7 +325,7 @@ impl<'a> Change<'a> {
         let mut engine = self.shared.lock();
         let slot = &mut engine.slots[number as usize];
         if slot.state != SlotState::Abandoned {
-            (slot.state, slot.wish) = (SlotState::Leaving, Wish::None);
+            (slot.state, slot.pending) = (SlotState::Leaving, PendingRequest::None);
         }
         self.shared.release(engine);
         (body.part.now, body.part.due) = (now, now);

@@ -103,7 +103,7 @@ impl Body {
             Job::Execute => {
                 let fault = self.part.fault.take();
                 let execute = |instance: &mut dyn DynComponent, context: &mut Context<'_>| {
-                    fault.map_or(Ok(()), commit_fault)?;
+                    fault.map_or(Ok(()), inject_fault)?;
                     instance.execute(context)
                 };
                 self.call(shared, execute).unwrap_or_else(Err)
@@ -173,7 +173,7 @@ impl Body {
 
 /// Carries out the injected fault of an execution.
 #[cold]
-fn commit_fault(fault: TaskFaultKind) -> Result<(), Failure> {
+fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
     match fault {
         TaskFaultKind::Fails => Err(Failure::new("a fault was put into this execution")),
         #[expect(clippy::panic, reason = "a panic is asked for")]

@@ -122,7 +122,7 @@ impl Engine {
             std::mem::forget(body);
             return;
         }
-        self.came_back();
+        self.note_return();
         if let Some(failure) = panic {
             self.fail(index, &mut body, Job::Execute, failure, now);
             self.slots[index as usize].body = Some(body);

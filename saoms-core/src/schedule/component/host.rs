@@ -38,7 +38,7 @@ impl ComponentHost<'_> {
     }
 
     /// Checks that the component may use a topic now, and returns its task settings.
-    fn may_use(&self, topic: &str, use_as: Use) -> Result<Option<&TaskProperties>, Failure> {
+    fn may_use(&self, topic: &str, use_as: TopicUse) -> Result<Option<&TaskProperties>, Failure> {
         let verb = use_as.verb();
         if !self.part.initializing {
             return Err(Failure::new(format!(
@@ -92,38 +92,38 @@ impl ComponentHost<'_> {
 
 /// Use of a topic by a component.
 #[derive(Clone, Copy)]
-enum Use {
+enum TopicUse {
     Publish,
     Subscribe,
 }
 
-impl Use {
+impl TopicUse {
     const fn verb(self) -> &'static str {
         match self {
-            Use::Publish => "publish",
-            Use::Subscribe => "subscribe",
+            TopicUse::Publish => "publish",
+            TopicUse::Subscribe => "subscribe",
         }
     }
 
     /// The attribute that declares the use, which messages take as a verb, too.
     const fn attribute(self) -> &'static str {
         match self {
-            Use::Publish => "publishes",
-            Use::Subscribe => "subscribes",
+            TopicUse::Publish => "publishes",
+            TopicUse::Subscribe => "subscribes",
         }
     }
 
     fn declared(self, class: &ClassDeclaration) -> &[ClassTopic] {
         match self {
-            Use::Publish => &class.publishes,
-            Use::Subscribe => &class.subscribes,
+            TopicUse::Publish => &class.publishes,
+            TopicUse::Subscribe => &class.subscribes,
         }
     }
 
     fn declared_of_loop(self, one: &LoopDeclaration) -> &[ClassTopic] {
         match self {
-            Use::Publish => &one.publishes,
-            Use::Subscribe => &one.subscribes,
+            TopicUse::Publish => &one.publishes,
+            TopicUse::Subscribe => &one.subscribes,
         }
     }
 }
@@ -183,7 +183,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
-        let task = self.may_use(topic.name, Use::Publish)?;
+        let task = self.may_use(topic.name, TopicUse::Publish)?;
         let name = renamed(task, topic.name);
         let observers = self.shared.observers.of_topic(name, topic);
         let bus = &mut self.shared.lock().bus;
@@ -196,7 +196,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn subscribe(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
-        let Some(task) = self.may_use(topic.name, Use::Subscribe)? else {
+        let Some(task) = self.may_use(topic.name, TopicUse::Subscribe)? else {
             return Err(Failure::new(format!(
                 "topic `{}`: a passive component has no periods in which it could receive, and cannot subscribe",
                 topic.name
@@ -330,13 +330,13 @@ impl Host for ComponentHost<'_> {
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         if self.shared.events.wants(level) {
-            self.tell(Occurrence::Log { level, text: line.to_string() });
+            self.emit(Occurrence::Log { level, text: line.to_string() });
         }
     }
 
     fn console(&mut self, line: fmt::Arguments<'_>) {
         if self.shared.events.wants_console() {
-            self.tell(Occurrence::Console { text: line.to_string() });
+            self.emit(Occurrence::Console { text: line.to_string() });
         }
     }
 
@@ -358,7 +358,7 @@ impl Host for ComponentHost<'_> {
 }
 
 impl ComponentHost<'_> {
-    fn tell(&self, what: Occurrence) {
+    fn emit(&self, what: Occurrence) {
         self.shared.events.put(RunEvent {
             time: self.now(),
             component: Some(Arc::clone(&self.part.name)),

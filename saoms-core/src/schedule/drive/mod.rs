@@ -71,7 +71,7 @@ fn prepare_thread(shared: &Shared, priority: i32) {
 
 /// Begins the end of the run if it was requested.
 #[inline]
-fn heed_stop(shared: &Shared, engine: &mut Engine, now: u64) {
+fn handle_stop_request(shared: &Shared, engine: &mut Engine, now: u64) {
     if shared.stop.load(Ordering::Relaxed) {
         engine.begin_stop(EndCause::Interrupted, now);
     }

@@ -3,7 +3,7 @@ use std::sync::atomic::{Ordering, fence};
 
 use saoms_api::Level;
 
-use super::{announce_end, heed_stop, prepare_thread, workers};
+use super::{announce_end, handle_stop_request, prepare_thread, workers};
 use crate::schedule::engine::slot::NEVER;
 use crate::schedule::engine::{Engine, Next, RunPhase};
 use crate::schedule::os::realtime::TIMER_PRIORITY;
@@ -28,7 +28,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     let mut load = Load { awake_since: now, overloaded: false, warned: false };
     let mut woke = true;
     loop {
-        heed_stop(shared, &mut engine, now);
+        handle_stop_request(shared, &mut engine, now);
         match engine.next(now) {
             Next::Run(index, job) => {
                 let Some(mut body) = engine.begin(index, job, now) else { continue };

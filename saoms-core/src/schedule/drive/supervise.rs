@@ -3,7 +3,7 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::host::format_duration;
 
-use super::{announce_end, heed_stop, spawn_timer};
+use super::{announce_end, handle_stop_request, spawn_timer};
 use crate::schedule::engine::ending::EndCause;
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::os::sys;
@@ -13,18 +13,18 @@ use crate::schedule::shared::Shared;
 /// Waits until `reached` holds or the run has ended. Meanwhile abandons components that do not end in time, and in
 /// virtual time those that do not return at all.
 pub(crate) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engine) -> bool) {
-    let mut stuck = Stuck { piece: 0, since: sys::monotonic() };
+    let mut stall = StallDetector { piece: 0, since: sys::monotonic() };
     loop {
         let ticket = shared.end.ticket();
         let mut engine = shared.lock();
         if engine.phase == RunPhase::Ended || reached(&engine) {
             return shared.release(engine);
         }
-        heed_stop(shared, &mut engine, shared.clock.now());
+        handle_stop_request(shared, &mut engine, shared.clock.now());
         let mut look_again = None;
         let mut replaced = None;
         if shared.clock.is_virtual() && engine.phase == RunPhase::Running {
-            let (until, culprit) = stuck.look(shared, &engine);
+            let (until, culprit) = stall.look(shared, &engine);
             look_again = Some(until);
             if let Some(index) = culprit {
                 let limit = format_duration(shared.settings.virtual_watchdog);
@@ -61,12 +61,12 @@ pub(crate) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engine) -> bool
 }
 
 /// State of the watchdog for code that runs in virtual time.
-struct Stuck {
+struct StallDetector {
     piece: u64,
     since: u64,
 }
 
-impl Stuck {
+impl StallDetector {
     /// Time of the next check, and the component that has run too long. A check is late by a quarter of the budget at
     /// most.
     fn look(&mut self, shared: &Shared, engine: &Engine) -> (u64, Option<u32>) {
@@ -74,8 +74,8 @@ impl Stuck {
         let allowed = nanos(shared.settings.virtual_watchdog);
         let piece = shared.pulse.begun();
         // A component that waits for a blocked observer is not stuck by itself.
-        if piece != self.piece || engine.roles.running.is_none() || shared.events.is_jammed() {
-            *self = Stuck { piece, since: now };
+        if piece != self.piece || engine.roles.running.is_none() || shared.events.has_waiting_writers() {
+            *self = StallDetector { piece, since: now };
         }
         let culprit = engine.roles.running.filter(|_| now - self.since >= allowed);
         (now.saturating_add((allowed / 4).max(1_000_000)), culprit)

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use saoms_api::Level;
 use saoms_api::extension::RunSummary;
 
-use super::{announce_end, heed_stop};
+use super::{announce_end, handle_stop_request};
 use crate::schedule::engine::ending::EndCause;
 use crate::schedule::engine::slot::NEVER;
 use crate::schedule::engine::{Engine, Next, RunPhase};
@@ -24,7 +24,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
         if engine.roles.timer != role {
             return shared.release(engine);
         }
-        heed_stop(shared, &mut engine, now);
+        handle_stop_request(shared, &mut engine, now);
         if engine.records.as_ref().is_some_and(|records| records.is_full()) {
             engine = wait_for_journal(shared, engine);
             continue;

@@ -60,9 +60,9 @@ fn take_over(shared: &Arc<Shared>, mut engine: std::sync::MutexGuard<'_, Engine>
     engine.roles.workers += 1;
     shared.pulse.end();
     if let Some(index) = engine.roles.running.take() {
-        engine.slots[index as usize].apart.send_away();
+        engine.slots[index as usize].isolation.isolate();
         let now = shared.clock.now();
-        engine.tell(now, index, Occurrence::Slow { budget: shared.settings.budget });
+        engine.emit(now, index, Occurrence::Slow { budget: shared.settings.budget });
     }
     shared.release(engine);
     if shared.settings.realtime {

@@ -44,7 +44,7 @@ pub(super) fn work(shared: &Arc<Shared>) {
         let ended = shared.clock.now();
         engine = shared.lock();
         engine.finish(index, body, job, result, started, ended);
-        // Delivers the news, and wakes the timer if it has to wake earlier.
+        // Delivers the notifications, and wakes the timer if it has to wake earlier.
         shared.release(engine);
         engine = shared.lock();
     }
@@ -73,7 +73,7 @@ pub(super) fn hand_over<'a>(
             while let Some(index) = engine.roles.work.pop_front() {
                 let slot = &mut engine.slots[index as usize];
                 slot.queued = false;
-                slot.apart.now = false;
+                slot.isolation.active = false;
                 engine.enqueue(index, 0);
             }
         }

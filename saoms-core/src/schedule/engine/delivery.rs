@@ -7,7 +7,7 @@ use saoms_lang::assembly::Loss;
 use super::{Engine, RunPhase};
 use crate::bus::TopicId;
 use crate::fault::MessageFaultKind;
-use crate::observe::{News, Occurrence, SentMessage};
+use crate::observe::{Notification, Occurrence, SentMessage};
 use crate::schedule::component::body::Part;
 use crate::schedule::settings::nanos;
 
@@ -43,7 +43,7 @@ impl Engine {
             if let Some(observers) = self.bus.observers(topic) {
                 let (topic, component) = (Arc::clone(self.bus.name(topic)), Arc::clone(&part.name));
                 let sent = SentMessage { topic, component, message: message.clone() };
-                self.news.push(News::Sent(sent, Arc::clone(observers)));
+                self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
             }
             if self.phase == RunPhase::Running {
                 if self.faults.is_empty() {
@@ -85,7 +85,7 @@ impl Engine {
         }
         slot.statistics.dropped += count;
         if !std::mem::replace(&mut slot.dropping, true) {
-            self.tell(now, index, Occurrence::Dropped { topic: Arc::clone(topic), count });
+            self.emit(now, index, Occurrence::Dropped { topic: Arc::clone(topic), count });
         }
     }
 }

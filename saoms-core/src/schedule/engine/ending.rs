@@ -70,8 +70,8 @@ impl Engine {
             if stuck && only.is_none_or(|only| only == index) {
                 slot.state = SlotState::Abandoned;
                 self.reasons.push(format!("component `{}` {why}", slot.name));
-                self.came_back();
-                self.tell(now, index, Occurrence::Abandoned);
+                self.note_return();
+                self.emit(now, index, Occurrence::Abandoned);
             }
         }
     }

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 use saoms_api::{Chance, Failure, Time};
 
 use super::overrun::Decision;
-use super::slot::{SlotState, Wish};
+use super::slot::{PendingRequest, SlotState};
 use super::{Engine, RunPhase};
 use crate::hash::fold;
 use crate::observe::Occurrence;
@@ -28,7 +28,7 @@ impl Engine {
             }
             SlotState::Active => match slot.decide(now, self.limit) {
                 Decision::Stop { missed } => {
-                    self.condemn(index, missed, now);
+                    self.stop_for_overrun(index, missed, now);
                     Some(Job::Shutdown)
                 }
                 Decision::Execute { .. } => Some(Job::Execute),
@@ -38,14 +38,14 @@ impl Engine {
     }
 
     /// Stops a component whose executions could not start in time, as its `overrun` demands.
-    fn condemn(&mut self, index: u32, missed: u64, now: u64) {
+    fn stop_for_overrun(&mut self, index: u32, missed: u64, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.statistics.missed += missed;
         slot.state = SlotState::Leaving;
-        slot.wish = Wish::None;
+        slot.pending = PendingRequest::None;
         let what = Occurrence::Overrun { missed };
-        slot.condemned = Some(format!("component `{}` {what}", slot.name));
-        self.tell(now, index, what);
+        slot.overrun_failure = Some(format!("component `{}` {what}", slot.name));
+        self.emit(now, index, what);
     }
 
     /// Takes a component's body for a job.
@@ -123,13 +123,13 @@ impl Engine {
             std::mem::forget(body);
             return;
         }
-        self.came_back();
+        self.note_return();
         let slot = &mut self.slots[index as usize];
         if job == Job::Execute && self.real {
             let slow = ended.saturating_sub(started) > self.budget;
             slot.statistics.slow += u64::from(slow);
-            if slot.apart.now {
-                slot.apart.ran(slow);
+            if slot.isolation.active {
+                slot.isolation.count_execution(slow);
             }
             if ended > body.part.due.saturating_add(slot.policy.deadline) {
                 slot.statistics.deadline_misses += 1;
@@ -163,7 +163,7 @@ impl Engine {
     }
 
     /// Notes that a body has returned. At the end of a run the timer may wait for it.
-    pub(crate) fn came_back(&mut self) {
+    pub(crate) fn note_return(&mut self) {
         self.out -= 1;
         self.has_returned |= self.awaited > 0;
         self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
@@ -172,7 +172,7 @@ impl Engine {
     fn executed(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.waiting = false;
-        if self.phase == RunPhase::Running && slot.wish == Wish::None {
+        if self.phase == RunPhase::Running && slot.pending == PendingRequest::None {
             let when = slot.due.min(slot.until).max(now);
             self.enqueue(index, when);
         } else {

@@ -3,7 +3,7 @@ use std::sync::atomic::Ordering;
 use saoms_api::Failure;
 
 use super::ending::EndCause;
-use super::slot::{NEVER, SlotState, Wish};
+use super::slot::{NEVER, PendingRequest, SlotState};
 use super::trace::TraceStep;
 use super::{Engine, RunPhase};
 use crate::observe::Occurrence;
@@ -36,17 +36,17 @@ impl Engine {
     fn schedule(&mut self, index: u32, lasting: u64, now: u64) {
         let until = now.saturating_add(lasting);
         let slot = &mut self.slots[index as usize];
-        match (slot.state, slot.wish) {
+        match (slot.state, slot.pending) {
             (SlotState::Idle | SlotState::Failed, _) => {
                 slot.state = SlotState::Starting;
                 slot.until = until;
                 self.enqueue(index, now);
             }
-            (SlotState::Leaving, _) | (_, Wish::Leave | Wish::Return { .. }) => {
-                slot.wish = Wish::Return { lasting }
+            (SlotState::Leaving, _) | (_, PendingRequest::Leave | PendingRequest::Return { .. }) => {
+                slot.pending = PendingRequest::Return { lasting }
             }
-            (SlotState::Starting, Wish::None) => slot.until = until,
-            (SlotState::Active, Wish::None) => {
+            (SlotState::Starting, PendingRequest::None) => slot.until = until,
+            (SlotState::Active, PendingRequest::None) => {
                 // A running component goes on; only its end may change.
                 slot.until = until;
                 if slot.entry != NEVER {
@@ -62,7 +62,7 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         match slot.state {
             SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => {}
-            SlotState::Leaving => slot.wish = Wish::None,
+            SlotState::Leaving => slot.pending = PendingRequest::None,
             SlotState::Starting if slot.body.is_some() => {
                 slot.state = SlotState::Idle;
                 slot.entry = NEVER;
@@ -72,7 +72,7 @@ impl Engine {
             }
             SlotState::Active if slot.body.is_some() => self.leave(index, now),
             SlotState::Starting | SlotState::Active => {
-                slot.wish = Wish::Leave;
+                slot.pending = PendingRequest::Leave;
                 if slot.policy.interrupt {
                     slot.cancelled.store(true, Ordering::Relaxed);
                 }
@@ -97,14 +97,14 @@ impl Engine {
             return;
         }
         let waiting = std::mem::take(&mut slot.waiting);
-        match slot.wish {
-            Wish::Leave => {
-                slot.wish = Wish::None;
+        match slot.pending {
+            PendingRequest::Leave => {
+                slot.pending = PendingRequest::None;
                 self.leave(index, now);
             }
-            Wish::Return { .. } => self.leave(index, now),
-            Wish::None if waiting => self.enqueue(index, now),
-            Wish::None => {}
+            PendingRequest::Return { .. } => self.leave(index, now),
+            PendingRequest::None if waiting => self.enqueue(index, now),
+            PendingRequest::None => {}
         }
     }
 
@@ -118,14 +118,14 @@ impl Engine {
             return;
         }
         self.step(now, index, TraceStep::Started);
-        self.tell(now, index, if again { Occurrence::Restarted { number } } else { Occurrence::Started });
+        self.emit(now, index, if again { Occurrence::Restarted { number } } else { Occurrence::Started });
         let slot = &mut self.slots[index as usize];
         slot.due = now.saturating_add(slot.policy.delay);
         if let Some(last) = slot.last_due.filter(|last| slot.due <= *last) {
             // Otherwise a component that schedules itself anew without a delay would keep virtual time from advancing.
             slot.due = last.saturating_add(slot.policy.period);
         }
-        if self.phase == RunPhase::Running && slot.wish == Wish::None {
+        if self.phase == RunPhase::Running && slot.pending == PendingRequest::None {
             let when = slot.due.min(slot.until).max(now);
             self.enqueue(index, when);
         } else {
@@ -138,18 +138,18 @@ impl Engine {
         self.leave_topics(index, now);
         self.step(now, index, TraceStep::Left);
         let slot = &mut self.slots[index as usize];
-        let wish = std::mem::replace(&mut slot.wish, Wish::None);
+        let pending = std::mem::replace(&mut slot.pending, PendingRequest::None);
         slot.state = SlotState::Idle;
         slot.waiting = false;
-        if let Some(reason) = slot.condemned.take() {
+        if let Some(reason) = slot.overrun_failure.take() {
             slot.state = SlotState::Failed;
             self.reasons.push(reason);
             self.lost(index, now);
             return;
         }
-        self.tell(now, index, Occurrence::Left);
+        self.emit(now, index, Occurrence::Left);
         self.forget_vote(index, now);
-        if let Wish::Return { lasting } = wish {
+        if let PendingRequest::Return { lasting } = pending {
             self.request(index, Request::Schedule { lasting }, now);
         }
     }
@@ -179,33 +179,34 @@ impl Engine {
             slot.state = SlotState::Failed;
             let reason = format!("component `{}` failed: {message}", slot.name);
             self.held_failure = Some((index, Failure::new(reason)));
-            self.tell(now, index, Occurrence::Failed { message, restart: None });
+            self.emit(now, index, Occurrence::Failed { message, restart: None });
             return;
         }
-        let stays = self.phase == RunPhase::Running && job != Job::Shutdown && slot.wish == Wish::None;
+        let stays =
+            self.phase == RunPhase::Running && job != Job::Shutdown && slot.pending == PendingRequest::None;
         let policy = slot.policy;
         let longer = 1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX);
         let pause = (stays && slot.restarts < policy.restarts).then(|| policy.backoff.saturating_mul(longer));
         self.keep_subscriptions(body);
         let slot = &mut self.slots[index as usize];
-        let wish = std::mem::replace(&mut slot.wish, Wish::None);
+        let pending = std::mem::replace(&mut slot.pending, PendingRequest::None);
         match pause {
             Some(pause) => {
                 slot.restarts += 1;
                 slot.restarting = true;
                 slot.state = SlotState::Starting;
-                self.tell(now, index, Occurrence::Failed { message, restart: Some(pause) });
+                self.emit(now, index, Occurrence::Failed { message, restart: Some(pause) });
                 self.enqueue(index, now.saturating_add(nanos(pause)));
             }
             None => {
                 slot.state = SlotState::Failed;
                 slot.restarting = false;
-                self.reasons.extend(slot.condemned.take());
+                self.reasons.extend(slot.overrun_failure.take());
                 self.reasons.push(format!("component `{}` failed: {message}", slot.name));
-                self.tell(now, index, Occurrence::Failed { message, restart: None });
+                self.emit(now, index, Occurrence::Failed { message, restart: None });
                 self.release(index, body, now);
                 self.lost(index, now);
-                if let Wish::Return { lasting } = wish {
+                if let PendingRequest::Return { lasting } = pending {
                     self.request(index, Request::Schedule { lasting }, now);
                 }
             }

@@ -28,7 +28,7 @@ use super::settings::{ClockKind, Settings, nanos};
 use crate::bus::Bus;
 use crate::fault::Faults;
 use crate::journal::{OutsideRing, RecordQueue};
-use crate::observe::{News, Occurrence, RunEvent};
+use crate::observe::{Notification, Occurrence, RunEvent};
 
 /// The state of a run: due times, states of components, topics. It runs no component code itself; a driving thread
 /// takes a component's body with [`begin`](Engine::begin), performs the job without holding the lock, and gives the
@@ -40,7 +40,7 @@ pub(crate) struct Engine {
     pub(crate) phase: RunPhase,
     pub(crate) roles: Roles,
     /// Events for the observers, delivered when the lock is free.
-    pub(crate) news: Vec<News>,
+    pub(crate) notifications: Vec<Notification>,
     /// True if the sleeping timer has to be woken.
     pub(crate) wake: bool,
     pub(crate) trace: Option<Trace>,
@@ -135,7 +135,7 @@ impl Engine {
             bus: Bus::default(),
             phase: RunPhase::Starting,
             roles: Roles::default(),
-            news: Vec::new(),
+            notifications: Vec::new(),
             wake: false,
             trace: (settings.clock == ClockKind::Virtual).then(Trace::default),
             records: None,
@@ -188,7 +188,7 @@ impl Engine {
                     slot.entry = NEVER;
                     if slot.body.is_none() || slot.held {
                         slot.waiting = true;
-                    } else if slot.apart.now {
+                    } else if slot.isolation.active {
                         slot.queued = true;
                         self.roles.work.push_back(index);
                         return Next::HandOver;
@@ -228,9 +228,9 @@ impl Engine {
     }
 
     /// Queues an event about a component for the observers.
-    pub(crate) fn tell(&mut self, now: u64, index: u32, what: Occurrence) {
+    pub(crate) fn emit(&mut self, now: u64, index: u32, what: Occurrence) {
         let component = Some(Arc::clone(&self.slots[index as usize].name));
-        self.news.push(RunEvent { time: Time::from_nanos(now), component, what }.into());
+        self.notifications.push(RunEvent { time: Time::from_nanos(now), component, what }.into());
     }
 
     pub(crate) fn step(&mut self, now: u64, index: u32, step: TraceStep) {

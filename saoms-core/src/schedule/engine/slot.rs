@@ -36,20 +36,20 @@ pub(crate) struct Slot {
     /// Executions of the present instance.
     pub(crate) execution: u64,
     /// Request that came while its code ran.
-    pub(crate) wish: Wish,
+    pub(crate) pending: PendingRequest,
     /// True if it became due while it served a call.
     pub(crate) waiting: bool,
     /// True if it is queued for the worker threads.
     pub(crate) queued: bool,
     /// True if messages were lost in its last period.
     pub(crate) dropping: bool,
-    pub(crate) apart: Apart,
+    pub(crate) isolation: Isolation,
     pub(crate) policy: TaskPolicy,
     pub(crate) vote: Option<Work>,
     pub(crate) statistics: Statistics,
     pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
-    pub(crate) condemned: Option<String>,
+    pub(crate) overrun_failure: Option<String>,
     pub(crate) name: Arc<str>,
     pub(crate) cancelled: Arc<AtomicBool>,
     /// Number of instances so far.
@@ -80,7 +80,7 @@ pub(crate) enum SlotState {
 
 /// Request that came while the component's code was running.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wish {
+pub(crate) enum PendingRequest {
     /// Nothing.
     None,
     /// Unschedule it.
@@ -91,29 +91,31 @@ pub(crate) enum Wish {
 
 /// State of a component that runs on a worker thread, because it held up the others.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Apart {
-    pub(crate) now: bool,
+pub(crate) struct Isolation {
+    pub(crate) active: bool,
     /// Executions within the budget since it runs on a worker thread.
-    pub(crate) well: u32,
+    pub(crate) within_budget: u32,
     /// Number of such executions that bring it back to the timer; doubles each time.
-    pub(crate) needed: u32,
+    pub(crate) required: u32,
 }
 
 /// Initial number of executions within the budget that bring a component back to the timer.
-const WELL_BEHAVED: u32 = 100;
-const WELL_BEHAVED_AT_MOST: u32 = 1 << 20;
+const EXECUTIONS_TO_RETURN: u32 = 100;
+const MAX_EXECUTIONS_TO_RETURN: u32 = 1 << 20;
 
-impl Apart {
+impl Isolation {
     /// Moves it to a worker thread, because it held up the others.
-    pub(crate) fn send_away(&mut self) {
-        let needed = if self.needed == 0 { WELL_BEHAVED } else { self.needed.saturating_mul(2) };
-        *self = Apart { now: true, well: 0, needed: needed.min(WELL_BEHAVED_AT_MOST) };
+    pub(crate) fn isolate(&mut self) {
+        let required =
+            if self.required == 0 { EXECUTIONS_TO_RETURN } else { self.required.saturating_mul(2) };
+        *self =
+            Isolation { active: true, within_budget: 0, required: required.min(MAX_EXECUTIONS_TO_RETURN) };
     }
 
     /// Counts an execution on a worker thread, within the budget or not.
-    pub(crate) fn ran(&mut self, slow: bool) {
-        self.well = if slow { 0 } else { self.well + 1 };
-        self.now = self.well < self.needed;
+    pub(crate) fn count_execution(&mut self, slow: bool) {
+        self.within_budget = if slow { 0 } else { self.within_budget + 1 };
+        self.active = self.within_budget < self.required;
     }
 }
 
@@ -196,16 +198,16 @@ impl Slot {
             last_due: None,
             until: NEVER,
             execution: 0,
-            wish: Wish::None,
+            pending: PendingRequest::None,
             waiting: false,
             queued: false,
             dropping: false,
-            apart: Apart::default(),
+            isolation: Isolation::default(),
             policy,
             vote: None,
             statistics: Statistics::default(),
             journal: Ring::default(),
-            condemned: None,
+            overrun_failure: None,
             name,
             cancelled,
             instances: 0,
@@ -228,8 +230,8 @@ impl Slot {
     /// True if it is scheduled, or about to be.
     pub(crate) fn is_scheduled(&self) -> bool {
         match self.state {
-            SlotState::Starting | SlotState::Active => self.wish != Wish::Leave,
-            SlotState::Leaving => matches!(self.wish, Wish::Return { .. }),
+            SlotState::Starting | SlotState::Active => self.pending != PendingRequest::Leave,
+            SlotState::Leaving => matches!(self.pending, PendingRequest::Return { .. }),
             SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => false,
         }
     }

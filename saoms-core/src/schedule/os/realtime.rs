@@ -13,12 +13,12 @@ pub(crate) const SPARE_PRIORITY: i32 = 50;
 /// Error: real-time scheduling is not possible. The message names the missing permission.
 #[derive(Debug)]
 pub struct RealtimeError {
-    what: What,
+    what: Requirement,
     source: io::Error,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum What {
+enum Requirement {
     Scheduling,
     Memory,
 }
@@ -26,14 +26,14 @@ enum What {
 impl fmt::Display for RealtimeError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.what {
-            What::Scheduling => write!(
+            Requirement::Scheduling => write!(
                 formatter,
                 "real-time scheduling (SCHED_FIFO) is not permitted: {}. Grant the capability CAP_SYS_NICE \
                  (`sudo setcap cap_sys_nice,cap_ipc_lock+ep PROGRAM`), or allow the priority {SPARE_PRIORITY} (`ulimit -r {SPARE_PRIORITY}`, \
                  `rtprio` in /etc/security/limits.conf), or run without `--realtime`",
                 self.source
             ),
-            What::Memory => write!(
+            Requirement::Memory => write!(
                 formatter,
                 "locking memory is not permitted: {}. Grant the capability CAP_IPC_LOCK \
                  (`sudo setcap cap_sys_nice,cap_ipc_lock+ep PROGRAM`), or allow any amount (`ulimit -l unlimited`, `memlock` in \
@@ -52,8 +52,8 @@ impl std::error::Error for RealtimeError {
 
 /// Locks the memory of the process, and makes sure that its threads may become real-time threads.
 pub(crate) fn enter() -> Result<(), RealtimeError> {
-    let scheduling = |source| RealtimeError { what: What::Scheduling, source };
-    let memory = |source| RealtimeError { what: What::Memory, source };
+    let scheduling = |source| RealtimeError { what: Requirement::Scheduling, source };
+    let memory = |source| RealtimeError { what: Requirement::Memory, source };
     let thread = sys::thread_id();
     sys::set_fifo(thread, SPARE_PRIORITY).map_err(scheduling)?;
     sys::set_normal(thread).map_err(scheduling)?;
