@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
+#[path = "../../saoms-lang/tests/suite/load/collection.rs"]
+mod collection;
 mod memory;
 mod targets;
 
@@ -14,7 +16,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use saoms_components as _;
 
-/// Of the larger collection, where it is there, every file of so many.
+/// The step through the files of the larger collection.
 const EVERY: usize = 12;
 
 /// The composites of this repository, and some of the larger collection beside it.
@@ -22,12 +24,15 @@ static FILES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = below(&root.join("composites"));
     paths.extend(below(&root.join("saoms-lang/tests")));
-    let collections = root.ancestors().map(|folder| folder.join("shared/corpus/files"));
-    for collection in collections.filter(|folder| folder.is_dir()).take(1) {
-        paths.extend(below(&collection).into_iter().step_by(EVERY));
-    }
+    paths.extend(of_collection(EVERY));
     paths.into_iter().map(|path| fs::read(path).unwrap()).collect()
 });
+
+/// Of the larger collection, where it is there, every file of so many.
+fn of_collection(every: usize) -> impl Iterator<Item = PathBuf> {
+    let files = collection::collection().map(|folder| below(&folder.join("files")));
+    files.unwrap_or_default().into_iter().step_by(every)
+}
 
 fn below(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -13,8 +13,8 @@ use saoms_lang::registry::Registry;
 use saoms_tools::graph::{Diagram, Picture, dot, mermaid, svg};
 use tempfile::TempDir;
 
-use crate::below;
 use crate::targets::memory::{peak, within};
+use crate::{below, of_collection};
 
 thread_local! {
     static REGISTRY: Registry = Registry::linked().unwrap();
@@ -58,10 +58,7 @@ fn composite(size: usize, before: &str, part: impl Fn(usize) -> String, after: &
 fn files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = below(&root.join("composites"));
-    let collections = root.ancestors().map(|folder| folder.join("shared/corpus/files"));
-    for collection in collections.filter(|folder| folder.is_dir()).take(1) {
-        paths.extend(below(&collection).into_iter().step_by(20));
-    }
+    paths.extend(of_collection(20));
     paths
 }
 

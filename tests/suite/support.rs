@@ -38,9 +38,12 @@ pub(crate) fn empty_folder(name: &str) -> PathBuf {
     folder
 }
 
+/// The program under test.
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_saoms");
+
 /// `saoms` in the folder of the repository.
 pub(crate) fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
+    let mut command = Command::new(PROGRAM);
     command.args(arguments).current_dir(root());
     command
 }

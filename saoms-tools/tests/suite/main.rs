@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests fail as tests do")]
 
+#[path = "../../../saoms-lang/tests/suite/load/collection.rs"]
+mod collection;
 #[path = "../../../saoms-lang/tests/suite/load/files.rs"]
 mod files;
 mod format;

@@ -7,6 +7,8 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::support::PROGRAM;
+
 /// What a command came to.
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
@@ -60,7 +62,7 @@ pub(crate) fn composite(components: &str) -> String {
 pub(crate) fn saoms(folder: &Path, arguments: &[&str]) -> Run {
     // A component that is waited for in vain is a failure, not a test that never ends.
     let output = Command::new("timeout")
-        .args(["60", env!("CARGO_BIN_EXE_saoms")])
+        .args(["60", PROGRAM])
         .args(arguments)
         .env_remove("SAOMS_PLUGIN_PATH")
         .current_dir(folder)

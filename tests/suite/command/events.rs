@@ -2,9 +2,11 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Output, Stdio};
 
 use serde_json::Value;
+
+use crate::support::{command, saoms_in, stdout};
 
 /// An area with two robots, a master, and an environment without a scenario.
 const FLEET: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -49,8 +51,7 @@ impl Yard {
     }
 
     fn spawn(&self, arguments: &[&str]) -> Child {
-        Command::new(env!("CARGO_BIN_EXE_saoms"))
-            .args(["run", "yard.composite", "--report", "report.json"])
+        command(&["run", "yard.composite", "--report", "report.json"])
             .args(arguments)
             .current_dir(self.folder.path())
             .stdin(Stdio::piped())
@@ -148,11 +149,7 @@ fn events_that_cannot_be_read_start_nothing() {
 fn why_leads_back_to_the_event() {
     let yard = Yard::new();
     yard.run(&["--virtual", "--events", "-", "--for", "10min"], LINES);
-    let output = Command::new(env!("CARGO_BIN_EXE_saoms"))
-        .args(["why", "Robot001", "--at", "2s", "--report", "report.json"])
-        .current_dir(yard.folder.path())
-        .output()
-        .unwrap();
-    let text = String::from_utf8(output.stdout).unwrap();
+    let why = ["why", "Robot001", "--at", "2s", "--report", "report.json"];
+    let text = stdout(&saoms_in(yard.folder.path(), &why));
     assert!(text.contains("(outside)") && text.contains("luggage (3,1) to (3,4)"), "{text}");
 }

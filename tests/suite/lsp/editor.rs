@@ -2,13 +2,15 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::path::PathBuf;
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::Duration;
 
 use serde_json::{Value, json};
+
+use crate::support::{command, empty_folder};
 
 /// How long an answer can take before the test is given up: a server that hangs must not hold up the others.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -42,14 +44,11 @@ fn read(output: &mut BufReader<ChildStdout>) -> Option<Value> {
 impl Editor {
     /// A server in a folder with these files, not yet initialized.
     pub(crate) fn new(test: &str, files: &[(&str, &str)]) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("lsp").join(test);
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
+        let folder = empty_folder(&format!("lsp/{test}"));
         for (name, text) in files {
             fs::write(folder.join(name), text).unwrap();
         }
-        let mut server = Command::new(env!("CARGO_BIN_EXE_saoms"))
-            .arg("lsp")
+        let mut server = command(&["lsp"])
             .current_dir(&folder)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

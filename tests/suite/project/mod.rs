@@ -3,4 +3,5 @@
 mod architecture;
 mod editors;
 mod pages;
+mod programs;
 mod readme;

@@ -1,7 +1,7 @@
 //! What the checker says of real files when classes are taken as given.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use saoms_lang::diagnostic::{Diagnostic, Severity};
 use saoms_lang::project::Project;
@@ -10,12 +10,7 @@ use saoms_lang::source::{Location, Sources, Span};
 use saoms_lang::syntax;
 
 use crate::check::support::shown;
-
-/// The folder of the collection: `shared/corpus` beside the workspace, or beside one of the folders around it.
-pub(crate) fn collection() -> Option<PathBuf> {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
-    workspace.ancestors().map(|folder| folder.join("shared/corpus")).find(|folder| folder.is_dir())
-}
+use crate::load::collection::collection;
 
 fn checked(path: &Path) -> (Vec<Diagnostic>, Sources) {
     let compilation = Project::new().file(path).assume_classes(true).check(&Registry::new());

@@ -9,6 +9,7 @@ use saoms_lang::diagnostic::Diagnostics;
 use saoms_lang::load::{MAX_SIZE, read};
 use saoms_lang::source::Sources;
 
+use crate::load::collection::collection;
 use crate::load::files::{self, Sample};
 use crate::load::oracle::judge;
 use crate::load::places::checked;
@@ -36,7 +37,7 @@ fn the_shipped_files_get_what_they_deserve() {
 /// Those that the collection calls valid, or of which it says nothing but that the schema is content.
 #[test]
 fn files_that_are_valid_have_no_errors() {
-    let Some(folder) = files::collection() else { return };
+    let Some(folder) = collection() else { return };
     let table = fs::read_to_string(folder.join("verdicts.tsv")).unwrap();
     let mut seen = 0;
     for row in table.lines().skip(1) {
@@ -56,7 +57,7 @@ fn files_that_are_valid_have_no_errors() {
 /// What violates the schema in one of the ways that the loader knows is found, at the very element.
 #[test]
 fn files_that_are_invalid_by_the_vocabulary_have_an_error_there() {
-    let Some(folder) = files::collection() else { return };
+    let Some(folder) = collection() else { return };
     let samples = files::all();
     for (path, expected) in [
         (

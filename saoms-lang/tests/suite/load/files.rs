@@ -1,19 +1,15 @@
 //! Composites that other people wrote: a few in this repository, and all of a larger collection where there is one.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use super::collection::collection;
 
 /// A composite and the name it is known by.
 #[derive(Debug)]
 pub(crate) struct Sample {
     pub(crate) name: String,
     pub(crate) text: String,
-}
-
-/// The folder of the larger collection: `shared/corpus` beside the workspace, or beside one of the folders around it.
-pub(crate) fn collection() -> Option<PathBuf> {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
-    workspace.ancestors().map(|folder| folder.join("shared/corpus")).find(|folder| folder.is_dir())
 }
 
 /// The files in this repository.

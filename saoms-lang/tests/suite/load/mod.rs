@@ -1,5 +1,6 @@
 //! The loader over real files, broken files, and beside another XML parser.
 
+pub(crate) mod collection;
 mod corpus;
 mod definitions;
 mod exchange;

@@ -7,6 +7,8 @@ use std::process::{Child, ChildStdout, Command, Stdio};
 
 use serde_json::Value;
 
+use crate::support::{command, root};
+
 const FLEET: &str = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">
   <component name="Counter">
     <implementation.rust class="test.Counter"/>
@@ -31,13 +33,12 @@ struct Run {
 
 /// Builds the library into the folder, over an earlier build, with these definitions.
 fn build(folder: &Path, definitions: &[&str]) {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let new = folder.join("new");
     let output = Command::new("cc")
         .args(["-std=c99", "-Wall", "-Werror", "-shared", "-fPIC", "-I"])
-        .arg(root.join("saoms-abi/include"))
+        .arg(root().join("saoms-abi/include"))
         .args(definitions)
-        .arg(root.join("tests/suite/plugins/reload/counter.c"))
+        .arg(root().join("tests/suite/plugins/reload/counter.c"))
         .arg("-o")
         .arg(&new)
         .output();
@@ -58,8 +59,7 @@ impl Run {
         build(folder.path(), definitions);
         let composite = folder.path().join("f.composite");
         fs::write(&composite, FLEET).unwrap();
-        let mut child = Command::new(env!("CARGO_BIN_EXE_saoms"))
-            .args(["run", "--reload", "--for", "60s", "--report"])
+        let mut child = command(&["run", "--reload", "--for", "60s", "--report"])
             .arg(folder.path().join("report.json"))
             .arg(composite)
             .stdout(Stdio::piped())
