@@ -11,17 +11,18 @@ use crate::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
 use crate::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
 use crate::syntax::NewElement;
 
-/// Writes an assembly as one composite in which nothing is left to resolve: no includes, no inner composites, no sources of properties,
-/// every wire with its service. It has the name, the namespace and the version of SCA of `like`.
+/// Writes an assembly as one composite in which nothing is left to resolve: no includes, no inner composites, no
+/// sources of properties, every wire with its service. It has the name, the namespace and the version of SCA of `like`.
 ///
-/// Components have the order and the paths that they have in the assembly, so a fleet that runs from it does what it did before: where
-/// a path is more than a name, the attribute `path` in the namespace of SAOMS keeps it.
+/// Components have the order and the paths that they have in the assembly, so a fleet that runs from it does what it
+/// did before: where a path is more than a name, the attribute `path` in the namespace of SAOMS keeps it.
 ///
-/// A reference that leads nowhere although it should is a warning in SCA 1.0 and an error in 1.1: an assembly with such a one is
-/// written in 1.0.
+/// A reference that leads nowhere although it should is a warning in SCA 1.0 and an error in 1.1: an assembly with such
+/// a one is written in 1.0.
 ///
-/// What would be told again of that composite and is lowered in those that it comes from is lowered in it as well, for the same reason: `found` are the
-/// diagnostics of the check that made the assembly. Of the wiring report, which that check may not have made, it keeps what `like` says of the fleet.
+/// What would be told again of that composite and is lowered in those that it comes from is lowered in it as well, for
+/// the same reason: `found` are the diagnostics of the check that made the assembly. Of the wiring report, which that
+/// check may not have made, it keeps what `like` says of the fleet.
 pub fn expanded<'d>(
     assembly: &Assembly,
     like: &Composite,
@@ -77,8 +78,8 @@ fn root(like: &Composite) -> NewElement {
         .maybe("targetNamespace", namespace.map(|namespace| namespace.as_str()))
 }
 
-/// The codes that are lowered although the composite that is left has what they are about; each with what hides least. Codes of which something
-/// is told as it is are told so again.
+/// The codes that are lowered although the composite that is left has what they are about; each with what hides least.
+/// Codes of which something is told as it is are told so again.
 fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'static str, &'d SetBy> {
     let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
     let mut told: HashSet<&'static str> = HashSet::new();
@@ -132,7 +133,7 @@ fn component(
         .children(loops(component))
 }
 
-/// What names the class of a component.
+/// The attributes that name the class of a component.
 fn implementation(component: &ComponentSpec) -> NewElement {
     let node = NewElement::new("implementation.rust").with("class", component.class.name());
     node.maybe("library", component.library.as_deref())
@@ -157,7 +158,8 @@ fn property(name: &str, value: &PropertyValue) -> NewElement {
     }
 }
 
-/// A property with a text. White space at the ends of a text inside an element does not count, and an empty one is none.
+/// A property with a text. White space at the ends of a text inside an element does not count, and an empty one is
+/// none.
 fn text_of(property: NewElement, text: &str) -> NewElement {
     if text.is_empty() { property.child(NewElement::new("value")) } else { property.text(text) }
 }
@@ -182,7 +184,7 @@ fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<NewElement> 
     }
 }
 
-/// How the loops of a component differ from those that its class gives it.
+/// Differences of the loops of a component from those of its class.
 fn loops(component: &ComponentSpec) -> Vec<NewElement> {
     let declaration = component.class.declaration();
     let value = declaration.loops.property.as_ref().and_then(|property| {
@@ -214,7 +216,7 @@ fn loops(component: &ComponentSpec) -> Vec<NewElement> {
     all
 }
 
-/// What a loop is called unless it is given a name: what follows the last dot of its class.
+/// The name of a loop unless it is given one: the text behind the last dot of its class.
 fn simple(class: &str) -> &str {
     class.rsplit('.').next().unwrap_or(class)
 }

@@ -1,4 +1,4 @@
-//! What a composite asks for once everything in it is resolved: which components of which classes, with which values, wired how.
+//! Assemblies: resolved composites, with components, their classes, values and wires.
 //!
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
@@ -32,14 +32,14 @@ pub struct Assembly {
 pub struct ComponentSpec {
     /// The identity: the path in the composite, such as `Robot001` or `hall/Robot001`.
     pub path: String,
-    /// What it is an instance of.
+    /// The class.
     pub class: Arc<RegisteredClass>,
-    /// The library that a composite names for the class: a path from the folder of the first composite, or an absolute one. `None` where
-    /// none is named.
+    /// The library that a composite names for the class: a path from the folder of the first composite, or an absolute
+    /// one. `None` where none is named.
     pub library: Option<String>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: Vec<(SmolStr, PropertyValue)>,
-    /// How a periodic component runs; `None` for a passive one.
+    /// The task of a periodic component; `None` for a passive one.
     pub task: Option<TaskProperties>,
     /// The class's references in the order of its declaration, with the services each leads to.
     pub references: Vec<Wire>,
@@ -50,15 +50,15 @@ pub struct ComponentSpec {
 /// One loop of a component, resolved.
 #[derive(Clone, Debug)]
 pub struct LoopSpec {
-    /// What it is called within the component.
+    /// The name within the component.
     pub name: String,
-    /// What it is an instance of.
+    /// The class.
     pub class: Arc<RegisteredLoop>,
     /// Its values; what is absent takes its default.
     pub values: Vec<(SmolStr, PropertyValue)>,
 }
 
-/// Where a reference leads.
+/// The target of a reference.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wire {
     /// The reference's name.

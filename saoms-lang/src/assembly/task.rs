@@ -1,4 +1,4 @@
-//! What a composite can say about every periodic component, whatever its class.
+//! Task properties: settings of every periodic component, whatever its class.
 
 use std::sync::LazyLock;
 use std::time::Duration;
@@ -64,7 +64,7 @@ pub struct TaskProperties {
     pub loss: Loss,
 }
 
-/// What happens to executions that could not start before the next one was due.
+/// Treatment of executions that could not start before the next one was due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
 pub enum Overrun {
     /// They are left out and counted as missed; the grid of due times stays.
@@ -75,7 +75,7 @@ pub enum Overrun {
     Stop,
 }
 
-/// What happens after a failure.
+/// Treatment of a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
 pub enum Restart {
     /// The component stays stopped and the run fails.
@@ -84,7 +84,7 @@ pub enum Restart {
     OnFailure,
 }
 
-/// What an overflow of an event queue means.
+/// Effect of an overflow of an event queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
 pub enum Loss {
     /// The run fails; it goes on to its end first.
@@ -101,8 +101,8 @@ pub(crate) const OF_RESTART: [&str; 2] = ["restartBackoff", "restartLimit"];
     reason = "the declaration is a constant, which every test of the checker reads"
 )]
 static DECLARATIONS: LazyLock<Vec<PropertyDeclaration>> = LazyLock::new(|| {
-    // Proof: the derive writes the text while this compiles, from the struct above, and no input reaches it; any test that checks a
-    // periodic component reads it.
+    // Proof: the derive writes the text while this compiles, from the struct above, and no input reaches it; any test
+    // that checks a periodic component reads it.
     serde_json::from_str(TaskProperties::DECLARATION).expect("the task properties declare themselves in JSON")
 });
 
@@ -112,7 +112,8 @@ impl TaskProperties {
         &DECLARATIONS
     }
 
-    /// Reads the values that a composite gives. Those that have no effect count as not given: empty texts, and what only a restart needs.
+    /// Reads the values that a composite gives. Those that have no effect count as not given: empty texts, and what
+    /// only a restart needs.
     ///
     /// # Errors
     /// A value is missing or wrong.

@@ -1,4 +1,4 @@
-//! Who says what to whom: the topics of a fleet with their writers and readers.
+//! Topics of a fleet with their writers and readers.
 
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
@@ -24,11 +24,11 @@ pub struct TrafficTopic {
     pub kind: TopicKind,
     /// The name of the type of its messages.
     pub message: String,
-    /// Whether nobody has to read it: all that publish it say so, and it has the name that they give it.
+    /// True if nobody has to read it: all that publish it say so, and it has the name that they give it.
     pub is_optional: bool,
-    /// Who publishes it, in the order of the assembly.
+    /// Its publishers, in the order of the assembly.
     pub writers: Vec<TopicEnd>,
-    /// Who subscribes to it, in the order of the assembly.
+    /// Its subscribers, in the order of the assembly.
     pub readers: Vec<TopicEnd>,
 }
 
@@ -37,7 +37,8 @@ pub struct TrafficTopic {
 pub struct TopicEnd {
     /// Its index in the assembly.
     pub component: usize,
-    /// How many of its parts declare the topic: itself and its loops, each of which can send one message in an execution, or more.
+    /// The number of its parts that declare the topic: itself and its loops, each of which can send one message in an
+    /// execution, or more.
     pub parts: u32,
     /// From one execution to the next; `None` for a passive component.
     pub period: Option<Duration>,
@@ -107,12 +108,12 @@ fn add(ends: &mut Vec<TopicEnd>, component: usize, spec: &ComponentSpec) {
 }
 
 impl TrafficTopic {
-    /// Who uses it: writers, then readers.
+    /// Its users: writers, then readers.
     pub fn ends(&self) -> impl Iterator<Item = &TopicEnd> {
         self.writers.iter().chain(&self.readers)
     }
 
-    /// How often its writers send.
+    /// The rate of its writers.
     pub fn pace(&self) -> Pace {
         let mut parts: BTreeMap<u128, u64> = BTreeMap::new();
         for writer in &self.writers {
@@ -123,7 +124,7 @@ impl TrafficTopic {
         Pace { parts: parts.into_iter().collect() }
     }
 
-    /// How many messages a second there are if each part of each writer sends one in each execution.
+    /// The number of messages a second if each part of each writer sends one in each execution.
     pub fn rate(&self) -> f64 {
         let rates = self.writers.iter().filter_map(|writer| Some((writer.parts, writer.period?)));
         // The sum of none is `-0.0`.
@@ -131,20 +132,20 @@ impl TrafficTopic {
     }
 }
 
-/// How often the writers of a topic send if each part of each sends one message in each execution.
+/// The rate of the writers of a topic if each part of each sends one message in each execution.
 #[derive(Clone, Debug)]
 pub struct Pace {
-    /// How many parts send in each period, which is in nanoseconds; the shortest first.
+    /// The number of parts that send in each period, in nanoseconds; the shortest first.
     parts: Vec<(u128, u64)>,
 }
 
 impl Pace {
-    /// How many messages come between two executions of a reader with this period.
+    /// The number of messages between two executions of a reader with this period.
     pub fn burst(&self, period: Duration) -> u64 {
         self.sums(period).last().unwrap_or(0)
     }
 
-    /// Whether these are more than so many. Most often a part of the writers says it.
+    /// True if these are more than so many. Most often a part of the writers says it.
     pub fn exceeds(&self, period: Duration, room: u64) -> bool {
         self.sums(period).any(|sum| sum > room)
     }

@@ -8,7 +8,8 @@ use crate::model::{ComponentElement, Composite, ImplementationKind};
 /// The ending of their names.
 const ENDING: &str = "componentType";
 
-/// Whether a folder may hold component types. Most hold none, or are not there: then nobody has to ask for one by each name.
+/// True if a folder may hold component types. Most hold none, or are not there: then nobody has to ask for one by each
+/// name.
 pub(super) fn any_in(folder: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(entries) = folder.read_dir() else { return folder.is_dir() };

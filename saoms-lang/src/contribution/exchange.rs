@@ -14,8 +14,9 @@ use crate::load::description::{Description, Entry};
 /// The endings of files that hold no names that others could import, or of which they are known.
 const USUAL: &[&str] = &["composite", "componentType", "csv", "txt", "md", "properties"];
 impl Finder {
-    /// Warns of exported namespaces of which the contribution in `root` has nothing, and of imported ones that the contributions around it do not
-    /// give. These may be elsewhere: so what nobody has is told only where the name is nearly that of another.
+    /// Warns of exported namespaces of which the contribution in `root` has nothing, and of imported ones that the
+    /// contributions around it do not give. These may be elsewhere: so what nobody has is told only where the name is
+    /// nearly that of another.
     pub(super) fn exchange(
         &mut self,
         description: &Description,
@@ -74,7 +75,7 @@ impl Finder {
     }
 }
 
-/// Whether there are files in a contribution, beside the usual ones, of which nobody here knows what they hold.
+/// True if there are files in a contribution, beside the usual ones, of which nobody here knows what they hold.
 fn holds_others(root: &Path) -> bool {
     let root = if root.as_os_str().is_empty() { Path::new(".") } else { root };
     let mut waiting = vec![root.to_owned()];

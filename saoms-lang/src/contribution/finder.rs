@@ -11,8 +11,8 @@ use crate::limits::{EXPLAINED_FILE_BYTES, EXPLAINED_FILES, EXPLAINED_NAMES, OFFE
 use crate::load::{load_file, read};
 use crate::source::{OpenTexts, Sources};
 
-/// Finds what composites name in other files, and looks at each folder and each first tag of a file once: one for all fleets of a folder lets checks
-/// of them take time that grows with their number, and not with its square.
+/// Finds what composites name in other files, and looks at each folder and each first tag of a file once: one for all
+/// fleets of a folder lets checks of them take time that grows with their number, and not with its square.
 ///
 /// It does not see what changes on disk while it is used.
 pub struct Finder {
@@ -20,13 +20,13 @@ pub struct Finder {
     pub(super) imports: Imports,
     /// The contributions around others, of whose descriptions nothing is told.
     pub(super) around: Option<Imports>,
-    /// How many right names are still looked at for wrong ones.
+    /// The number of right names that may still be compared with wrong ones.
     pub(super) candidates: Candidates,
     /// Of how many more names that lead nowhere it is kept where they were looked for.
     pub(super) explained: usize,
-    /// Whether folders may hold component types.
+    /// True if folders may hold component types.
     folders: HashMap<PathBuf, bool>,
-    /// Which of the component types that were looked for are there.
+    /// The component types that were searched for and exist.
     side_files: HashMap<PathBuf, bool>,
     /// The files of folders that are called as composites and are none, with the reason.
     unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,
@@ -47,7 +47,7 @@ impl Finder {
         }
     }
 
-    /// Whether there is a component type with this path.
+    /// True if there is a component type with this path.
     pub(super) fn has_component_type(&mut self, path: &Path) -> bool {
         let folder = path.parent().unwrap_or(Path::new(""));
         let may_be = match self.folders.get(folder) {
@@ -57,7 +57,7 @@ impl Finder {
         may_be && *self.side_files.entry(path.to_owned()).or_insert_with(|| path.is_file())
     }
 
-    /// Why files in a folder are not read that may hold a composite of this name, the one that is called as it first.
+    /// The reasons why files are not read that may hold a composite of this name, the file of that name first.
     pub(super) fn unread(&mut self, folder: &Path, local: &str, open: &OpenTexts) -> Vec<String> {
         if !self.unread.contains_key(folder) {
             let all = self.index.unread(folder).into_iter().take(EXPLAINED_FILES);
@@ -76,7 +76,7 @@ impl Finder {
     }
 }
 
-/// What is wrong with a file that should be a composite.
+/// The fault of a file that should be a composite.
 fn reason(path: &Path, open: &OpenTexts) -> Option<String> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
     let file = read(path, EXPLAINED_FILE_BYTES, &mut sources, &mut diagnostics);

@@ -18,18 +18,18 @@ use crate::syntax::escaped;
 pub struct FolderFleet {
     /// Their files.
     pub files: Vec<PathBuf>,
-    /// Whether `sca-contribution.xml` says that they run. Others may be parts of fleets that are elsewhere.
+    /// True if `sca-contribution.xml` says that they run. Others may be parts of fleets that are elsewhere.
     pub is_deployable: bool,
-    /// Whether it says that other contributions may take them, and not that they run.
+    /// True if it says that other contributions may take them, and not that they run.
     pub is_exported: bool,
 }
 
-/// Looks at a folder as a contribution, and at those in folders below it: the fleets in it. What `sca-contribution.xml` calls `deployable` is one fleet,
-/// and every other composite that no composite there names is one of its own.
+/// Looks at a folder as a contribution, and at those in folders below it: the fleets in it. What `sca-contribution.xml`
+/// calls `deployable` is one fleet, and every other composite that no composite there names is one of its own.
 ///
-/// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share a name; and that there are no
-/// composites, more files than are looked at, or links that lead to no file. What is wrong with the composites themselves is found when they are loaded
-/// as fleets.
+/// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share a
+/// name; and that there are no composites, more files than are looked at, or links that lead to no file. What is wrong
+/// with the composites themselves is found when they are loaded as fleets.
 pub fn load_folder(
     folder: &Path,
     max_size: u64,
@@ -78,7 +78,8 @@ impl Finder {
         fleets
     }
 
-    /// Checks one description of the contribution in a folder: what is written in it, and whether what it calls deployable is there.
+    /// Checks one description of the contribution in a folder: what is written in it, and whether what it calls
+    /// deployable is there.
     pub(super) fn describe(
         &mut self,
         path: &Path,
@@ -98,8 +99,8 @@ impl Finder {
     }
 }
 
-/// The composites in a folder and in those below it, other contributions among them, in the order of their paths; what is hidden and what tools made
-/// are passed over. Reported is that there are none, or more files than are looked at.
+/// The composites in a folder and in those below it, other contributions among them, in the order of their paths; what
+/// is hidden and what tools made are passed over. Reported is that there are none, or more files than are looked at.
 pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Vec<PathBuf> {
     let mut index = Index::new(sources.open().clone());
     index.turn_to_folder();
@@ -144,8 +145,8 @@ struct Files {
 }
 
 impl Files {
-    /// Reads composites for the names in them. What is wrong with them is told by those who check them; a link that leads to no file is no composite,
-    /// and reported.
+    /// Reads composites for the names in them. What is wrong with them is told by those who check them; a link that
+    /// leads to no file is no composite, and reported.
     fn read(all: Vec<PathBuf>, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
         let (mut scratch, mut untold) = (Sources::with_open(sources.open().clone()), Diagnostics::new());
         let (mut paths, mut composites, mut places) = (Vec::with_capacity(all.len()), Vec::new(), Vec::new());
@@ -164,7 +165,8 @@ impl Files {
         Self { paths, read: Contribution::with(Vec::new(), composites), places }
     }
 
-    /// Reports composites of one namespace that have one name. Without a description nobody says that the folder is one contribution.
+    /// Reports composites of one namespace that have one name. Without a description nobody says that the folder is one
+    /// contribution.
     fn repeated(
         &self,
         is_described: bool,
@@ -217,7 +219,8 @@ impl Files {
             deployable.namespace.as_ref().is_none_or(|namespace| namespace == one.namespace())
         };
         let message = format!("the contribution has no composite {name}");
-        // Where there are none at all, they are put beside it by those who make the contribution of this folder and others.
+        // Where there are none at all, they are put beside it by those who make the contribution of this folder and
+        // others.
         let severity = if self.paths.is_empty() { Severity::Warning } else { Severity::Error };
         let one = Diagnostic::new(&codes::DEPLOYABLE_NOT_FOUND, at, message).severity(severity);
         // What else is wrong with the name is mended with it.
@@ -246,7 +249,7 @@ impl Files {
         None
     }
 
-    /// What runs together, and every other composite that none here names.
+    /// The composites that run together, and every other composite that none here names.
     fn fleets(
         self,
         mut deployed: Vec<PathBuf>,

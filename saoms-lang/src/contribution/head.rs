@@ -21,7 +21,7 @@ pub(super) struct Head {
 
 #[cfg(test)]
 thread_local! {
-    /// How many files were looked at.
+    /// The number of files that were read.
     pub(super) static LOOKED_AT: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
@@ -52,7 +52,7 @@ fn value(tag: &BytesStart<'_>, name: &str) -> Option<String> {
     quick_xml::escape::unescape(&found.value).ok().map(|text| text.trim().to_owned())
 }
 
-/// What is made of the first tag of a file.
+/// The result of the first tag of a file.
 fn first_tag<T>(path: &Path, open: &OpenTexts, make: impl FnOnce(&BytesStart<'_>) -> Option<T>) -> Option<T> {
     let mut bytes = Vec::new();
     let text = if let Some(open) = open.get(path) {

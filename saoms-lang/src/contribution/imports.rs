@@ -1,4 +1,4 @@
-//! What contributions take from each other: the `import` and `export` of `sca-contribution.xml`.
+//! Imports and exports of contributions, from `sca-contribution.xml`.
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
@@ -57,8 +57,8 @@ impl Imports {
         }
     }
 
-    /// The folders of the contributions from which that in `root` imports this: exporters that are given together with it, that are in the
-    /// folder beside it, or where the import says `location`. Nothing where it does not import it.
+    /// The folders of the contributions from which that in `root` imports this: exporters that are given together with
+    /// it, that are in the folder beside it, or where the import says `location`. Nothing where it does not import it.
     pub(super) fn exporters(
         &mut self,
         root: &Path,
@@ -112,7 +112,8 @@ impl Imports {
         })
     }
 
-    /// Whether the description of the contribution in `root` could not be read, which is reported: what it imports is not known.
+    /// True if the description of the contribution in `root` could not be read, which is reported: what it imports is
+    /// not known.
     pub(super) fn is_faulty(
         &mut self,
         root: &Path,
@@ -122,7 +123,8 @@ impl Imports {
         self.description(root, sources, diagnostics).is_some_and(|one| one.is_faulty)
     }
 
-    /// Why a composite of these namespaces cannot be found through the description of the contribution in `root`; nothing where it has none.
+    /// The reason why a composite of these namespaces cannot be found through the description of the contribution in
+    /// `root`; empty without a description.
     pub(super) fn hints(
         &mut self,
         (index, candidates): (&mut Index, &mut Candidates),
@@ -220,7 +222,8 @@ impl Imports {
     }
 }
 
-/// The files of the composites that the contribution of `folder` imports from others, which export them. What is wrong with their descriptions is not told.
+/// The files of the composites that the contribution of `folder` imports from others, which export them. What is wrong
+/// with their descriptions is not told.
 pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
     let mut imports = Imports::untold(MAX_SIZE);
@@ -240,7 +243,8 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     all
 }
 
-/// The files of the composites in contributions beside that of `folder` that import what it exports. What is wrong with their descriptions is not told.
+/// The files of the composites in contributions beside that of `folder` that import what it exports. What is wrong with
+/// their descriptions is not told.
 pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
     let mut imports = Imports::untold(MAX_SIZE);

@@ -25,19 +25,20 @@ pub(super) struct Index {
     heads: HashMap<PathBuf, Option<Head>>,
     /// The composites in folders; of one name those first whose files are called as they are.
     names: HashMap<PathBuf, ByName<Vec<PathBuf>>>,
-    /// How far contributions were looked through, by their folders.
+    /// The progress of the search in contributions, by their folders.
     walks: HashMap<PathBuf, Walk>,
     /// The composites of contributions that were looked through.
     seen: HashMap<PathBuf, Rc<Seen>>,
     /// The composites of contributions by the names of their files; none of a folder that nobody describes as one.
     files: HashMap<PathBuf, HashMap<OsString, Vec<PathBuf>>>,
     roots: HashMap<PathBuf, PathBuf>,
-    /// What was looked for, from which folder: names are used again and again.
+    /// The names that were searched, by folder: names are used again and again.
     found: HashMap<Wanted, Option<PathBuf>>,
-    /// Of contributions that were looked through, the files called as composites that are none as far as could be read: the first of each name.
+    /// Of contributions that were looked through, the files called as composites that are none as far as could be read:
+    /// the first of each name.
     unread: HashMap<PathBuf, HashMap<OsString, PathBuf>>,
     left: usize,
-    /// Whether there were more entries than are looked at.
+    /// True if there were more entries than are looked at.
     is_cut: bool,
     open: OpenTexts,
 }
@@ -160,8 +161,8 @@ impl Index {
         found
     }
 
-    /// The other files that hold a composite of the same name and namespace as one that was found: in its folder, and those of its file's name in
-    /// the folders of a contribution that is described as such.
+    /// The other files that hold a composite of the same name and namespace as one that was found: in its folder, and
+    /// those of its file's name in the folders of a contribution that is described as such.
     pub(super) fn twins(&mut self, found: &Path) -> Vec<PathBuf> {
         let Some(Head { namespace, local, .. }) = self.head(found).clone() else { return Vec::new() };
         let folder = found.parent().unwrap_or(Path::new(""));
@@ -242,8 +243,8 @@ impl Index {
         all.into_iter().filter(|path| self.head(path).is_none()).collect()
     }
 
-    /// The file in the contribution of `folder`, which was looked through for a name that it does not have, that is called as a composite of this name
-    /// is, and is none as far as could be read: that is probably meant.
+    /// The file in the contribution of `folder`, which was looked through for a name that it does not have, that is
+    /// called as a composite of this name is, and is none as far as could be read: that is probably meant.
     pub(super) fn unread_named(&mut self, folder: &Path, local: &str) -> Option<PathBuf> {
         let root = self.root(folder);
         if !self.unread.contains_key(&root) {
@@ -259,7 +260,7 @@ impl Index {
         self.unread[&root].get(OsStr::new(local)).cloned()
     }
 
-    /// Where composites were looked for, as a sentence.
+    /// The places that were searched for composites, as a sentence.
     pub(super) fn searched(&mut self, folder: &Path) -> String {
         let root = self.root(folder);
         let shown = if root.as_os_str().is_empty() { Path::new(".") } else { &root };
@@ -321,7 +322,7 @@ impl Index {
         composites.filter_map(|path| Some(self.head(&path).as_ref()?.namespace.clone())).collect()
     }
 
-    /// Whether every file was looked at.
+    /// True if every file was looked at.
     pub(super) fn is_complete(&self) -> bool {
         !self.is_cut
     }
@@ -377,7 +378,7 @@ impl Index {
         listing
     }
 
-    /// Whether a file holds a composite of this namespace.
+    /// True if a file holds a composite of this namespace.
     pub(super) fn is_of(&mut self, path: &Path, namespace: &str) -> bool {
         self.head(path).as_ref().is_some_and(|head| head.namespace == namespace)
     }
@@ -387,7 +388,8 @@ impl Index {
     }
 }
 
-/// Whether what is in a folder is a file, or a link to one or to nowhere, which is told when it is read. Of a pipe nobody knows that it ever ends.
+/// True if what is in a folder is a file, or a link to one or to nowhere, which is told when it is read. Of a pipe
+/// nobody knows that it ever ends.
 fn may_be_read(kind: FileType, path: &Path) -> bool {
     kind.is_file() || kind.is_symlink() && fs::metadata(path).map_or(true, |about| about.is_file())
 }
@@ -399,7 +401,7 @@ impl From<PathBuf> for Walk {
     }
 }
 
-/// What is of one of these namespaces, or of any.
+/// The composites of one of these namespaces, or of any.
 fn fitting<'a, T>(
     of_namespaces: &'a HashMap<String, T>,
     namespaces: Option<&'a [String]>,
@@ -408,7 +410,7 @@ fn fitting<'a, T>(
     meant.chain(of_namespaces.values().filter(move |_| namespaces.is_none()))
 }
 
-/// Whether a file is called as a composite, as most are that hold it.
+/// True if a file is called as a composite, as most are that hold it.
 fn is_called(path: &Path, local: &str) -> bool {
     path.file_stem().is_some_and(|stem| stem == local)
 }
@@ -437,7 +439,8 @@ pub fn description_near(folder: &Path) -> Option<PathBuf> {
     description::path_in(&root(folder))
 }
 
-/// Whether a folder has a description of a contribution, or says by its folders what is deployable: one of its own, and not for the folder around it.
+/// True if a folder has a description of a contribution, or says by its folders what is deployable: one of its own, and
+/// not for the folder around it.
 pub(super) fn describes(folder: &Path) -> bool {
     let is_described = || description::DESCRIPTIONS.iter().any(|name| folder.join(name).is_file());
     !folder.ends_with("META-INF") && (is_described() || folder.join(DEPLOYABLES).is_dir())
@@ -455,7 +458,7 @@ pub(super) fn root(folder: &Path) -> PathBuf {
     written.or(absolute.ancestors().nth(above)).unwrap_or(folder).to_owned()
 }
 
-/// Whether a file is called as those of definitions are.
+/// True if a file is called as those of definitions are.
 pub(super) fn is_of_definitions(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name == DEFINITIONS)
 }

@@ -1,7 +1,8 @@
 //! The files around a composite: what it names, and the contribution that it is part of.
 //!
-//! A contribution is a folder of composites, described by `sca-contribution.xml` where it has one. [`load_named`] finds the composites and
-//! component types that composites name, [`load_folder`] the fleets of a folder, and [`read_values`] the values that are in files.
+//! A contribution is a folder of composites, described by `sca-contribution.xml` where it has one. [`load_named`] finds
+//! the composites and component types that composites name, [`load_folder`] the fleets of a folder, and [`read_values`]
+//! the values that are in files.
 
 mod component_types;
 mod exchange;
@@ -34,8 +35,8 @@ use crate::load::{MAX_SIZE, load_file, read};
 use crate::model::Composite;
 use crate::source::Sources;
 
-/// Reads the composite in the file `path` and the files of its values, each of at most [`MAX_SIZE`] bytes; see [`load_file`]
-/// and [`read_values`].
+/// Reads the composite in the file `path` and the files of its values, each of at most [`MAX_SIZE`] bytes; see
+/// [`load_file`] and [`read_values`].
 pub fn load(path: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
     let file = read(path, MAX_SIZE, sources, diagnostics)?;
     let mut composite = load_file(file, sources, diagnostics)?;

@@ -9,8 +9,9 @@ use crate::source::{FileId, Location, Sources, Span, Text};
 /// The columns that can say which replica a line is about.
 const KEYS: [&str; 2] = ["index", "name"];
 
-/// Reads a table. What is wrong with it is reported at its line and column. `None` where it has no columns; otherwise all that can be understood,
-/// so that what is wrong with names and values is found together with a line that is too long.
+/// Reads a table. What is wrong with it is reported at its line and column. `None` where it has no columns; otherwise
+/// all that can be understood, so that what is wrong with names and values is found together with a line that is too
+/// long.
 pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
     let text = sources.get(file).text();
     if let Some(fault) = separated(file, text) {
@@ -89,7 +90,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
     Some(Table { file, key, properties, rows })
 }
 
-/// What is wrong with a table whose first line has another separator than commas, as some spreadsheets write them.
+/// The fault of a table whose first line has another separator than commas, as some spreadsheets write them.
 fn separated(file: FileId, text: &str) -> Option<Diagnostic> {
     let start = text.len() - text.trim_start_matches('\u{feff}').trim_start().len();
     let head = text[start..].lines().next()?;

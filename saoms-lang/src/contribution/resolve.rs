@@ -14,18 +14,19 @@ use crate::model::{
 };
 use crate::source::{Location, Sources, identity};
 
-/// Reads the composites that those of a contribution include or implement components with, and what those name in turn; and the
-/// component types of implementations, the files `X.componentType` beside them.
+/// Reads the composites that those of a contribution include or implement components with, and what those name in turn;
+/// and the component types of implementations, the files `X.componentType` beside them.
 ///
-/// They are looked for by namespace and name in the folder of the file that names them, and then in the whole contribution:
-/// the nearest folder above that has a `sca-contribution.xml`, in itself or in its `META-INF`, or that first folder where
-/// there is none. What is not there is looked for in the contributions that export its namespace (for component types, its package), where the
-/// description of its own imports that: those of the composites that are given together, those in folders beside it, and the folder that
-/// the import has as its `location`. No file is opened that is not needed, and a large folder is given up after some ten thousand entries.
-/// Texts that were not read from files are not looked at, but for [`STANDARD_INPUT`].
+/// They are looked for by namespace and name in the folder of the file that names them, and then in the whole
+/// contribution: the nearest folder above that has a `sca-contribution.xml`, in itself or in its `META-INF`, or that
+/// first folder where there is none. What is not there is looked for in the contributions that export its namespace
+/// (for component types, its package), where the description of its own imports that: those of the composites that are
+/// given together, those in folders beside it, and the folder that the import has as its `location`. No file is opened
+/// that is not needed, and a large folder is given up after some ten thousand entries. Texts that were not read from
+/// files are not looked at, but for [`STANDARD_INPUT`].
 ///
-/// What is wrong with a file that is found, or that is called as one that is not, is reported; that one is not found is for the checker to say. A [`Finder`] does it for several
-/// contributions that are in the same folders.
+/// What is wrong with a file that is found, or that is called as one that is not, is reported; that one is not found is
+/// for the checker to say. A [`Finder`] does it for several contributions that are in the same folders.
 pub fn load_named(
     contribution: &mut Contribution,
     max_size: u64,
@@ -156,7 +157,7 @@ impl Finder {
         }
     }
 
-    /// What is known of a composite that a file in `folder`, of the contribution in `root`, names and that is not found.
+    /// The knowledge about a composite that is not found, named by a file in `folder`, of the contribution in `root`.
     fn missing(
         &mut self,
         folder: &Path,
@@ -196,13 +197,13 @@ impl Finder {
 
 /// Implementations that one file beside them may describe.
 struct Described {
-    /// What they have in common, as [`implementation`] gives it.
+    /// Their common key, from [`implementation`].
     written: String,
     /// The files that it may be, the likeliest first.
     paths: Vec<PathBuf>,
     /// The package of their class.
     package: Option<String>,
-    /// Whether it has to be there.
+    /// True if it has to be there.
     is_needed: bool,
 }
 
@@ -220,7 +221,8 @@ fn described(composite: &Composite) -> Vec<Described> {
         if paths.is_empty() {
             continue;
         }
-        // A bundle of OSGi says nothing about services by itself. Its description is called as its file is, which only `bundle` tells.
+        // A bundle of OSGi says nothing about services by itself. Its description is called as its file is, which only
+        // `bundle` tells.
         let kind = component.implementation.as_ref().map(|implementation| &implementation.kind);
         let is_needed = matches!(kind, Some(ImplementationKind::Other { kind, .. }) if kind == "osgi")
             && origin.element(&composite.document).attribute("bundle").is_some();
@@ -230,7 +232,8 @@ fn described(composite: &Composite) -> Vec<Described> {
     all
 }
 
-/// Where a component's implementation comes from, and what of it says which file describes it: the class, or else the whole tag.
+/// The origin of a component's implementation, and the text that says which file describes it: the class, or else the
+/// whole tag.
 fn implementation<'a>(
     component: &'a ComponentElement,
     composite: &'a Composite,
@@ -248,7 +251,7 @@ fn implementation<'a>(
 
 struct Wanted {
     origin: Origin,
-    /// Where the name is.
+    /// The place of the name.
     at: Location,
     prefix: String,
     namespaces: Option<Vec<String>>,

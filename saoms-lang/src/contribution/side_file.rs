@@ -15,15 +15,16 @@ use crate::source::Sources;
 /// A file beside composites.
 #[derive(Debug)]
 pub enum SideFile {
-    /// What composites need of it is known when they are checked: what was wrong is reported.
+    /// The composites need it when they are checked: its faults are reported already.
     Checked,
     /// The description of an implementation, which the checker holds to itself; `None` where it could not be read.
     ComponentType(Option<Box<ComponentType>>),
 }
 
 impl Finder {
-    /// Checks a file that is no composite but one beside them: definitions of policies, the description of a contribution, or a component type. `None`
-    /// where its first tag is none of these, and where its name ends with `.composite`.
+    /// Checks a file that is no composite but one beside them: definitions of policies, the description of a
+    /// contribution, or a component type. `None` where its first tag is none of these, and where its name ends with
+    /// `.composite`.
     pub fn load_side_file(
         &mut self,
         path: &Path,

@@ -11,7 +11,7 @@ use crate::syntax::{self, Element, Parse};
 /// The element of SCA that holds the values of a file.
 const VALUES: &str = "values";
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Clone, Default)]
 pub(super) struct FileValue {
     /// The text, where that is all.
@@ -20,8 +20,9 @@ pub(super) struct FileValue {
     pub(super) document: Option<ValueDocument>,
 }
 
-/// Reads the `text` of a file (SCA Assembly 1.1, 4.1.3; ASM50046): XML with the root `values` of SCA holds a `value` for each value, or elements;
-/// other XML is one value as a whole, with the root as its name; all else is a text. Faults are reported in the file.
+/// Reads the `text` of a file (SCA Assembly 1.1, 4.1.3; ASM50046): XML with the root `values` of SCA holds a `value`
+/// for each value, or elements; other XML is one value as a whole, with the root as its name; all else is a text.
+/// Faults are reported in the file.
 pub(super) fn read(file: FileId, text: Text, sources: &Sources, diagnostics: &mut Diagnostics) -> FileValue {
     if !text.starts_with('<') {
         return FileValue { text: Some(text), document: None };
@@ -59,7 +60,7 @@ pub(super) fn read(file: FileId, text: Text, sources: &Sources, diagnostics: &mu
     }
 }
 
-/// Whether the first tag of a text is `values`.
+/// True if the first tag of a text is `values`.
 fn is_meant_as_values(text: &str) -> bool {
     let tags = text.split('<').skip(1);
     let mut names = tags.filter(|tag| tag.starts_with(|first: char| first.is_alphabetic() || first == '_'));

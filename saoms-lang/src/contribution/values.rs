@@ -11,11 +11,13 @@ use crate::load::read;
 use crate::model::Composite;
 use crate::source::{Sources, Span, Text};
 
-/// Reads the files that properties of the composite's components and their loops name with `file`, each of at most `max_size` bytes. A name is a URI
-/// (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the composite; files are read from disk alone.
+/// Reads the files that properties of the composite's components and their loops name with `file`, each of at most
+/// `max_size` bytes. A name is a URI (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the
+/// composite; files are read from disk alone.
 ///
-/// What the file holds, without white space at its ends, is the value; its place is in that file. XML with the root `values` of SCA holds values in elements
-/// (ASM50046). A file that cannot be read is reported where it is named. So are the tables that replicated components name with `overrides`.
+/// What the file holds, without white space at its ends, is the value; its place is in that file. XML with the root
+/// `values` of SCA holds values in elements (ASM50046). A file that cannot be read is reported where it is named. So
+/// are the tables that replicated components name with `overrides`.
 pub fn read_values(
     composite: &mut Composite,
     max_size: u64,
@@ -101,7 +103,8 @@ fn path_of(uri: &Text, folder: &Path, sources: &Sources) -> Result<PathBuf, Box<
     Ok(folder.join(&*decoded(path)))
 }
 
-/// A text with its `%` and two digits as the bytes that they stand for (RFC 3986, 2.1); as it is where they come to no text.
+/// A text with its `%` and two digits as the bytes that they stand for (RFC 3986, 2.1); as it is where they come to no
+/// text.
 fn decoded(text: &str) -> Cow<'_, str> {
     let digit = |at: usize| text.as_bytes().get(at).and_then(|digit| char::from(*digit).to_digit(16));
     let (mut bytes, mut at) = (Vec::with_capacity(text.len()), 0);

@@ -17,8 +17,8 @@ pub struct Allowance {
     pub edits: Vec<FileEdit>,
 }
 
-/// The ways to allow a code at a byte of the first file: for the component, service, reference, wire or include there, and for
-/// the whole composite. The reason stays empty: the checker asks for it until somebody writes it.
+/// The ways to allow a code at a byte of the first file: for the component, service, reference, wire or include there,
+/// and for the whole composite. The reason stays empty: the checker asks for it until somebody writes it.
 pub fn allowances(scene: &Scene, at: usize, code: &str) -> Vec<Allowance> {
     let file = scene.file();
     let mut found = Vec::new();
@@ -46,7 +46,7 @@ pub fn allowances(scene: &Scene, at: usize, code: &str) -> Vec<Allowance> {
     found
 }
 
-/// Whether an element says something about a code already.
+/// True if an element says something about a code already.
 fn is_set(element: Element<'_>, code: &str) -> bool {
     let mut inside = element.children().filter(|child| child.local_name() == SEVERITY.name);
     inside.any(|child| child.attribute("code").is_some_and(|said| said.trimmed() == code))

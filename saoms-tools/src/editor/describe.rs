@@ -1,4 +1,4 @@
-//! What classes, properties, loops and elements are, in Markdown: what hovering and completion show.
+//! Documentation of classes, properties, loops and elements in Markdown, for hovering and completion.
 
 use std::fmt::Write;
 
@@ -46,7 +46,7 @@ pub(crate) fn properties(class: &ClassDeclaration) -> impl Iterator<Item = &Prop
     class.properties.iter().chain(inherited)
 }
 
-/// What the class's name presets for the property.
+/// The preset of the property by the name of the class.
 pub(crate) fn preset<'a>(class: &'a RegisteredClass, property: &str) -> Option<&'a str> {
     let also = class.declaration().also.iter().find(|alias| alias.name == class.name())?;
     also.preset.get(property).map(String::as_str)
@@ -68,7 +68,7 @@ pub(crate) fn property(one: &PropertyDeclaration, preset: Option<&str>) -> Strin
     text
 }
 
-/// What a property expects and its default, in a line.
+/// The type of a property and its default, in a line.
 pub(crate) fn facts(one: &PropertyDeclaration, preset: Option<&str>) -> String {
     let mut facts = vec![one.expected()];
     if one.many {

@@ -16,7 +16,8 @@ pub struct Fold {
     pub is_comment: bool,
 }
 
-/// Elements and comments of several lines. The line of an end tag stays; of several that begin in one line the outermost is folded.
+/// Elements and comments of several lines. The line of an end tag stays; of several that begin in one line the
+/// outermost is folded.
 pub fn folds(file: &File) -> Vec<Fold> {
     let line = |byte: u32| file.lines.line(byte as usize);
     let elements = file.document.elements().filter_map(|one| {

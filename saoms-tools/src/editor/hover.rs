@@ -1,4 +1,4 @@
-//! What is known about the thing under the cursor.
+//! Hover texts for the part under the cursor.
 
 use std::ops::Range;
 
@@ -56,7 +56,7 @@ pub fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)> {
     }
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
     match symbol {
         Symbol::Component { file, name } => {

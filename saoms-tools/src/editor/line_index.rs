@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// The byte where each line of a text starts. A line ends with LF, CR LF or a CR alone, as in the Language Server Protocol.
+/// The byte where each line of a text starts. A line ends with LF, CR LF or a CR alone, as in the Language Server
+/// Protocol.
 #[derive(Clone, Debug)]
 pub struct LineIndex {
     starts: Vec<usize>,

@@ -1,7 +1,7 @@
-//! What editors ask of a composite: completion, hovering, definitions, references, renaming, outlines.
+//! Answers for editors: completion, hovering, definitions, references, renaming, outlines.
 //!
-//! Each question is a pure function of a [`Scene`] (a file, the files around it, the classes) and a byte of the file. The answers are ranges
-//! of bytes and plain types; a protocol maps them to its own.
+//! Each question is a pure function of a [`Scene`] (a file, the files around it, the classes) and a byte of the file.
+//! The answers are ranges of bytes and plain types; a protocol maps them to its own.
 
 mod allow;
 mod complete;

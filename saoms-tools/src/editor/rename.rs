@@ -78,7 +78,7 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
         .collect()
 }
 
-/// Why something cannot be given another name.
+/// The reason why something cannot be given another name.
 fn refusal(scene: &Scene, symbol: &Symbol) -> Option<String> {
     match symbol {
         // Who else there uses it is not known here.
@@ -174,7 +174,8 @@ fn named_among_others(scene: &Scene, symbol: &Symbol, old: &str) -> Result<(), S
     }
 }
 
-/// Refuses where a place names something else as well: what a composite targets stands around it, and it may be used in several.
+/// Refuses where a place names something else as well: what a composite targets stands around it, and it may be used in
+/// several.
 fn shared(scene: &Scene, one: &Occurrence) -> Result<(), String> {
     let outline = &scene.files[one.at.file].outline;
     let is_here = |end: &End| {

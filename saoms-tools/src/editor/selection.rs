@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::scene::file::File;
 use super::syntax::{Cursor, Places, bytes, is_opaque, trimmed, value_of, words};
 
-/// The ranges around a byte, the smallest first: a word, a value, an attribute, a tag, what an element holds, the element, and so on.
+/// The ranges around a byte, the smallest first: a word, a value, an attribute, a tag, what an element holds, the
+/// element, and so on.
 pub fn selections(file: &File, at: usize) -> Vec<Range<usize>> {
     let text = file.text.as_str();
     let opaque = file.document.token_at(at as u32).filter(|(kind, _)| is_opaque(*kind));
@@ -43,7 +44,8 @@ pub fn selections(file: &File, at: usize) -> Vec<Range<usize>> {
     nested
 }
 
-/// The name in the start tag and the name in the end tag of the element whose name a byte touches: they are typed as one.
+/// The name in the start tag and the name in the end tag of the element whose name a byte touches: they are typed as
+/// one.
 pub fn linked_tags(file: &File, at: usize) -> Option<[Range<usize>; 2]> {
     let (Cursor::ElementName { element, .. } | Cursor::EndTag { element, .. }) = file.cursor(at) else {
         return None;

@@ -215,7 +215,7 @@ pub const VARIANTS: &[(&str, &[&str])] = &[
     ("operationSelector.", &["operationSelector.jmsDefault", "operationSelector.jmsdefault"]),
 ];
 
-/// What the elements are for whose parts are not known here.
+/// The purposes of elements whose parts are not known here.
 pub const OTHERS: &[(&str, &str)] = &[
     ("value", "One value of the property."),
     ("documentation", "Text for people; anything can stand inside."),

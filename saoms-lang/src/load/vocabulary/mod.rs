@@ -1,9 +1,11 @@
-//! What SCA's elements can have and hold, and what SAOMS adds to them (the XML schemas of SCA 1.0 and SCA Assembly 1.1).
+//! Vocabulary: attributes and content of the elements of SCA (the XML schemas of SCA 1.0 and SCA Assembly 1.1) and of
+//! SAOMS.
 //!
-//! The loader holds files to these tables; the XML schema for editors is made of them, too. Where the schemas of the two versions differ and both
-//! could be meant, what either allows is known.
+//! The loader holds files to these tables; the XML schema for editors is made of them, too. Where the schemas of the
+//! two versions differ and both could be meant, what either allows is known.
 
-/// Attributes that several elements have: `NAME = known "name" Holds: "doc";`, with `known`, `required`, `old` or `new`.
+/// Attributes that several elements have: `NAME = known "name" Holds: "doc";`, with `known`, `required`, `old` or
+/// `new`.
 macro_rules! attributes {
     ($($NAME:ident = $made:ident $name:literal $holds:ident: $doc:literal;)*) => {
         $(const $NAME: Known = attribute!($made $name $holds $doc);)*
@@ -65,7 +67,7 @@ use crate::model::Version;
 pub struct Kind {
     /// Its name.
     pub name: &'static str,
-    /// What it is for, in a sentence or two.
+    /// The purpose, in a sentence or two.
     pub doc: &'static str,
     /// Its attributes.
     pub attributes: &'static [Known],
@@ -78,15 +80,15 @@ pub struct Kind {
 pub struct Known {
     /// Its name.
     pub name: &'static str,
-    /// What its value is.
+    /// The type of its value.
     pub holds: Holds,
-    /// What it says, in a sentence or two.
+    /// The meaning, in a sentence or two.
     pub doc: &'static str,
-    /// Whether the element has to have it.
+    /// True if the element has to have it.
     pub required: bool,
-    /// Whether it is of 1.0 alone: a mistake in 1.1.
+    /// True if it is of 1.0 alone: a mistake in 1.1.
     pub only_1_0: bool,
-    /// Whether it is of 1.1 alone: understood in 1.0 as well, with a warning.
+    /// True if it is of 1.1 alone: understood in 1.0 as well, with a warning.
     pub only_1_1: bool,
 }
 
@@ -106,7 +108,7 @@ const fn new(name: &'static str, holds: Holds, doc: &'static str) -> Known {
     Known { only_1_1: true, ..known(name, holds, doc) }
 }
 
-/// What the value of an attribute is.
+/// The type of the value of an attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Holds {
     /// A name that its author gives: without blanks and `/`.
@@ -133,7 +135,7 @@ pub enum Holds {
     Ends,
     /// The value of a property.
     Value,
-    /// Where the value of a property comes from: `$name`, with a path where it is complex.
+    /// The source of the value of a property: `$name`, with a path into a complex value.
     Source,
     /// `true` or `false`.
     Boolean,
@@ -170,12 +172,12 @@ pub enum Holds {
 }
 
 impl Kind {
-    /// Whether an element of this version has the attribute.
+    /// True if an element of this version has the attribute.
     pub fn has(&self, name: &str, version: Version) -> bool {
         self.find(name, version).is_some()
     }
 
-    /// What is known of an attribute of an element of this version.
+    /// The declaration of an attribute of an element of this version.
     pub(super) fn find(&self, name: &str, version: Version) -> Option<&'static Known> {
         self.of(version).find(|known| known.name == name)
     }
@@ -190,7 +192,8 @@ impl Kind {
         self.of(version).map(|known| known.name)
     }
 
-    /// What an element of this name is inside this one; `None` where it cannot stand, or where its parts are not known.
+    /// The kind of an element of this name inside this one; `None` where it cannot stand, or where its parts are not
+    /// known.
     pub fn child(&self, name: &str) -> Option<&'static Kind> {
         if std::ptr::eq(self, &CONTRIBUTION) {
             return contribution::PARTS.iter().find(|part| part.name == name);
@@ -232,7 +235,7 @@ pub fn children(kind: &Kind) -> impl Iterator<Item = &'static str> {
     })
 }
 
-/// What an element is for whose parts are not known here.
+/// The purpose of an element whose parts are not known here.
 pub fn other(name: &str) -> Option<&'static str> {
     OTHERS.iter().find(|(known, _)| *known == name).map(|(_, doc)| *doc)
 }
@@ -248,12 +251,12 @@ pub(super) fn own_names(kind: &'static Kind) -> impl Iterator<Item = &'static st
     own_attributes(kind).map(|known| known.name)
 }
 
-/// Whether SAOMS adds the attribute to the element.
+/// True if SAOMS adds the attribute to the element.
 pub(super) fn is_own(kind: &'static Kind, attribute: &str) -> bool {
     own_names(kind).any(|known| known == attribute)
 }
 
-/// Whether SCA has an element of this name somewhere in a composite.
+/// True if SCA has an element of this name somewhere in a composite.
 pub(super) fn is_known(name: &str) -> bool {
     let all = [&COMPOSITE, &COMPONENT, &COMPONENT_SERVICE, &BINDING_SCA, &COMPONENT_PROPERTY];
     name == "composite" || all.into_iter().flat_map(children).any(|known| known == name)

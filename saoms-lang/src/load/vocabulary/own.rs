@@ -1,4 +1,4 @@
-//! What SAOMS adds to SCA in its own namespace.
+//! Elements and attributes of SAOMS in its own namespace.
 
 use super::Known;
 
@@ -11,7 +11,8 @@ attributes! {
     ENV = known "env" Variable: "The environment variable that the value is taken from, where it is set and nothing else gives one.";
 }
 
-/// The attributes that SAOMS adds in its own namespace, each with the element that has it; `composite/property` is that of a composite.
+/// The attributes that SAOMS adds in its own namespace, each with the element that has it; `composite/property` is that
+/// of a composite.
 pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("component", PATH),
     ("component", COUNT),
@@ -39,7 +40,7 @@ pub(in crate::load) fn own_parents(name: &str) -> &'static [&'static str] {
 }
 
 kinds! {
-    /// What a composite says about how bad a diagnostic is.
+    /// Severities of diagnostics in a composite.
     pub SEVERITY = "severity": "Sets how bad the diagnostics of one code are: in a composite for all of it, in a component, service, reference, wire or include for that." {
         required "code" Code: "The code of the diagnostics, such as `S4001`.";
         required "level" Level: "What they become: `allow`, `note`, `warning` or `error`.";

@@ -15,7 +15,7 @@ kinds! {
     pub OPERATION = "operation": "Policies of an operation. SAOMS does not look at them." {
     } []
 
-    /// What others add.
+    /// Elements of other vendors.
     pub EXTENSIONS = "extensions": "Elements of other namespaces, which SAOMS does not look at." {
     } []
 }

@@ -44,17 +44,18 @@ fn rows(folder: &Path) -> Vec<Row> {
     table.lines().skip(1).map(row).collect()
 }
 
-/// Files that nobody calls invalid, and that are taken elsewhere, with the error that they have all the same, and where. Each of them breaks a rule.
+/// Files that nobody calls invalid, and that are taken elsewhere, with the error that they have all the same, and
+/// where. Each of them breaks a rule.
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
-    // These two include each other, so that neither has an end (ASM60031: what is left after inclusion has to be valid). They are there to show
-    // that a runtime does not hang; what it makes of them nobody asserts.
+    // These two include each other, so that neither has an end (ASM60031: what is left after inclusion has to be
+    // valid). They are there to show that a runtime does not hang; what it makes of them nobody asserts.
     ("itest/recursive/src/main/resources/Demo1Composite.composite", "S2032", "sample:Demo1Composite"),
     ("itest/recursive/src/main/resources/Demo2Composite.composite", "S2032", "sample:Demo2Composite"),
-    // An attribute is misspelt, so that the intent that it names holds nowhere. The schema forbids it (ASM13001); the test that reads the file is
-    // about other parts of it.
+    // An attribute is misspelt, so that the intent that it names holds nowhere. The schema forbids it (ASM13001); the
+    // test that reads the file is about other parts of it.
     ("org/apache/tuscany/sca/policy/xml/Calculator.composite", "S1007", "requiers"),
-    // A component gives one property two values in two elements, of which nothing says which counts (ASM50031): what this file is there to show.
-    // The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
+    // A component gives one property two values in two elements, of which nothing says which counts (ASM50031): what
+    // this file is there to show. The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
     (
         "vtest/assembly/component/src/main/resources/component_duplicate_property.composite",
         "S3005",
@@ -101,7 +102,8 @@ impl Tally {
     }
 }
 
-/// All that a test asserts to be valid, and 99 of 100 of those that a test loads and of those that the schema lets pass.
+/// All that a test asserts to be valid, and 99 of 100 of those that a test loads and of those that the schema lets
+/// pass.
 #[test]
 fn files_that_nobody_calls_invalid_have_no_errors() {
     let Some(folder) = collection() else { return };
@@ -135,7 +137,8 @@ fn files_that_nobody_calls_invalid_have_no_errors() {
     assert!(open.is_empty(), "no exceptions any more: {open:?}");
 }
 
-/// What the messages of Tuscany come to here: code, and the text that it points at. `docs/rules.md` has the same by code.
+/// What the messages of Tuscany come to here: code, and the text that it points at. `docs/rules.md` has the same by
+/// code.
 pub(crate) const MESSAGES: &[(&str, &str, &str)] = &[
     ("AttributeCompositeMissing", "S1008", "deployable"),
     ("AttributeNameSpaceMissing", "S1004", "export"),
@@ -211,7 +214,8 @@ pub(crate) const MORE_MESSAGES: &[(&str, &str)] = &[
     ("WireTargetNotFound", "S2011"),
 ];
 
-/// Files that are invalid by what others define, and are taken as given here, each with the reason. The others of this kind are in [`MESSAGES`].
+/// Files that are invalid by what others define, and are taken as given here, each with the reason. The others of this
+/// kind are in [`MESSAGES`].
 const GIVEN_UP: &[(&str, &str)] = &[
     (
         "bindingejb/UnknownEJBSessionType/account.composite",
@@ -299,8 +303,8 @@ const GIVEN_UP: &[(&str, &str)] = &[
     ),
 ];
 
-/// Messages for what cannot be seen. `AttributeURIMissing` is about an `export.resource` of the contribution's description, which is not in the
-/// collection; the composite beside it has that element in a comment, and no fault.
+/// Messages for what cannot be seen. `AttributeURIMissing` is about an `export.resource` of the contribution's
+/// description, which is not in the collection; the composite beside it has that element in a comment, and no fault.
 const UNSEEN: &[&str] = &["AttributeURIMissing"];
 
 #[test]
@@ -335,8 +339,9 @@ fn files_that_are_invalid_by_what_is_written_have_a_diagnostic_there() {
     assert!(found >= 11, "{found} rows were looked at");
 }
 
-/// Every diagnostic about every file of the collection, and about what is beside it, is at the name of an element, at an attribute, its name or
-/// its value, at a text, or at a part of one that stands by itself; and the diagnostic speaks of that, or of what it is a part of.
+/// Every diagnostic about every file of the collection, and about what is beside it, is at the name of an element, at
+/// an attribute, its name or its value, at a text, or at a part of one that stands by itself; and the diagnostic speaks
+/// of that, or of what it is a part of.
 #[test]
 fn diagnostics_are_at_what_they_name() {
     let Some(folder) = collection() else { return };
@@ -360,8 +365,8 @@ fn diagnostics_are_at_what_they_name() {
     assert!(count > 200 && beside > 0, "{count} places were looked at, {beside} of them beside the files");
 }
 
-/// The text at a place, the name of the attribute and the element that it is in; `None` where it is at no such thing. None at all where the file is
-/// no well-formed XML, in which a place is at what is not understood.
+/// The text at a place, the name of the attribute and the element that it is in; `None` where it is at no such thing.
+/// None at all where the file is no well-formed XML, in which a place is at what is not understood.
 fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
     let text = sources.get(place.file).text();
     let Ok(document) = syntax::parse(place.file, text).well_formed() else {

@@ -143,7 +143,8 @@ fn thousands_of_composites_that_one_names_are_found_each_at_once() {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, text).unwrap();
     };
-    // Some beside it, some called otherwise than their files, some in folders of their own, and some that are not there.
+    // Some beside it, some called otherwise than their files, some in folders of their own, and some that are not
+    // there.
     for number in 0..ALL {
         let path = match number % 4 {
             0 => format!("c{number}.composite"),

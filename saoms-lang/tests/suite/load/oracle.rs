@@ -117,7 +117,8 @@ fn is_known_to_pass(fault: &Diagnostic) -> bool {
         || message.starts_with("a processing instruction is")
         // Namespaces in XML, 4: a name has something before its colon.
         || (message.starts_with("`:") && message.contains("is no name"))
-        // XML 1.0, 3 (Element Type Match): the name in an end tag is that of its start tag, also when it lacks a prefix before its colon.
+        // XML 1.0, 3 (Element Type Match): the name in an end tag is that of its start tag, also when it lacks a prefix
+        // before its colon.
         || message.starts_with("`</:")
         // XML 1.0, 2.6 and 2.8: no instruction is named `xml`, whatever it holds.
         || fault.code == &codes::XML_DECLARATION

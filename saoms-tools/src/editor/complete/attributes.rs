@@ -33,10 +33,10 @@ pub(super) fn complete(scene: &Scene, element: Element<'_>, name: &Range<usize>)
     free.map(|(written, known)| attribute(written, known, has_value, name)).chain(added).collect()
 }
 
-/// How the namespace of SAOMS is written at an element.
+/// The prefix of the namespace of SAOMS at an element.
 pub(super) struct Own<'s> {
     pub(super) prefix: &'s str,
-    /// Where a declaration is added that is not there yet.
+    /// The place for a missing declaration.
     at: Option<usize>,
 }
 

@@ -125,8 +125,8 @@ impl Proposal {
         self
     }
 
-    /// The same with its distance from the typed text; `None` where the label does not hold its characters in their order. A word
-    /// that begins with the text is closest, then one that holds it, then one with its characters.
+    /// The same with its distance from the typed text; `None` where the label does not hold its characters in their
+    /// order. A word that begins with the text is closest, then one that holds it, then one with its characters.
     pub fn matching(mut self, typed: &str) -> Option<Self> {
         let (label, typed) = (self.label.to_lowercase(), typed.trim_start_matches('<').to_lowercase());
         let begins = |at: usize| !label[..at].ends_with(char::is_alphanumeric);

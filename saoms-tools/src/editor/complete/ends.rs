@@ -16,7 +16,7 @@ use crate::editor::scene::outline::{Component, Implementation, Side};
 use crate::editor::scene::symbol::group;
 use crate::editor::syntax::Places;
 
-/// What can stand at a place of a target, a source or a promotion.
+/// Proposals for a target, a source or a promotion.
 pub(super) fn complete(
     scene: &Scene,
     element: ElementId,
@@ -111,7 +111,8 @@ pub(super) fn complete(
     all
 }
 
-/// The name of the first of the replicas that a component stands for, where it does not depend on what is set from outside.
+/// The name of the first of the replicas that a component stands for, where it does not depend on what is set from
+/// outside.
 fn first_replica(scene: &Scene, (file, component): (usize, &Component)) -> Option<String> {
     let of = &scene.files[file];
     let from = of.element(component.name.element).attribute_in(SAOMS_NAMESPACE, "from");
@@ -135,15 +136,15 @@ fn word(text: &str, value: Range<usize>, at: usize) -> Range<usize> {
     start..end
 }
 
-/// What an end has to have.
+/// The requirement on an end.
 struct Asked<'s> {
     side: Side,
     interface: Option<&'s InterfaceDeclaration>,
-    /// Whether it can be several components.
+    /// True if it can be several components.
     takes_several: bool,
 }
 
-/// Which parts of a component are what is asked for.
+/// The parts of a component that fit.
 #[derive(Debug, PartialEq, Eq)]
 enum Fitting {
     None,

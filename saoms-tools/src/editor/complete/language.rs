@@ -29,7 +29,8 @@ fn is_a(scene: &Scene, component: &Component, class: &str) -> bool {
     declaration.is_some_and(|one| one.name == class || one.extends.iter().any(|other| other == class))
 }
 
-/// The completions of a language at a byte of the scene's file; `range` is the text of the property, which belongs to a composite.
+/// The completions of a language at a byte of the scene's file; `range` is the text of the property, which belongs to a
+/// composite.
 pub(super) fn complete(
     language: &PropertyLanguage,
     scene: &Scene,

@@ -54,7 +54,8 @@ pub fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
     }
 }
 
-/// What can be written behind a `&`: the characters that cannot stand for themselves everywhere (XML 1.0, 4.6). `None` where there is none.
+/// Proposals behind a `&`: the characters that cannot stand for themselves everywhere (XML 1.0, 4.6). `None` where
+/// there is none.
 fn entities(scene: &Scene, at: usize) -> Option<Vec<Proposal>> {
     const ENTITIES: [(&str, &str); 5] =
         [("&amp;", "&"), ("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'")];
@@ -71,7 +72,7 @@ fn entities(scene: &Scene, at: usize) -> Option<Vec<Proposal>> {
     can_be.then(|| ENTITIES.map(one).into())
 }
 
-/// What can be written in a file that holds values.
+/// Proposals in a file that holds values.
 fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
     if let Some(of) = table::owner(scene) {
         return table::complete(scene, of, at);
@@ -183,7 +184,7 @@ fn in_reference(scene: &Scene, element: ElementId) -> bool {
     parent.is_some_and(|parent| parent.local_name() == "reference")
 }
 
-/// What can stand in the content of an element.
+/// Proposals in the content of an element.
 fn in_text(scene: &Scene, parent: Option<Element<'_>>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     let Some(element) = parent else { return elements::in_content(scene, None, at) };

@@ -206,7 +206,8 @@ fn interfaces_of(class: &ClassDeclaration) -> impl Iterator<Item = &str> {
     class.offers().map(|one| &one.interface).chain(references).map(|one| one.name.as_str())
 }
 
-/// The composites that a file can name, with the prefix of their namespace. Where the file has none for it, one is declared at its root.
+/// The composites that a file can name, with the prefix of their namespace. Where the file has none for it, one is
+/// declared at its root.
 pub(super) fn composites(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let deployed = file.outline.deployables.iter().filter(|one| one.element != element);
@@ -289,7 +290,8 @@ pub(super) fn sources(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
     of_composite(scene, 0, "$", range)
 }
 
-/// The names of expressions: the properties of the composite, each with its value, and the index of a component that is replicated.
+/// The names of expressions: the properties of the composite, each with its value, and the index of a component that is
+/// replicated.
 pub(super) fn parameters(
     scene: &Scene,
     replicated: Option<&Component>,

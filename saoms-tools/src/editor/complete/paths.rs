@@ -44,12 +44,12 @@ pub(super) fn complete(
         .collect()
 }
 
-/// Whether a file can hold a value.
+/// True if a file can hold a value.
 pub(super) fn is_value(path: &Path) -> bool {
     !has_ending(path, &["composite", "so"])
 }
 
-/// Whether a file can be a table.
+/// True if a file can be a table.
 pub(super) fn is_table(path: &Path) -> bool {
     has_ending(path, &["csv"])
 }
@@ -62,7 +62,8 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
     path.extension().is_some_and(|ending| endings.iter().any(|known| ending == *known))
 }
 
-/// The libraries that are known by the classes that they bring, that of the component's class first, and those in the folder.
+/// The libraries that are known by the classes that they bring, that of the component's class first, and those in the
+/// folder.
 pub(super) fn libraries(scene: &Scene, element: ElementId, value: &Range<usize>, at: usize) -> Vec<Proposal> {
     let class = scene.component_around(element).and_then(|one: &Component| match &one.implementation {
         Some(Implementation::Class(name)) => scene.registry.get(&name.text)?.origin(),

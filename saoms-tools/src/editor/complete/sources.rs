@@ -1,4 +1,4 @@
-//! Where values of properties come from: `$name`, and the parts of complex values that paths lead to.
+//! Sources of property values: `$name`, and the parts of complex values that paths lead to.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -12,18 +12,19 @@ use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Named;
 use crate::editor::syntax::{Places, is_declaration, local};
 
-/// How many elements of values are looked at.
+/// The number of elements of values that are searched.
 const MOST: usize = 20_000;
-/// How many components are looked at for the values that they give a composite.
+/// The number of components that are searched for values that they give a composite.
 const MOST_GIVERS: usize = 100;
 
-/// How many texts are proposed.
+/// The number of texts that are proposed.
 const MOST_TEXTS: usize = 200;
 
 /// An element of a value: its file and its place there.
 type Part = (usize, ElementId);
 
-/// What can stand at a place of a `source`: a property of the composite, or behind `/` and `[` the elements and attributes that there are in its value.
+/// Proposals at a place of a `source`: a property of the composite, or behind `/` and `[` the elements and attributes
+/// in its value.
 pub(super) fn complete(scene: &Scene, value: Range<usize>, at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
     if let Some(all) = texts(scene, &value, at) {
@@ -57,7 +58,7 @@ fn around(scene: &Scene, paths: Vec<&str>) -> Option<Vec<Part>> {
     })
 }
 
-/// What an attribute or an element can be equal to, where the quote of a text behind `=` is open.
+/// Proposals for the text behind `=`, where its quote is open.
 fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Proposal>> {
     let text = &scene.file().text;
     let typed = &text[value.start..at];
@@ -99,7 +100,7 @@ fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Proposal>
     Some(all)
 }
 
-/// Where the quote is that is open at the end of a part of an XPath, and which.
+/// The open quote at the end of a part of an XPath, with its place.
 fn open_quote(typed: &str) -> Option<(usize, char)> {
     typed.char_indices().fold(None, |open, (at, letter)| match open {
         Some((_, quote)) if quote == letter => None,
@@ -112,7 +113,8 @@ fn is_name(letter: char) -> bool {
     letter.is_alphanumeric() || "_-.:".contains(letter)
 }
 
-/// The paths that are not at their end yet in a part of an XPath: the innermost last, which the others choose by a predicate. `None` within quotes.
+/// The paths that are not at their end yet in a part of an XPath: the innermost last, which the others choose by a
+/// predicate. `None` within quotes.
 fn paths(typed: &str) -> Option<Vec<&str>> {
     let mut open: Vec<Range<usize>> = std::iter::once(0..0).collect();
     let mut quote = None;
@@ -143,7 +145,8 @@ fn paths(typed: &str) -> Option<Vec<&str>> {
     quote.is_none().then(|| all.collect())
 }
 
-/// The elements that a path starts from, and its steps: those of a property, or in a predicate those that this is about.
+/// The elements that a path starts from, and its steps: those of a property, or in a predicate those that this is
+/// about.
 fn split<'p>(path: &'p str, scene: &Scene, around: Option<Vec<Part>>) -> (Vec<Part>, Option<&'p str>) {
     let Some(rest) = path.strip_prefix('$') else { return (around.unwrap_or_default(), Some(path)) };
     let (name, steps) = rest.split_once('/').map_or((rest, None), |(name, steps)| (name, Some(steps)));
@@ -151,7 +154,7 @@ fn split<'p>(path: &'p str, scene: &Scene, around: Option<Vec<Part>>) -> (Vec<Pa
     (values(scene, name), steps)
 }
 
-/// What the values of a property of the composite stand in.
+/// The elements that hold the values of a property of the composite.
 fn values(scene: &Scene, name: &str) -> Vec<Part> {
     let unit = scene.unit_of(0);
     let mut all = Vec::new();
@@ -169,7 +172,7 @@ fn values(scene: &Scene, name: &str) -> Vec<Part> {
     all
 }
 
-/// What the values of one element `property` stand in: itself, each `value`, or each element where its values are such.
+/// The elements that hold the values of one `property`: itself, each `value`, or each element of its value.
 fn values_of(scene: &Scene, file: usize, property: &Named) -> Vec<Part> {
     let property = scene.files[file].element(property.element);
     let children = || property.children().take(MOST);
@@ -194,7 +197,7 @@ fn only(scene: &Scene, all: &[Part]) -> Vec<Part> {
     only.collect()
 }
 
-/// Where steps lead from elements, predicates aside.
+/// The elements that steps lead to, predicates aside.
 fn walk<'p>(scene: &Scene, from: Vec<Part>, steps: impl Iterator<Item = &'p str>) -> Vec<Part> {
     let mut here = from;
     for (place, step) in steps.enumerate() {

@@ -16,7 +16,7 @@ use crate::editor::syntax::trimmed;
 /// The most replicas that are named.
 const MOST: i64 = 200;
 
-/// What can stand at a byte of the table of a component.
+/// Proposals at a byte of the table of a component.
 pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
     let lines = lines(text);
@@ -57,7 +57,7 @@ pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec
     }
 }
 
-/// What there is to say about a column, or a value in it.
+/// Documentation of a column, or of a value in it.
 pub(crate) fn hover(scene: &Scene, at: usize) -> Option<(String, Range<usize>)> {
     let text = &scene.file().text;
     let of = owner(scene)?;

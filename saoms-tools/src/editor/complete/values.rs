@@ -68,7 +68,8 @@ pub(super) fn of_parameter(
     }
 }
 
-/// The values of a property of a composite: those of its type, or else those of the first property that takes its value from it.
+/// The values of a property of a composite: those of its type, or else those of the first property that takes its value
+/// from it.
 pub(super) fn as_used(
     scene: &Scene,
     file: usize,
@@ -91,7 +92,7 @@ pub(super) fn as_used(
     explained(one, None, &scene.file().text[range.start..at], range)
 }
 
-/// What the class declares of a property of a component of a file.
+/// The declaration of a property of a component of a file.
 fn taker(scene: &Scene, file: usize, property: ElementId) -> Option<&PropertyDeclaration> {
     let of = &scene.files[file];
     let property = of.element(property);
@@ -100,7 +101,7 @@ fn taker(scene: &Scene, file: usize, property: ElementId) -> Option<&PropertyDec
     declared.into_iter().map(|(one, _)| one).find(|one| one.name == name)
 }
 
-/// What can be proposed from the declaration, behind what is typed.
+/// Proposals from the declaration, behind the typed text.
 fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> Vec<Proposal> {
     let is_default = |text: &str| one.default.as_deref() == Some(text);
     let mut all: Vec<Proposal> = match one.kind {

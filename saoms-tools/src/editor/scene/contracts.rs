@@ -1,11 +1,11 @@
-//! What components offer and ask for, through composites to the classes behind what these promote.
+//! Services and references of components, followed through promotions to the classes behind them.
 
 use saoms_lang::registry::InterfaceDeclaration;
 
 use super::Scene;
 use super::outline::{Component, Implementation, Named, Side};
 
-/// How many composites a promotion is followed into.
+/// The number of composites that a promotion is followed into.
 const DEEPEST: usize = 16;
 
 /// A service or a reference of a component.
@@ -14,9 +14,9 @@ pub(crate) struct Contract<'s> {
     pub(crate) name: &'s str,
     /// `None` where it cannot be known.
     pub(crate) interface: Option<&'s InterfaceDeclaration>,
-    /// How many targets a reference takes; `None` for services, and where it cannot be known.
+    /// The number of targets of a reference; `None` for services, and where it cannot be known.
     pub(crate) multiplicity: Option<&'static str>,
-    /// Whether the host serves it for every task.
+    /// True if the host serves it for every task.
     pub(crate) is_of_host: bool,
 }
 
@@ -79,7 +79,7 @@ impl Scene {
         Some(all)
     }
 
-    /// What a composite promotes under a name.
+    /// The promotions of a composite under a name.
     fn promoted<'s>(&'s self, file: usize, name: &'s Named, side: Side, depth: usize) -> Contract<'s> {
         let found = depth.checked_sub(1).and_then(|depth| {
             let end = self.files[file].outline.ends_of(name.element).find(|end| end.side == side)?;
@@ -105,7 +105,7 @@ impl Scene {
     }
 }
 
-/// What is meant where none is named: the only one. What the host serves for a component counts where there is no other.
+/// The one that is meant where none is named: the only one. A service of the host counts where there is no other.
 fn only(all: Vec<Contract<'_>>) -> Option<Contract<'_>> {
     let has_own = all.iter().any(|one| !one.is_of_host);
     let mut meant = all.into_iter().filter(|one| !has_own || !one.is_of_host);

@@ -8,7 +8,7 @@ use saoms_lang::syntax::{Element, TokenKind};
 
 use crate::editor::syntax::{bytes, is_declaration, value_of};
 
-/// What replicas are counted by.
+/// The name of the number of a replica.
 pub(crate) const INDEX: &str = "index";
 
 /// The names in a range that is one expression.
@@ -41,7 +41,8 @@ pub(crate) fn template_before(text: &str, range: Range<usize>, at: usize) -> Opt
     (range.start + last.end == at && !text[..at].ends_with('}')).then(|| range.start + last.start..at)
 }
 
-/// A text with blanks in place of the rest of each reference, so that every byte keeps its place: `&lt;` becomes `<` and three blanks.
+/// A text with blanks in place of the rest of each reference, so that every byte keeps its place: `&lt;` becomes `<`
+/// and three blanks.
 fn plain(text: &str) -> Cow<'_, str> {
     const REFERENCES: [(&str, &str); 5] =
         [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];

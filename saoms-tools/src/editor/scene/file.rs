@@ -58,12 +58,12 @@ impl File {
         self.document.element(id)
     }
 
-    /// What is known of an element.
+    /// The knowledge about an element.
     pub(crate) fn kind(&self, id: ElementId) -> Option<&'static Kind> {
         self.kinds[id.0 as usize]
     }
 
-    /// What stands at a byte.
+    /// The part at a byte.
     pub(crate) fn cursor(&self, at: usize) -> Cursor<'_> {
         Cursor::at(&self.document, at)
     }

@@ -7,8 +7,8 @@ use super::Scene;
 use super::outline::{Component, Loop};
 
 impl Scene {
-    /// The loops that a component of a file has unless it says otherwise: their short names and their classes. Where it cannot be known which list of the class is
-    /// chosen, those of all lists, each name once.
+    /// The loops that a component of a file has unless it says otherwise: their short names and their classes. Where it
+    /// cannot be known which list of the class is chosen, those of all lists, each name once.
     pub(crate) fn default_loops<'s>(
         &'s self,
         (file, component): (usize, &Component),
@@ -32,7 +32,8 @@ impl Scene {
         all
     }
 
-    /// The value of the property that chooses a list of loops: what the composite gives, what the class's name presets, or the default.
+    /// The value of the property that chooses a list of loops: what the composite gives, what the class's name presets,
+    /// or the default.
     fn choice<'s>(
         &'s self,
         class: &'s RegisteredClass,

@@ -26,21 +26,21 @@ use outline::{Component, End, Implementation, Named};
 use symbol::Symbol;
 use workspace::Surroundings;
 
-/// A file and those around it: composites, then the files beside them that hold values, then composites of contributions from which it imports, then
-/// those of contributions that import from it. Files are named by their places;
-/// that of the file itself is 0.
+/// A file and those around it: composites, then the files beside them that hold values, then composites of
+/// contributions from which it imports, then those of contributions that import from it. Files are named by their
+/// places; that of the file itself is 0.
 #[derive(Debug)]
 pub struct Scene {
     /// The files.
     pub files: Vec<Arc<File>>,
-    /// How many of the files are of the contribution of the first one.
+    /// The number of files in the contribution of the first one.
     own: usize,
-    /// How many are of it, or are imported by it: those behind are of contributions that import from it.
+    /// The number of files in it or imported by it: the rest are of contributions that import from it.
     known: usize,
     pub(crate) registry: Arc<Registry>,
     /// By the local names of their composites.
     by_name: HashMap<String, Vec<usize>>,
-    /// What each file includes.
+    /// The includes of each file.
     includes: Vec<Vec<usize>>,
     /// By the places of files, as far as somebody asked.
     units: Vec<OnceLock<Unit>>,
@@ -87,12 +87,12 @@ impl Scene {
         scene
     }
 
-    /// Whether a file belongs to another contribution than the first one.
+    /// True if a file belongs to another contribution than the first one.
     pub(crate) fn is_imported(&self, file: usize) -> bool {
         file >= self.own
     }
 
-    /// Whether a file is of a contribution that imports from that of the first one, which cannot name it.
+    /// True if a file is of a contribution that imports from that of the first one, which cannot name it.
     pub(crate) fn imports_this(&self, file: usize) -> bool {
         file >= self.known
     }
@@ -135,8 +135,9 @@ impl Scene {
         reached(vec![file], |place| self.includes[place].clone())
     }
 
-    /// The fleets that the first file is part of, as a check of the whole folder has them: what the description of the contribution calls deployable is one, and
-    /// every other composite that no composite names is one of its own. A file of values is part of those that take values from it.
+    /// The fleets that the first file is part of, as a check of the whole folder has them: what the description of the
+    /// contribution calls deployable is one, and every other composite that no composite names is one of its own. A
+    /// file of values is part of those that take values from it.
     pub fn fleets(&self) -> Vec<SceneFleet> {
         let (names, users) = self.naming();
         let described = self.files.iter().enumerate().flat_map(|(file, one)| {
@@ -176,13 +177,14 @@ impl Scene {
         }
     }
 
-    /// Whether the contribution gives a composite to others.
+    /// True if the contribution gives a composite to others.
     fn is_exported(&self, place: usize) -> bool {
         let namespace = &self.files[place].outline.namespace;
         self.files[..self.own].iter().any(|one| one.outline.exports.contains(namespace))
     }
 
-    /// The composites that each file names, by includes and implementations, and those of the contribution that name it.
+    /// The composites that each file names, by includes and implementations, and those of the contribution that name
+    /// it.
     fn naming(&self) -> (Vec<Vec<usize>>, Vec<Vec<usize>>) {
         let (mut names, mut users) = (Vec::new(), vec![Vec::new(); self.files.len()]);
         for place in 0..self.files.len() {
@@ -215,7 +217,7 @@ impl Scene {
         (0..self.files.len()).filter(owns).collect()
     }
 
-    /// Whether a composite calls the first file so.
+    /// True if a composite calls the first file so.
     pub(crate) fn is_first(&self, file: usize, name: &Named) -> bool {
         self.beside(file, name) == Some(0)
     }
@@ -320,7 +322,7 @@ impl Scene {
         Some(&self.files[file].text[self.place_of_value(file, property)?])
     }
 
-    /// Where it is written.
+    /// The place.
     pub(crate) fn place_of_value(&self, file: usize, property: ElementId) -> Option<Range<usize>> {
         let property = self.files[file].element(property);
         property.value("value").or_else(|| property.text_place())
@@ -360,7 +362,7 @@ fn beside(files: &[Arc<File>]) -> HashMap<PathBuf, usize> {
     found.collect()
 }
 
-/// What is reached from these, themselves first.
+/// The files reached from these, themselves first.
 fn reached(start: Vec<usize>, next: impl Fn(usize) -> Vec<usize>) -> Vec<usize> {
     let mut seen: BTreeSet<usize> = start.iter().copied().collect();
     let mut all = start;

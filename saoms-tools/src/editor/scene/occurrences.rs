@@ -141,7 +141,7 @@ impl<'s> Found<'s> {
         }
     }
 
-    /// What files beside the composite say about a component.
+    /// Places about a component in files beside the composite.
     fn beside(&mut self, component: &Component, inner: Option<usize>) {
         let (scene, file) = (self.scene, self.file);
         if !component.is_replicated {

@@ -1,4 +1,4 @@
-//! What a composite names and what it refers to, as far as that is written already.
+//! Outline: the names and references of a composite, as far as they are written already.
 
 use std::ops::Range;
 
@@ -74,7 +74,7 @@ pub(crate) struct Component {
     pub(crate) loops: Vec<Loop>,
 }
 
-/// What implements a component.
+/// The implementation of a component.
 #[derive(Clone, Debug)]
 pub(crate) enum Implementation {
     /// A class of the registry.
@@ -96,13 +96,13 @@ pub(crate) struct Loop {
 #[derive(Clone, Debug)]
 pub(crate) struct End {
     pub(crate) side: Side,
-    /// Whether the component is one around the composite.
+    /// True if the component is one around the composite.
     pub(crate) is_outer: bool,
     pub(crate) component: Named,
     pub(crate) part: Option<Named>,
 }
 
-/// What the part of an [`End`] is.
+/// The kind of the part of an [`End`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Service,
@@ -144,7 +144,7 @@ impl Outline {
         self.uses.push(Use { name, index_of });
     }
 
-    /// What the attributes of our namespace say.
+    /// The attributes of the namespace of SAOMS.
     fn own(&mut self, of: Reader<'_>, kind: &'static Kind) {
         let (mut table, mut is_replicated, mut expressions) = (None, false, Vec::new());
         for (known, at) in own_attributes(kind).filter_map(|known| Some((known, of.own(known.name)?))) {
@@ -224,7 +224,7 @@ impl Outline {
         }
     }
 
-    /// What stands in a component, a loop, a service or a reference.
+    /// The content of a component, a loop, a service or a reference.
     fn inside(&mut self, of: Reader<'_>, kind: &'static Kind, parent: Option<&'static Kind>) {
         if kind.name == "reference" {
             self.ends.extend(of.list("target").map(|one| end(one, Side::Service)));

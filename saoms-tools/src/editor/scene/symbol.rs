@@ -1,4 +1,4 @@
-//! What a name in a composite stands for, and every place where the same is meant.
+//! Symbols: the meaning of a name in a composite, and every place with the same meaning.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ impl FileRange {
     }
 }
 
-/// What a name stands for. The file is the one that defines it; where none does, the one that names it.
+/// A symbol. The file is the one that defines it; where none does, the one that names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Symbol {
     /// A component.
@@ -47,7 +47,7 @@ pub(crate) enum Symbol {
     Class { name: String },
     /// A topic of the fleet.
     Topic { name: String },
-    /// What the replicas of a component are counted by.
+    /// The name of the number of a replica.
     Index { file: usize, component: String },
 }
 
@@ -57,7 +57,7 @@ pub(crate) struct Occurrence {
     pub(crate) symbol: Symbol,
     pub(crate) at: FileRange,
     pub(crate) is_definition: bool,
-    /// Whether it is a name in an expression.
+    /// True if it is a name in an expression.
     pub(crate) is_in_expression: bool,
 }
 
@@ -86,7 +86,8 @@ pub(crate) fn places(scene: &Scene, symbol: &Symbol) -> Vec<Occurrence> {
 }
 
 impl Scene {
-    /// The file and the name under which a component is written that a file names: that of its replicas, where it is one of them.
+    /// The file and the name under which a component is written that a file names: that of its replicas, where it is
+    /// one of them.
     pub(crate) fn named(&self, file: usize, name: &str) -> (usize, String) {
         if let Some((of, _)) = self.component(file, name) {
             return (of, name.to_owned());
@@ -103,7 +104,7 @@ impl Scene {
         Symbol::Parameter { file, name: name.to_owned() }
     }
 
-    /// What the part of a component of a file stands for: of a composite inside, what that promotes.
+    /// The symbol of a part of a component: for a composite inside, the part that it promotes.
     pub(crate) fn part(&self, file: usize, component: &str, side: Side, name: &str) -> Symbol {
         let inside = self.component(file, component).map(|(of, known)| self.inside(of, known));
         let inside = inside.filter(|inside| !inside.is_empty());
@@ -120,8 +121,8 @@ impl Scene {
     }
 }
 
-/// Whether a name is one of those that a name with expressions, as `Robot${index:03}`, stands for; or `Robot*`, all of them; or one with another
-/// expression.
+/// True if a name is one of those that a name with expressions, as `Robot${index:03}`, stands for; or `Robot*`, all of
+/// them; or one with another expression.
 pub(crate) fn is_replica(pattern: &str, name: &str) -> bool {
     match pieces(pattern).split_first() {
         Some((first, rest)) if !rest.is_empty() => {
@@ -134,13 +135,13 @@ pub(crate) fn is_replica(pattern: &str, name: &str) -> bool {
     }
 }
 
-/// What names all replicas of a name with expressions: that with `*` in their places. `None` where it has none.
+/// The pattern of a name with expressions: `*` in their places. `None` for a name without expressions.
 pub(crate) fn group(pattern: &str) -> Option<String> {
     let pieces = pieces(pattern);
     (pieces.len() > 1).then(|| pieces.join("*"))
 }
 
-/// What is around the expressions of a name.
+/// The texts around the expressions of a name.
 fn pieces(pattern: &str) -> Vec<&str> {
     let (mut all, mut rest) = (Vec::new(), pattern);
     while let Some((before, (_, after))) =
@@ -153,7 +154,7 @@ fn pieces(pattern: &str) -> Vec<&str> {
     all
 }
 
-/// Whether a name is a number before each of these pieces, and nothing else.
+/// True if a name is a number before each of these pieces, and nothing else.
 fn has_numbers(name: &str, pieces: &[&str]) -> bool {
     let Some((first, rest)) = pieces.split_first() else { return name.is_empty() };
     let digits = name.bytes().take_while(u8::is_ascii_digit).count();

@@ -31,7 +31,7 @@ pub(crate) struct Use<'s> {
     pub(crate) name: &'s str,
     pub(crate) file: usize,
     pub(crate) component: &'s Component,
-    /// Where the name is written, if it is another one than the class gives.
+    /// The place of the name, if it is another one than the class gives.
     pub(crate) at: Option<Range<usize>>,
 }
 
@@ -72,7 +72,7 @@ impl Scene {
         all
     }
 
-    /// What the `topicRename` of a component of a file says.
+    /// The `topicRename` of a component of a file.
     pub(crate) fn renamed(&self, file: usize, component: &Component) -> Vec<[Range<usize>; 2]> {
         let of = &self.files[file];
         let property = component.properties.iter().find(|one| one.text == RENAME);
@@ -99,7 +99,8 @@ impl Scene {
         all
     }
 
-    /// Every place of a topic: where it gets its name, or else the classes of the components that have it. Those that publish it define it.
+    /// Every place of a topic: where it gets its name, or else the classes of the components that have it. Those that
+    /// publish it define it.
     pub(crate) fn places_of_topic(&self, name: &str) -> Vec<Occurrence> {
         // A component that publishes a topic and reads it has it at one place.
         let mut places: BTreeMap<FileRange, bool> = BTreeMap::new();
@@ -121,7 +122,7 @@ impl Scene {
         places.into_iter().map(occurrence).collect()
     }
 
-    /// What there is to say about a topic of the fleet.
+    /// Documentation of a topic of the fleet.
     pub(crate) fn about_topic(&self, name: &str) -> Option<String> {
         let uses = self.uses_of_topics();
         let uses: Vec<&Use<'_>> = uses.iter().filter(|one| one.name == name).collect();

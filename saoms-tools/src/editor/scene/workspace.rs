@@ -12,10 +12,10 @@ use saoms_lang::source::{OpenTexts, identity};
 
 use super::file::File;
 
-/// How long the names in a folder are believed where the editor does not say that files came or went.
+/// The time for which the names in a folder are kept if the editor does not report files that came or went.
 const FRESH: Duration = Duration::from_secs(5);
 
-/// How files that hold values and nothing else end.
+/// The extension of files that hold values alone.
 const VALUES: [&str; 2] = ["csv", "txt"];
 
 /// The files that were read, each as it is open or on disk, with the names in their folders.
@@ -39,9 +39,9 @@ struct Listing {
 #[derive(Clone, Debug)]
 pub struct Surroundings {
     pub(crate) files: Vec<Arc<File>>,
-    /// How many of them are of its contribution.
+    /// The number of them in its contribution.
     pub(crate) own: usize,
-    /// How many of them are of it or imported; those behind import from it.
+    /// The number of them in it or imported; the rest import from it.
     pub(crate) known: usize,
 }
 
@@ -96,8 +96,8 @@ impl Workspace {
         Some(file)
     }
 
-    /// The composites that one in this file can name, and it itself, first; then what describes their contribution, and the files that they take
-    /// values from; then the composites that the contribution imports, and last those of
+    /// The composites that one in this file can name, and it itself, first; then what describes their contribution, and
+    /// the files that they take values from; then the composites that the contribution imports, and last those of
     /// contributions that import from it. Around such a file are the composites around one that takes values from it.
     pub fn around(&mut self, path: &Path) -> Surroundings {
         let mut folder = path.parent().unwrap_or(Path::new("")).to_owned();

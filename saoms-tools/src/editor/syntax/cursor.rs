@@ -1,4 +1,4 @@
-//! What stands at a byte of a text.
+//! The part at a byte of a text.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use saoms_lang::syntax::{Attribute, Document, Element, TokenKind};
 
 use super::{Places, bytes, is_opaque, value_of};
 
-/// What stands at a byte, and the element that it is about.
+/// The part at a byte, and its element.
 #[derive(Clone, Debug)]
 pub(crate) enum Cursor<'t> {
     /// The name of an element; behind a `<` that nothing follows there is no element yet.
@@ -24,7 +24,7 @@ pub(crate) enum Cursor<'t> {
 }
 
 impl<'t> Cursor<'t> {
-    /// What stands at a byte of a tree.
+    /// The part at a byte of a tree.
     pub(crate) fn at(document: &'t Document, at: usize) -> Self {
         let text = document.text();
         let here = document.innermost(at as u32);

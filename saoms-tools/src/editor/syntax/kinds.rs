@@ -1,4 +1,4 @@
-//! What is known of elements, by their names and where they stand.
+//! The kinds of elements, by their names and parents.
 
 use saoms_lang::load::vocabulary::{COMPOSITE, CONTRIBUTION, Kind, LOOP, OWN_ELEMENTS, SEVERITY};
 use saoms_lang::model::{SAOMS_NAMESPACE, Version};
@@ -9,7 +9,7 @@ pub(crate) fn version(document: &Document) -> Version {
     Version::from_namespace(document.root().namespace()).unwrap_or(Version::Oasis200912)
 }
 
-/// What is known of each element.
+/// The kind of each element.
 pub(crate) fn kinds(document: &Document) -> Vec<Option<&'static Kind>> {
     let mut kinds: Vec<Option<&'static Kind>> = Vec::new();
     for element in document.elements() {
@@ -21,7 +21,8 @@ pub(crate) fn kinds(document: &Document) -> Vec<Option<&'static Kind>> {
     kinds
 }
 
-/// What is known of an element in one of a kind. While the namespace is not there yet, what has the namespace or the prefix of the root is of SCA.
+/// The kind of an element in a parent of a kind. While the namespace is missing, names with the namespace or the prefix
+/// of the root are of SCA.
 fn kind_in(parent: &'static Kind, element: Element<'_>) -> Option<&'static Kind> {
     let (name, namespace) = (element.local_name(), element.namespace());
     if namespace == SAOMS_NAMESPACE {

@@ -29,7 +29,7 @@ pub(crate) fn root(document: &Document) -> Option<Element<'_>> {
     Some(document.root()).filter(|root| !root.start_tag_span().is_empty())
 }
 
-/// Where a declaration of a namespace can be added to the root.
+/// The place for a new declaration of a namespace in the root.
 pub(crate) fn root_name_end(document: &Document) -> Option<usize> {
     root(document).map(|root| root.name_span().end as usize)
 }

@@ -1,6 +1,7 @@
 use super::*;
 
-/// The elements of a text, one a line, indented by depth: name, attributes, and how it ends (`/` empty, `!` broken off, `?` without end tag).
+/// The elements of a text, one a line, indented by depth: name, attributes, and how it ends (`/` empty, `!` broken off,
+/// `?` without end tag).
 fn shown(text: &str) -> String {
     let document = parse(&text.to_owned().into());
     let mut out = String::new();
@@ -93,7 +94,7 @@ fn any_text_can_be_read_at_any_place() {
     }
 }
 
-/// What the cursor, `|`, is at.
+/// The part at the cursor, `|`.
 fn at(marked: &str) -> String {
     let at = marked.find('|').unwrap();
     let text = marked.replacen('|', "", 1);

@@ -9,7 +9,7 @@ use crate::editor::{Scene, rename};
 /// A name that no text has.
 const FRESH: &str = "freshName";
 
-/// What the checker says of the files of a scene.
+/// The diagnostics of the files of a scene.
 fn checked(scene: &Scene, texts: &[String]) -> (Vec<Diagnostic>, Sources) {
     let mut open = OpenTexts::default();
     for (file, text) in scene.files.iter().zip(texts) {

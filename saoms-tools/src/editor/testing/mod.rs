@@ -21,7 +21,8 @@ pub(super) use laws::hold;
 
 static REGISTRY: LazyLock<Arc<Registry>> = LazyLock::new(|| Arc::new(Registry::linked().unwrap()));
 
-/// The scene of a text with the cursor `|` in it and of other files, each a name and a text; and the byte of the cursor.
+/// The scene of a text with the cursor `|` in it and of other files, each a name and a text; and the byte of the
+/// cursor.
 pub(crate) fn scene(marked: &str, others: &[(&str, &str)]) -> (Scene, usize) {
     scene_in("fleet.composite", marked, others)
 }

@@ -34,7 +34,8 @@ fn a_property_is_renamed_in_every_expression() {
     let marked = composite(&FLEET.replacen("s:count=\"bots", "s:count=\"bo|ts", 1));
     let all = renamed(&marked, &others(), "größe_1").unwrap();
     let new = |text: &str| {
-        // What is no expression stays: texts, what is written with `$$`, comments, and templates of components that are no replicas.
+        // What is no expression stays: texts, what is written with `$$`, comments, and templates of components that are
+        // no replicas.
         let kept =
             ["'bots'", "} bots $${bots}", "<!-- ${bots}", "\"p\">${bots}</property><property name=\"q\""];
         let hidden = kept

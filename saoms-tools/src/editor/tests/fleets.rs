@@ -1,4 +1,4 @@
-//! Which composites are checked together.
+//! Composites that are checked together.
 
 use super::marked::renamed;
 use crate::editor::testing::{composite, scene_of};

@@ -6,7 +6,7 @@ use crate::editor::describe::properties;
 use crate::editor::hover::hover;
 use crate::editor::testing::{composite, scene};
 
-/// What is said at the cursor, and about which text.
+/// The hover text at the cursor, and its range.
 fn said(inside: &str) -> Option<(String, String)> {
     let (scene, at) = scene(&composite(inside), &[]);
     hover(&scene, at).map(|(text, range)| (text, scene.file().text[range].to_owned()))

@@ -16,7 +16,7 @@ fn shown(scene: &Scene, place: &FileRange) -> String {
     format!("{name}:{line}:{column} {}", &file.text[place.start..place.end])
 }
 
-/// Where the name at the cursor is defined.
+/// The definition of the name at the cursor.
 pub(super) fn defined(marked: &str, others: &[(&str, &str)]) -> Vec<String> {
     let (scene, at) = scene(marked, others);
     let all = definition(&scene, at).into_iter().map(|goal| match goal {

@@ -5,7 +5,8 @@ use expect_test::expect;
 use crate::check::mistakes::slips::{GPS, of, robot};
 use crate::check::support::{faults_of, outcome, part};
 
-/// What is wrong with three halls of two robots: with what the component that a hall implements says, and the property of the hall.
+/// What is wrong with three halls of two robots: with what the component that a hall implements says, and the property
+/// of the hall.
 fn halls(given: &str, property: &str) -> String {
     let namespaces = "xmlns:saoms=\"urn:saoms:1\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
     let robots = "<component name=\"Robot${index}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"period\">1</property>\n<property name=\"ID\">R${hall * 10 + index}</property>\n<property name=\"number\">${hall * 10 + index}</property></component>";

@@ -173,7 +173,8 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     "#]].assert_eq(&by_table);
 }
 
-/// A board with these properties, and marks of which one is beside any board, one beside one of the usual size, and one is none.
+/// A board with these properties, and marks of which one is beside any board, one beside one of the usual size, and one
+/// is none.
 fn board(properties: &str) -> String {
     of(&format!(
         "<component name=\"B\"><implementation.java class=\"example.Board\"/><property name=\"ID\">B</property>

@@ -123,8 +123,8 @@ fn example(code: &Code) -> Result<String, String> {
     Ok(human(&found[..1], &sources, false))
 }
 
-/// Checks `ID.composite`, and `ID.more.composite` with it, with the lines of `ID.set` as settings, where there are any. They can
-/// name what is in `ID.inner.composite`.
+/// Checks `ID.composite`, and `ID.more.composite` with it, with the lines of `ID.set` as settings, where there are any.
+/// They can name what is in `ID.inner.composite`.
 fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
     let read = |name: String| fs::read_to_string(folder().join(&name)).ok().map(|text| (name, text));
     let names = [format!("{id}.composite"), format!("{id}.more.composite")];

@@ -1,4 +1,5 @@
-//! `docs/rules.md`: what is held to which rule, generated from the table of codes and from the rules of SCA Assembly 1.1.
+//! `docs/rules.md`: what is held to which rule, generated from the table of codes and from the rules of SCA Assembly
+//! 1.1.
 //!
 //! `UPDATE_EXPECT=1 cargo test -p saoms-lang --test suite rules` writes the page anew.
 
@@ -81,7 +82,8 @@ fn every_rule_has_its_code_or_says_why_not() {
             join(messages)
         );
     }
-    // Those of rules over whole fleets are of crates of components, which the core does not know: `tests/suite/check/rules.rs` writes them.
+    // Those of rules over whole fleets are of crates of components, which the core does not know:
+    // `tests/suite/check/rules.rs` writes them.
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/rules.md");
     let present = fs::read_to_string(path).unwrap_or_default();
     for row in present.lines().filter(|line| line.starts_with("| S5")) {

@@ -168,8 +168,8 @@ fn loops_are_said_as_far_as_they_differ_from_those_of_the_class() {
     .assert_eq(&fewer[fewer.find("    <s:loop").unwrap()..]);
 }
 
-/// One of several composites: its robot, the composite behind it that implements a component, and where its band leads. A robot's ID is
-/// its own, so each composite is there once.
+/// One of several composites: its robot, the composite behind it that implements a component, and where its band leads.
+/// A robot's ID is its own, so each composite is there once.
 #[derive(Clone, Debug)]
 struct Level {
     robot: (u8, String),

@@ -23,7 +23,8 @@ fn found(files: &[(&str, &str)]) -> String {
     found + &numbers.collect::<String>()
 }
 
-/// What a component gives the composite that it implements counts for expressions as it does for sources, however it is given.
+/// What a component gives the composite that it implements counts for expressions as it does for sources, however it is
+/// given.
 #[test]
 fn expressions_inside_of_composites_take_what_sources_lead_to() {
     let hall = part(

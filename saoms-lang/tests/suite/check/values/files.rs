@@ -11,7 +11,8 @@ use saoms_lang::project::Project;
 use crate::check::support::{compiled, compiled_in, fleet};
 use crate::check::values::properties::robot;
 
-/// Writes the composite and files beside it, checks it from another folder, and gives what is wrong without that folder's name.
+/// Writes the composite and files beside it, checks it from another folder, and gives what is wrong without that
+/// folder's name.
 pub(crate) fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> (Option<Assembly>, String) {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in beside {

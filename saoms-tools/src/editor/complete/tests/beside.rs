@@ -4,7 +4,7 @@ use super::*;
 use crate::editor::hover::hover;
 use crate::editor::testing::scene_in;
 
-/// What is proposed at the cursor of a file of this name beside a composite.
+/// The proposals at the cursor of a file of this name beside a composite.
 fn inside(name: &str, marked: &str, composites: &[(&str, &str)]) -> Vec<String> {
     let (scene, at) = scene_in(name, marked, composites);
     let mut all = complete(&scene, at);

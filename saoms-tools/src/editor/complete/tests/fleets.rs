@@ -1,4 +1,4 @@
-//! What fleets in few lines and files beside them add.
+//! Proposals from fleets in few lines and files beside them.
 
 use std::fs;
 

@@ -6,7 +6,7 @@ mod sources;
 use super::*;
 use crate::editor::testing::{composite, scene};
 
-/// What is proposed at the cursor, `|`: the labels, the likeliest first.
+/// The labels of the proposals at the cursor, `|`, the likeliest first.
 fn proposed(marked: &str) -> Vec<String> {
     proposed_among(marked, &[])
 }
