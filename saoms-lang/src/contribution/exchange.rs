@@ -5,7 +5,6 @@ use std::fs;
 use std::path::Path;
 
 use super::finder::Finder;
-use super::imports::Imports;
 use super::index::is_of_definitions;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::limits::FOLDER_ENTRIES;
@@ -27,8 +26,7 @@ impl Finder {
         if description.exports.is_empty() && description.imports.is_empty() {
             return;
         }
-        let composites = self.index.namespaces(root);
-        let own = composites;
+        let own = self.index.namespaces(root);
         let named = |entries: &[Entry]| -> BTreeSet<String> {
             entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
         };
@@ -44,12 +42,12 @@ impl Finder {
                 continue;
             }
             let message = format!("the contribution has nothing of the namespace {}", quoted(namespace));
-            diagnostics.push(near(entry, message, namespace, own.iter().map(String::as_str)));
+            diagnostics.push(with_nearest(entry, message, namespace, own.iter().map(String::as_str)));
         }
-        let around = self.around.get_or_insert_with(|| Imports::untold(max_size));
+        let around = self.around.get_or_insert_default();
         for entry in &description.imports {
             let Some(namespace) = entry.namespace().filter(|one| !own.contains(*one)) else { continue };
-            let others = around.around(root, namespace);
+            let others = around.around(root, namespace, max_size);
             if others.iter().any(|(_, exports)| exports.iter().any(|one| one == namespace)) {
                 continue;
             }
@@ -69,7 +67,7 @@ impl Finder {
             let exported = || others.iter().flat_map(|(_, exports)| exports.iter().map(String::as_str));
             if nearest(namespace, exported()).is_some() {
                 let message = format!("no contribution around this one exports the namespace {shown}");
-                diagnostics.push(near(entry, message, namespace, exported()));
+                diagnostics.push(with_nearest(entry, message, namespace, exported()));
             }
         }
     }
@@ -99,7 +97,7 @@ fn holds_others(root: &Path) -> bool {
     false
 }
 
-fn near<'a>(
+fn with_nearest<'a>(
     entry: &Entry,
     message: String,
     namespace: &str,

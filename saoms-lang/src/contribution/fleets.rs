@@ -8,7 +8,7 @@ use super::finder::Finder;
 use super::index::{DEPLOYABLES, Index, describes};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::load::description::{Deployable, Description};
-use crate::load::{definitions, load_file, read};
+use crate::load::{ReadContext, definitions, load_file, read};
 use crate::model::{Composite, Contribution, Link};
 use crate::source::{Sources, Span};
 use crate::syntax::escaped;
@@ -48,6 +48,7 @@ impl Finder {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) -> Vec<FolderFleet> {
+        let context = &mut ReadContext { max_size, sources, diagnostics };
         self.index.turn_to_folder();
         let (mut fleets, mut has_definitions) = (Vec::new(), false);
         let mut waiting = vec![folder.to_owned()];
@@ -55,46 +56,42 @@ impl Finder {
             let (files, mut inner) = self.index.contribution(&root);
             inner.reverse();
             waiting.extend(inner);
-            let description = Description::of(&root, max_size, sources, diagnostics);
-            let contribution = Files::read(files, max_size, sources, diagnostics);
-            contribution.repeated(describes(&root), max_size, sources, diagnostics);
+            let description = Description::of(&root, context);
+            let contribution = Files::read(files, context);
+            contribution.repeated(describes(&root), context);
             for path in self.index.definitions(&root) {
-                has_definitions |= definitions::check(&path, false, max_size, sources, diagnostics);
+                has_definitions |= definitions::check(&path, false, context);
             }
             if let Some(description) = &description {
-                self.exchange(description, &root, max_size, diagnostics);
+                self.exchange(description, &root, max_size, context.diagnostics);
             }
             let deployables = description.iter().flat_map(|description| &description.deployables);
-            let mut deployed: Vec<Option<PathBuf>> =
-                deployables.map(|one| contribution.find(one, &mut self.index, &root, diagnostics)).collect();
+            let mut deployed: Vec<Option<PathBuf>> = deployables
+                .map(|one| contribution.find(one, &mut self.index, &root, context.diagnostics))
+                .collect();
             let inside = root.join(DEPLOYABLES);
             deployed.extend(
                 contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some),
             );
             contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
         }
-        let is_empty = fleets.is_empty() && !has_definitions && !diagnostics.has_errors();
+        let is_empty = fleets.is_empty() && !has_definitions && !context.diagnostics.has_errors();
         unlisted(folder, is_empty, &self.index, sources, diagnostics);
         fleets
     }
 
     /// Checks one description of the contribution in a folder: what is written in it, and whether what it calls
     /// deployable is there.
-    pub(super) fn describe(
-        &mut self,
-        path: &Path,
-        root: &Path,
-        max_size: u64,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) {
+    pub(super) fn describe(&mut self, path: &Path, root: &Path, context: &mut ReadContext<'_>) {
         self.index.turn_to_folder();
-        let description = Description::read(path.to_owned(), max_size, sources, diagnostics);
-        self.exchange(&description, root, max_size, diagnostics);
+        let description = Description::read(path.to_owned(), context);
+        self.exchange(&description, root, context.max_size, context.diagnostics);
         let (files, _) = self.index.contribution(root);
-        let contribution = Files::read(files, max_size, sources, &mut Diagnostics::new());
+        let (max_size, untold) = (context.max_size, &mut Diagnostics::new());
+        let contribution =
+            Files::read(files, &mut ReadContext { max_size, sources: context.sources, diagnostics: untold });
         for deployable in &description.deployables {
-            _ = contribution.find(deployable, &mut self.index, root, diagnostics);
+            _ = contribution.find(deployable, &mut self.index, root, context.diagnostics);
         }
     }
 }
@@ -147,13 +144,15 @@ struct Files {
 impl Files {
     /// Reads composites for the names in them. What is wrong with them is told by those who check them; a link that
     /// leads to no file is no composite, and reported.
-    fn read(all: Vec<PathBuf>, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
-        let (mut scratch, mut untold) = (Sources::with_open(sources.open().clone()), Diagnostics::new());
+    fn read(all: Vec<PathBuf>, context: &mut ReadContext<'_>) -> Self {
+        let max_size = context.max_size;
+        let (mut scratch, mut untold) =
+            (Sources::with_open(context.sources.open().clone()), Diagnostics::new());
         let (mut paths, mut composites, mut places) = (Vec::with_capacity(all.len()), Vec::new(), Vec::new());
         for path in all {
             let file = read(&path, max_size, &mut scratch, &mut untold);
             if file.is_none() && path.is_symlink() && fs::metadata(&path).is_err() {
-                read(&path, max_size, sources, diagnostics);
+                context.read(&path);
                 continue;
             }
             if let Some(composite) = file.and_then(|file| load_file(file, &scratch, &mut untold)) {
@@ -167,13 +166,7 @@ impl Files {
 
     /// Reports composites of one namespace that have one name. Without a description nobody says that the folder is one
     /// contribution.
-    fn repeated(
-        &self,
-        is_described: bool,
-        max_size: u64,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) {
+    fn repeated(&self, is_described: bool, context: &mut ReadContext<'_>) {
         let mut first: HashMap<(&str, &str), usize> = HashMap::new();
         for (place, composite) in self.read.composites().iter().enumerate() {
             let name = (composite.namespace(), composite.name.as_str());
@@ -185,14 +178,15 @@ impl Files {
                 continue;
             };
             let mut place_of = |place: usize| {
-                let file = read(&self.paths[self.places[place]], max_size, sources, &mut Diagnostics::new())?;
+                let path = &self.paths[self.places[place]];
+                let file = read(path, context.max_size, context.sources, &mut Diagnostics::new())?;
                 Some(self.read.composites()[place].name.location.span.in_file(file))
             };
             let (Some(at), Some(other)) = (place_of(place), place_of(*earlier)) else { continue };
             let message = format!("there are two composites {} in one namespace", quoted(name.1));
             let severity = if is_described { Severity::Error } else { Severity::Warning };
             let one = Diagnostic::new(&codes::COMPOSITE_REPEATED, at, message).severity(severity);
-            diagnostics.push(one.label(other, "the first").help("give each its own name"));
+            context.diagnostics.push(one.label(other, "the first").help("give each its own name"));
         }
     }
 

@@ -8,8 +8,8 @@ use std::rc::Rc;
 use super::index::{self, Index};
 use crate::diagnostic::{Candidates, Diagnostics, quoted};
 use crate::limits::FOLDERS_BESIDE;
-use crate::load::MAX_SIZE;
-use crate::load::description::{self, Description, Kind};
+use crate::load::description::{self, Description, Entry, Kind};
+use crate::load::{MAX_SIZE, ReadContext};
 use crate::source::{OpenTexts, Sources, identity};
 use crate::syntax::escaped;
 
@@ -23,7 +23,6 @@ pub(super) struct Imports {
     descriptions: HashMap<PathBuf, Option<Description>>,
     /// Those from which one imports something, as long as the same ones are given.
     exporters: HashMap<(PathBuf, Kind, String), Rc<[PathBuf]>>,
-    max_size: u64,
 }
 
 /// A contribution that others may import from.
@@ -40,17 +39,11 @@ impl Neighbour {
 }
 
 impl Imports {
-    /// For descriptions of which nothing is to be told.
-    pub(super) fn untold(max_size: u64) -> Self {
-        Self { max_size, ..Self::default() }
-    }
-
     /// For a fleet whose composites are in these contributions. What was read is kept.
-    pub(super) fn turn_to_fleet(&mut self, given: impl Iterator<Item = PathBuf>, max_size: u64) {
+    pub(super) fn turn_to_fleet(&mut self, given: impl Iterator<Item = PathBuf>) {
         let mut seen = HashSet::new();
         let given = given.filter(|folder| seen.insert(folder.clone())).map(Neighbour::of);
         let given: Vec<Neighbour> = given.collect();
-        self.max_size = max_size;
         if self.given != given {
             self.given = given;
             self.exporters.clear();
@@ -64,10 +57,9 @@ impl Imports {
         root: &Path,
         kind: Kind,
         what: &str,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
+        context: &mut ReadContext<'_>,
     ) -> Rc<[PathBuf]> {
-        if !self.imports(root, kind, what, sources, diagnostics) {
+        if !self.imports(root, kind, what, context) {
             return Rc::default();
         }
         let key = (root.to_owned(), kind, what.to_owned());
@@ -76,7 +68,7 @@ impl Imports {
         }
         let mut all = self.others(root, kind, what);
         all.retain(|other| {
-            let description = self.description(other, sources, diagnostics);
+            let description = self.description(other, context);
             description.is_some_and(|one| one.exports.iter().any(|entry| entry.is(kind, what)))
         });
         let all: Rc<[PathBuf]> = all.into();
@@ -84,15 +76,8 @@ impl Imports {
         all
     }
 
-    fn imports(
-        &mut self,
-        root: &Path,
-        kind: Kind,
-        what: &str,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> bool {
-        let description = self.description(root, sources, diagnostics);
+    fn imports(&mut self, root: &Path, kind: Kind, what: &str, context: &mut ReadContext<'_>) -> bool {
+        let description = self.description(root, context);
         description.is_some_and(|one| one.imports.iter().any(|entry| entry.is(kind, what)))
     }
 
@@ -103,24 +88,18 @@ impl Imports {
         root: &Path,
         namespaces: Option<&[String]>,
         local: &str,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
+        context: &mut ReadContext<'_>,
     ) -> Option<PathBuf> {
         namespaces.unwrap_or_default().iter().find_map(|namespace| {
-            let from = self.exporters(root, Kind::Namespace, namespace, sources, diagnostics);
+            let from = self.exporters(root, Kind::Namespace, namespace, context);
             from.iter().find_map(|root| index.find(root, Some(std::slice::from_ref(namespace)), local))
         })
     }
 
     /// True if the description of the contribution in `root` could not be read, which is reported: what it imports is
     /// not known.
-    pub(super) fn is_faulty(
-        &mut self,
-        root: &Path,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> bool {
-        self.description(root, sources, diagnostics).is_some_and(|one| one.is_faulty)
+    pub(super) fn is_faulty(&mut self, root: &Path, context: &mut ReadContext<'_>) -> bool {
+        self.description(root, context).is_some_and(|one| one.is_faulty)
     }
 
     /// The reason why a composite of these namespaces cannot be found through the description of the contribution in
@@ -131,22 +110,21 @@ impl Imports {
         root: &Path,
         namespaces: Option<&[String]>,
         local: &str,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
+        context: &mut ReadContext<'_>,
     ) -> Vec<String> {
         let mut hints = Vec::new();
-        let Some(own) = self.description(root, sources, diagnostics) else { return hints };
+        let Some(own) = self.description(root, context) else { return hints };
         let own = quoted(&own.path.display().to_string());
         for namespace in namespaces.unwrap_or_default().iter().filter(|one| !one.is_empty()) {
-            let is_imported = self.imports(root, Kind::Namespace, namespace, sources, diagnostics);
+            let is_imported = self.imports(root, Kind::Namespace, namespace, context);
             let shown = quoted(namespace);
-            let from = self.exporters(root, Kind::Namespace, namespace, sources, diagnostics);
+            let from = self.exporters(root, Kind::Namespace, namespace, context);
             let mut others = self.others(root, Kind::Namespace, namespace);
             if !candidates.admit(others.len()) {
                 others.clear();
             }
             let holder = others.into_iter().find(|other| {
-                let is_known = self.description(other, sources, diagnostics).is_some();
+                let is_known = self.description(other, context).is_some();
                 is_known && index.find(other, Some(std::slice::from_ref(namespace)), local).is_some()
             });
             let Some(holder) = holder else {
@@ -162,7 +140,7 @@ impl Imports {
                 continue;
             };
             let other = quoted(&holder.display().to_string());
-            let is_exported = self.description(&holder, sources, diagnostics).is_some_and(|description| {
+            let is_exported = self.description(&holder, context).is_some_and(|description| {
                 description.exports.iter().any(|entry| entry.is(Kind::Namespace, namespace))
             });
             let mut lacking = Vec::new();
@@ -181,14 +159,19 @@ impl Imports {
     }
 
     /// The contributions that that in `root` may import a namespace from, with the namespaces that they export.
-    pub(super) fn around(&mut self, root: &Path, namespace: &str) -> Vec<(PathBuf, Vec<String>)> {
-        let (mut sources, mut untold) = (Sources::new(), Diagnostics::new());
-        _ = self.description(root, &mut sources, &mut untold);
+    pub(super) fn around(
+        &mut self,
+        root: &Path,
+        namespace: &str,
+        max_size: u64,
+    ) -> Vec<(PathBuf, Vec<String>)> {
+        let (sources, diagnostics) = (&mut Sources::new(), &mut Diagnostics::new());
+        let context = &mut ReadContext { max_size, sources, diagnostics };
+        _ = self.description(root, context);
         let mut all = self.others(root, Kind::Namespace, namespace);
         all.truncate(FOLDERS_BESIDE);
         let mut exported = |other: PathBuf| {
-            let exports = &self.description(&other, &mut sources, &mut untold)?.exports;
-            let exports = exports.iter().filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
+            let exports = namespaces(&self.description(&other, context)?.exports);
             Some((other, exports))
         };
         all.into_iter().filter_map(&mut exported).collect()
@@ -207,35 +190,28 @@ impl Imports {
         all.filter(|other| seen.insert(&other.identity)).map(|other| other.folder.clone()).collect()
     }
 
-    fn description(
-        &mut self,
-        root: &Path,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<&Description> {
-        let max_size = self.max_size;
-        let known = self
-            .descriptions
-            .entry(root.to_owned())
-            .or_insert_with(|| Description::of(root, max_size, sources, diagnostics));
-        known.as_ref()
+    fn description(&mut self, root: &Path, context: &mut ReadContext<'_>) -> Option<&Description> {
+        let known = self.descriptions.entry(root.to_owned());
+        known.or_insert_with(|| Description::of(root, context)).as_ref()
     }
+}
+
+/// The namespaces that are imported or exported.
+fn namespaces(entries: &[Entry]) -> Vec<String> {
+    entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
 }
 
 /// The files of the composites that the contribution of `folder` imports from others, which export them. What is wrong
 /// with their descriptions is not told.
 pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
-    let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
-    let mut imports = Imports::untold(MAX_SIZE);
+    let (sources, diagnostics) = (&mut Sources::with_open(open.clone()), &mut Diagnostics::new());
+    let context = &mut ReadContext { max_size: MAX_SIZE, sources, diagnostics };
+    let (mut imports, mut index) = (Imports::default(), Index::new(open.clone()));
     let root = index::root(folder);
-    let description = imports.description(&root, &mut sources, &mut diagnostics);
-    let entries = description.into_iter().flat_map(|one| &one.imports);
-    let namespaces: Vec<String> = entries.filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
-    let mut index = Index::new(open.clone());
+    let wanted = imports.description(&root, context).map_or_else(Vec::new, |one| namespaces(&one.imports));
     let mut all = Vec::new();
-    for namespace in namespaces {
-        let from = imports.exporters(&root, Kind::Namespace, &namespace, &mut sources, &mut diagnostics);
-        for other in from.iter() {
+    for namespace in wanted {
+        for other in imports.exporters(&root, Kind::Namespace, &namespace, context).iter() {
             let composites = index.contribution(other).0.into_iter();
             all.extend(composites.filter(|path| index.is_of(path, &namespace)));
         }
@@ -246,26 +222,19 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
 /// The files of the composites in contributions beside that of `folder` that import what it exports. What is wrong with
 /// their descriptions is not told.
 pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
-    let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
-    let mut imports = Imports::untold(MAX_SIZE);
+    let (sources, diagnostics) = (&mut Sources::with_open(open.clone()), &mut Diagnostics::new());
+    let context = &mut ReadContext { max_size: MAX_SIZE, sources, diagnostics };
+    let (mut imports, mut index) = (Imports::default(), Index::new(open.clone()));
     let root = index::root(folder);
-    let description = imports.description(&root, &mut sources, &mut diagnostics);
-    let entries = description.into_iter().flat_map(|one| &one.exports);
-    let exported: Vec<String> = entries.filter_map(|entry| entry.namespace()).map(str::to_owned).collect();
-    if exported.is_empty() {
-        return Vec::new();
-    }
-    let mut index = Index::new(open.clone());
-    let mut all = Vec::new();
+    let given = imports.description(&root, context).map_or_else(Vec::new, |one| namespaces(&one.exports));
     let own = identity(&root);
-    for Neighbour { folder: other, .. } in beside(&root).iter().filter(|one| one.identity != own) {
-        let mut is_imported =
-            |what: &String| imports.imports(other, Kind::Namespace, what, &mut sources, &mut diagnostics);
-        if exported.iter().any(&mut is_imported) {
-            all.extend(index.contribution(other).0);
-        }
+    let mut others: Vec<PathBuf> = Vec::new();
+    if !given.is_empty() {
+        let beside = beside(&root);
+        others.extend(beside.iter().filter(|one| one.identity != own).map(|one| one.folder.clone()));
     }
-    all
+    others.retain(|other| given.iter().any(|what| imports.imports(other, Kind::Namespace, what, context)));
+    others.iter().flat_map(|other| index.contribution(other).0).collect()
 }
 
 /// The folders of contributions in the folder that a contribution is in.

@@ -8,7 +8,7 @@ use super::{component_types, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
 use crate::limits::OFFERED_NAMES;
 use crate::load::description::Kind;
-use crate::load::{STANDARD_INPUT, load_component_type, load_file, read};
+use crate::load::{ReadContext, STANDARD_INPUT, load_component_type, load_file};
 use crate::model::{
     ComponentElement, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin,
 };
@@ -45,23 +45,24 @@ impl Finder {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) {
+        let context = &mut ReadContext { max_size, sources, diagnostics };
         self.index.turn_to_fleet();
         // By their paths, so that one file is one composite; `None` for one that could not be read.
         let mut known: HashMap<PathBuf, Option<usize>> = HashMap::new();
         for (place, composite) in contribution.composites().iter().enumerate() {
-            known.insert(identity(Path::new(sources.get(composite.file()).path())), Some(place));
+            known.insert(identity(Path::new(context.sources.get(composite.file()).path())), Some(place));
         }
         let given = contribution.composites().iter();
-        let given = given.filter_map(|one| Path::new(sources.get(one.file()).path()).parent());
+        let given = given.filter_map(|one| Path::new(context.sources.get(one.file()).path()).parent());
         let given = given.map(|folder| self.index.root(folder));
-        self.imports.turn_to_fleet(given, max_size);
+        self.imports.turn_to_fleet(given);
         let mut types = HashMap::new();
         let mut warned = HashSet::new();
         let mut place = 0;
         while let Some(composite) = contribution.composites().get(place) {
             let at = place;
             place += 1;
-            let path = PathBuf::from(sources.get(composite.file()).path());
+            let path = PathBuf::from(context.sources.get(composite.file()).path());
             let is_open =
                 |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
             let open = composite.namings().filter(is_open);
@@ -81,7 +82,7 @@ impl Finder {
             let described = described(composite);
             if wanted.is_empty() && described.is_empty()
                 || !(path.is_file()
-                    || sources.open().get(&path).is_some()
+                    || context.sources.open().get(&path).is_some()
                     || path == Path::new(STANDARD_INPUT))
             {
                 continue;
@@ -95,14 +96,14 @@ impl Finder {
                 let mut all = paths.iter().map(|path| root.join(path)).chain(beside);
                 let mut found = all.find(|path| self.has_component_type(path));
                 if let (None, Some(package)) = (&found, &package) {
-                    let from = self.imports.exporters(&root, Kind::Java, package, sources, diagnostics);
+                    let from = self.imports.exporters(&root, Kind::Java, package, context);
                     let mut all = from.iter().flat_map(|root| paths.iter().map(|path| root.join(path)));
                     found = all.find(|path| self.has_component_type(path));
                 }
                 let place = found.map(|found| {
                     *types.entry(found).or_insert_with_key(|path| {
-                        let file = read(path, max_size, sources, diagnostics)?;
-                        let made = load_component_type(file, sources, diagnostics)?;
+                        let file = context.read(path)?;
+                        let made = load_component_type(file, context.sources, context.diagnostics)?;
                         Some(contribution.add_component_type(made))
                     })
                 });
@@ -128,23 +129,22 @@ impl Finder {
                 if let Some(found) = &own {
                     self.index.adopt(folder, found);
                 }
-                let found = own.or_else(|| {
-                    self.imports.find(&mut self.index, &root, namespaces, local, sources, diagnostics)
-                });
+                let found =
+                    own.or_else(|| self.imports.find(&mut self.index, &root, namespaces, local, context));
                 // What is wrong with a file that is called so is told there, and nowhere else.
                 let found = found.or_else(|| self.index.unread_named(folder, local));
                 let link = match found {
-                    None if self.imports.is_faulty(&root, sources, diagnostics) => Link::Faulty,
-                    None => Link::Missing(self.missing(folder, &root, &wanted, sources, diagnostics)),
+                    None if self.imports.is_faulty(&root, context) => Link::Faulty,
+                    None => Link::Missing(self.missing(folder, &root, &wanted, context)),
                     Some(found) => {
                         if warned.insert(found.clone()) {
                             let twins = self.index.twins(&found);
-                            ambiguous(&wanted, &found, &twins)
-                                .into_iter()
-                                .for_each(|one| diagnostics.push(one));
+                            let warning = ambiguous(&wanted, &found, &twins);
+                            warning.into_iter().for_each(|one| context.diagnostics.push(one));
                         }
                         let place = known.entry(identity(&found)).or_insert_with(|| {
-                            let file = read(&found, max_size, sources, diagnostics)?;
+                            let file = context.read(&found)?;
+                            let ReadContext { sources, diagnostics, .. } = &mut *context;
                             let mut composite = load_file(file, sources, diagnostics)?;
                             read_values(&mut composite, max_size, sources, diagnostics);
                             Some(contribution.add(composite))
@@ -163,8 +163,7 @@ impl Finder {
         folder: &Path,
         root: &Path,
         wanted: &Wanted,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
+        context: &mut ReadContext<'_>,
     ) -> Missing {
         let Some(left) = self.explained.checked_sub(1) else { return Missing::default() };
         self.explained = left;
@@ -188,9 +187,9 @@ impl Finder {
             ));
         }
         let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
-        searched.extend(self.unread(folder, local, sources.open()));
+        searched.extend(self.unread(folder, local, context.sources.open()));
         let around = (&mut self.index, &mut self.candidates);
-        searched.extend(self.imports.hints(around, root, namespaces, local, sources, diagnostics));
+        searched.extend(self.imports.hints(around, root, namespaces, local, context));
         Missing { near, searched }
     }
 }

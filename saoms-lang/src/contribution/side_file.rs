@@ -8,7 +8,7 @@ use super::index::is_of_definitions;
 use crate::diagnostic::Diagnostics;
 use crate::load::definitions;
 use crate::load::vocabulary::{CONTRIBUTION, DEFINITIONS};
-use crate::load::{load_component_type, read};
+use crate::load::{ReadContext, load_component_type, read};
 use crate::model::{ComponentType, Version};
 use crate::source::Sources;
 
@@ -39,10 +39,11 @@ impl Finder {
         let is_of_sca = namespace.is_some_and(|namespace| Version::from_namespace(&namespace).is_some());
         let folder = path.parent().unwrap_or(Path::new(""));
         if name == DEFINITIONS.name && (is_of_sca || is_of_definitions(path)) {
-            definitions::check(path, true, max_size, sources, diagnostics);
+            definitions::check(path, true, &mut ReadContext { max_size, sources, diagnostics });
         } else if name == CONTRIBUTION.name {
             let above = folder.parent().filter(|_| folder.ends_with("META-INF"));
-            self.describe(path, above.unwrap_or(folder), max_size, sources, diagnostics);
+            let context = &mut ReadContext { max_size, sources, diagnostics };
+            self.describe(path, above.unwrap_or(folder), context);
         } else if name == "componentType" {
             let file = read(path, max_size, sources, diagnostics);
             let made = file.and_then(|file| load_component_type(file, sources, diagnostics));

@@ -4,7 +4,7 @@ use std::fmt;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
-use super::alike::told_together;
+use super::grouping::grouped;
 use super::window::{Mark, Window, windows};
 use super::{Diagnostic, Severity};
 use crate::source::{FileId, Sources};
@@ -31,7 +31,7 @@ impl<'d> Human<'d> {
         colour: bool,
     ) -> Self {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
-        Self { told: told_together(diagnostics.into_iter().collect(), sources), sources, renderer }
+        Self { told: grouped(diagnostics.into_iter().collect(), sources), sources, renderer }
     }
 }
 

@@ -4,10 +4,10 @@
 //! help, the rule of the SCA specification it stems from, and suggestions that a tool can apply as edits.
 //! [`Diagnostics`] collects them.
 
-mod alike;
 mod candidates;
 pub mod codes;
 mod collector;
+mod grouping;
 mod human;
 mod json;
 mod level;

@@ -334,20 +334,27 @@ impl Loader<'_> {
     }
 }
 
+/// The prefix of the namespace of SAOMS in the document of an element, and the edit that declares it where the root does not.
+pub(super) fn own_prefix(element: Element<'_>) -> (&str, Option<Edit>) {
+    let root = element.document().root();
+    let mut declared = root.namespace_declarations();
+    match declared.find(|one| one.value() == SAOMS_NAMESPACE && one.name() != "xmlns") {
+        Some(bound) => (bound.local_name(), None),
+        None => {
+            let location = Span::empty(root.name_span().end).in_file(element.document().file());
+            let replacement = format!(" xmlns:saoms=\"{SAOMS_NAMESPACE}\"");
+            ("saoms", Some(Edit { location, replacement }))
+        }
+    }
+}
+
 /// What to do about an attribute of SAOMS without the prefix of its namespace.
 fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Element<'_>) -> Diagnostic {
-    let root = element.document().root();
-    let file = element.document().file();
-    let bound =
-        root.namespace_declarations().find(|one| one.value() == SAOMS_NAMESPACE && one.name() != "xmlns");
-    let whole = format!("{}:{}", bound.map_or("saoms", |bound| bound.local_name()), attribute.name());
-    let name = attribute.name_span().in_file(file);
-    let mut edits = vec![Edit { location: name, replacement: whole.clone() }];
-    if bound.is_none() {
-        let end = Span::empty(root.name_span().end).in_file(file);
-        let declaration = format!(" xmlns:saoms=\"{SAOMS_NAMESPACE}\"");
-        edits.insert(0, Edit { location: end, replacement: declaration });
-    }
+    let (prefix, declaration) = own_prefix(element);
+    let whole = format!("{prefix}:{}", attribute.name());
+    let location = attribute.name_span().in_file(element.document().file());
+    let mut edits: Vec<Edit> = declaration.into_iter().collect();
+    edits.push(Edit { location, replacement: whole.clone() });
     one.help(format!("it is an attribute of SAOMS, of the namespace `{SAOMS_NAMESPACE}`"))
         .suggest_edits(format!("replace {} with {}", quoted(attribute.name()), quoted(&whole)), edits)
 }

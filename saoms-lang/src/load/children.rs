@@ -3,7 +3,7 @@
 use smol_str::SmolStr;
 
 use super::Loader;
-use super::attributes::is_attribute_as_element;
+use super::attributes::{is_attribute_as_element, own_prefix};
 use super::vocabulary::{
     self, EXTENSIONS, INTENTS, Kind, OPERATION, OWN_ELEMENTS, POLICY_SET, SEVERITY, SEVERITY_PARENTS,
 };
@@ -91,7 +91,7 @@ impl Loader<'_> {
             match family {
                 Family::Foreign | Family::Nobody => {}
                 Family::Sca if NOT_KEPT.contains(&name) && kind.children.contains(&name) => {
-                    self.beside(child)
+                    self.check_not_kept(child)
                 }
                 Family::Own if name == SEVERITY.name && SEVERITY_PARENTS.contains(&kind.name) => {
                     self.severity(child, parent);
@@ -201,7 +201,7 @@ impl Loader<'_> {
     }
 
     /// Checks an element of SCA that the model does not keep: its version, and the names in it.
-    pub(super) fn beside(&mut self, element: Element<'_>) {
+    pub(super) fn check_not_kept(&mut self, element: Element<'_>) {
         self.of_version(element);
         let kinds = [&INTENTS, &POLICY_SET, &EXTENSIONS];
         if let Some(kind) = kinds.into_iter().find(|kind| kind.name == element.local_name()) {
@@ -227,7 +227,7 @@ impl Loader<'_> {
                 continue;
             }
             if family == Family::Sca && is_known {
-                self.beside(child);
+                self.check_not_kept(child);
             } else if matches!(family, Family::Sca | Family::Own) {
                 _ = self.unexpected(child, kind, family);
             }
@@ -294,22 +294,13 @@ impl Loader<'_> {
         if name == SEVERITY.name {
             self.meant_severity(element);
         }
-        let root = element.document().root();
-        let file = element.document().file();
         let message = format!(
             "{} is an element of SAOMS: it has to be in the namespace `{SAOMS_NAMESPACE}`",
             quoted(element.name())
         );
         let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
-        let bound =
-            root.namespace_declarations().find(|one| one.value() == SAOMS_NAMESPACE && one.name() != "xmlns");
-        let mut edits = renaming(element, Some(bound.map_or("saoms", |one| one.local_name())), name);
-        if bound.is_none() {
-            let end = Span::empty(root.name_span().end);
-            let binding = format!(" xmlns:saoms=\"{SAOMS_NAMESPACE}\"");
-            edits.insert(0, Edit { location: Location { file, span: end }, replacement: binding });
-        }
-        let prefix = bound.map_or("saoms", |one| one.local_name());
+        let (prefix, declaration) = own_prefix(element);
+        let edits = declaration.into_iter().chain(renaming(element, Some(prefix), name)).collect();
         let help = format!(
             "write `<{prefix}:{name} .../>`, and `xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
         );

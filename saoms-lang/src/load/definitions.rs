@@ -5,24 +5,18 @@ use std::path::Path;
 use super::children::Family;
 use super::root::{meant, of_another_kind};
 use super::vocabulary::{self, DEFINITIONS, Kind};
-use super::{Loader, push_faults, read};
+use super::{Loader, ReadContext, push_faults, read};
 use crate::diagnostic::Diagnostics;
 use crate::model::Version;
-use crate::source::Sources;
 use crate::syntax::{self, Element, Parse};
 
 /// Checks the file `path`. One of another kind, which may have the same name, is passed over unless it was asked for. True if it is one of
 /// definitions, or something is wrong with it.
-pub(crate) fn check(
-    path: &Path,
-    is_asked_for: bool,
-    max_size: u64,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) -> bool {
+pub(crate) fn check(path: &Path, is_asked_for: bool, context: &mut ReadContext<'_>) -> bool {
+    let ReadContext { max_size, sources, diagnostics } = context;
     let known = diagnostics.len();
     let mut ignored = Diagnostics::new();
-    let file = read(path, max_size, sources, if is_asked_for { &mut *diagnostics } else { &mut ignored });
+    let file = read(path, *max_size, sources, if is_asked_for { diagnostics } else { &mut ignored });
     let Some(file) = file else { return diagnostics.len() > known };
     let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
     let root = document.root();

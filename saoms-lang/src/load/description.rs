@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::children::Family;
 use super::root::of_another_kind;
 use super::vocabulary::CONTRIBUTION;
-use super::{Loader, push_faults, read};
+use super::{Loader, ReadContext, push_faults, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::Version;
 use crate::source::{FileId, Location, Sources, Text};
@@ -85,16 +85,11 @@ impl Deployable {
 impl Description {
     /// What is said of the contribution in a folder: by its author, and by the tools that made it. `None` where nobody says anything; what is wrong
     /// is reported.
-    pub(crate) fn of(
-        root: &Path,
-        max_size: u64,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Self> {
-        let mut made = Self::read(path_in(root)?, max_size, sources, diagnostics);
+    pub(crate) fn of(root: &Path, context: &mut ReadContext<'_>) -> Option<Self> {
+        let mut made = Self::read(path_in(root)?, context);
         let generated = root.join(GENERATED);
         if made.path != generated && generated.is_file() {
-            let more = Self::read(generated, max_size, sources, diagnostics);
+            let more = Self::read(generated, context);
             made.imports.extend(more.imports);
             made.exports.extend(more.exports);
             let is_new = |one: &Deployable| {
@@ -114,20 +109,16 @@ impl Description {
     }
 
     /// Reads a description.
-    pub(crate) fn read(
-        path: PathBuf,
-        max_size: u64,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> Self {
+    pub(crate) fn read(path: PathBuf, context: &mut ReadContext<'_>) -> Self {
+        let ReadContext { max_size, sources, diagnostics } = context;
         let mut made = Self { path, ..Self::default() };
         // What is wrong with it is told once, however often it is read.
         let shown = made.path.display().to_string();
         let is_it = |file: FileId| sources.get(file).path() == shown;
         let (mut untold, is_told) =
             (Diagnostics::new(), diagnostics.iter().any(|one| is_it(one.location.file)));
-        let diagnostics = if is_told { &mut untold } else { diagnostics };
-        let Some(file) = read(&made.path, max_size, sources, diagnostics) else {
+        let diagnostics = if is_told { &mut untold } else { &mut **diagnostics };
+        let Some(file) = read(&made.path, *max_size, sources, diagnostics) else {
             made.is_faulty = true;
             return made;
         };
@@ -174,7 +165,7 @@ impl Description {
             let ending = name.strip_prefix("import.").or_else(|| name.strip_prefix("export."));
             let is_extension = ending.is_some_and(|ending| nearest(ending, ENDINGS).is_none());
             if CONTRIBUTION.children.contains(&name) {
-                loader.beside(child);
+                loader.check_not_kept(child);
             } else if !is_extension {
                 _ = loader.unexpected(child, &CONTRIBUTION, family);
             }

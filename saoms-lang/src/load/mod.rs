@@ -16,11 +16,11 @@ pub(crate) mod description;
 mod encoding;
 mod looping;
 mod missing;
-mod near;
 mod property;
 pub(crate) mod read;
 mod root;
 mod severity;
+mod similar_namespaces;
 #[cfg(test)]
 mod tests;
 pub mod vocabulary;
@@ -29,6 +29,7 @@ use std::sync::Arc;
 
 pub(crate) use children::renaming;
 pub use component_type::load_component_type;
+pub(crate) use read::ReadContext;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -63,7 +64,7 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
     }
     let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
     let composite = loader.root(document.root()).then(|| {
-        loader.near_namespaces(&document);
+        loader.similar_namespaces(&document);
         loader.composite(&Arc::new(document))
     });
     push_faults(faults, sources, diagnostics);

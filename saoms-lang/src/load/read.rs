@@ -13,6 +13,21 @@ use crate::source::{FileId, Location, OpenTexts, Sources, Span};
 /// What a text that comes from standard input is called. Its folder is the current one.
 pub const STANDARD_INPUT: &str = "<stdin>";
 
+/// The texts and diagnostics of a check, to which reading files adds.
+pub(crate) struct ReadContext<'a> {
+    /// The most bytes of a file.
+    pub(crate) max_size: u64,
+    pub(crate) sources: &'a mut Sources,
+    pub(crate) diagnostics: &'a mut Diagnostics,
+}
+
+impl ReadContext<'_> {
+    /// Does what [`read`] does.
+    pub(crate) fn read(&mut self, path: &Path) -> Option<FileId> {
+        read(path, self.max_size, self.sources, self.diagnostics)
+    }
+}
+
 /// Reads the text of a file of at most `max_size` bytes. `None`, and a diagnostic that says why, when there is no such
 /// file or it is no text in UTF-8.
 ///

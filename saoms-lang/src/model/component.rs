@@ -2,6 +2,7 @@
 
 use smol_str::SmolStr;
 
+use super::details::details;
 use super::origin::parts;
 use super::{LoopElement, Origin, Property, ReferenceElement, Replicas, ServiceElement};
 use crate::source::{Located, Text};
@@ -25,47 +26,23 @@ pub struct ComponentElement {
     pub details: Option<Box<ComponentDetails>>,
 }
 
-/// Rarely needed fields, boxed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ComponentDetails {
-    /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
-    pub path: Option<Text>,
-    /// `if`, in the namespace of SAOMS: it is there only where this is true.
-    pub condition: Option<Text>,
-    /// Its replicas, in the namespace of SAOMS; `None` for a single component.
-    pub replicas: Option<Replicas>,
-    /// `autowire`.
-    pub autowire: Option<Located<bool>>,
-    /// Its changes of the loops of its class, in order.
-    pub loops: Vec<LoopElement>,
+details! {
+    /// Rarely needed fields, boxed.
+    ComponentDetails of ComponentElement {
+        /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
+        optional path: Text,
+        /// `if`, in the namespace of SAOMS: it is there only where this is true.
+        optional condition: Text,
+        /// Its replicas, in the namespace of SAOMS; `None` for a single component.
+        optional replicas: Replicas,
+        /// `autowire`.
+        copied autowire: Located<bool>,
+        /// Its changes of the loops of its class, in order.
+        list loops: LoopElement,
+    }
 }
 
 impl ComponentElement {
-    /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
-    pub fn path(&self) -> Option<&Text> {
-        self.details.as_ref()?.path.as_ref()
-    }
-
-    /// `if`, in the namespace of SAOMS: it is there only where this is true.
-    pub fn condition(&self) -> Option<&Text> {
-        self.details.as_ref()?.condition.as_ref()
-    }
-
-    /// Its replicas, in the namespace of SAOMS; `None` for a single component.
-    pub fn replicas(&self) -> Option<&Replicas> {
-        self.details.as_ref()?.replicas.as_ref()
-    }
-
-    /// `autowire`.
-    pub fn autowire(&self) -> Option<Located<bool>> {
-        self.details.as_ref()?.autowire
-    }
-
-    /// Its changes of the loops of its class, in order.
-    pub fn loops(&self) -> &[LoopElement] {
-        self.details.as_ref().map_or(&[], |details| &details.loops)
-    }
-
     /// The first property of this name.
     pub fn property(&self, name: &str) -> Option<&Property> {
         self.properties.iter().find(|property| property.name == name)

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::details::details;
 use super::origin::parts;
 use super::{ComponentElement, Origin, Property, ReferenceElement, ServiceElement, SeverityRule, Version};
 use crate::source::{FileId, Located, Text};
@@ -66,24 +67,13 @@ pub struct WireElement {
     pub details: Option<Box<WireDetails>>,
 }
 
-/// Rarely needed fields, boxed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WireDetails {
-    /// `replace` (1.1)
-    pub replace: Option<Located<bool>>,
-    /// `if`, in the namespace of SAOMS: it is there only where this is true.
-    pub condition: Option<Text>,
-}
-
-impl WireElement {
-    /// `replace` (1.1)
-    pub fn replace(&self) -> Option<Located<bool>> {
-        self.details.as_ref()?.replace
-    }
-
-    /// `if`, in the namespace of SAOMS: it is there only where this is true.
-    pub fn condition(&self) -> Option<&Text> {
-        self.details.as_ref()?.condition.as_ref()
+details! {
+    /// Rarely needed fields, boxed.
+    WireDetails of WireElement {
+        /// `replace` (1.1)
+        copied replace: Located<bool>,
+        /// `if`, in the namespace of SAOMS: it is there only where this is true.
+        optional condition: Text,
     }
 }
 

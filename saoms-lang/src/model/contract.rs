@@ -3,6 +3,7 @@
 use smol_str::SmolStr;
 
 use super::Origin;
+use super::details::details;
 use super::origin::parts;
 use crate::source::{Located, Text};
 
@@ -67,45 +68,19 @@ macro_rules! contract {
 }
 contract!(ServiceElement, ReferenceElement);
 
-/// Rarely needed fields, boxed.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ReferenceDetails {
-    /// `promote`, of a composite's reference: each URI with its own place.
-    pub promote: Vec<Text>,
-    /// `multiplicity`.
-    pub multiplicity: Option<Located<Multiplicity>>,
-    /// `autowire`.
-    pub autowire: Option<Located<bool>>,
-    /// `wiredByImpl`.
-    pub wired_by_impl: Option<Located<bool>>,
-    /// `nonOverridable` (1.1).
-    pub non_overridable: Option<Located<bool>>,
-}
-
-impl ReferenceElement {
-    /// `promote`, of a composite's reference: each URI with its own place.
-    pub fn promote(&self) -> &[Text] {
-        self.details.as_ref().map_or(&[], |details| &details.promote)
-    }
-
-    /// `multiplicity`.
-    pub fn multiplicity(&self) -> Option<&Located<Multiplicity>> {
-        self.details.as_ref()?.multiplicity.as_ref()
-    }
-
-    /// `autowire`.
-    pub fn autowire(&self) -> Option<Located<bool>> {
-        self.details.as_ref()?.autowire
-    }
-
-    /// `wiredByImpl`.
-    pub fn wired_by_impl(&self) -> Option<Located<bool>> {
-        self.details.as_ref()?.wired_by_impl
-    }
-
-    /// `nonOverridable` (1.1).
-    pub fn non_overridable(&self) -> Option<Located<bool>> {
-        self.details.as_ref()?.non_overridable
+details! {
+    /// Rarely needed fields, boxed.
+    ReferenceDetails of ReferenceElement {
+        /// `promote`, of a composite's reference: each URI with its own place.
+        list promote: Text,
+        /// `multiplicity`.
+        optional multiplicity: Located<Multiplicity>,
+        /// `autowire`.
+        copied autowire: Located<bool>,
+        /// `wiredByImpl`.
+        copied wired_by_impl: Located<bool>,
+        /// `nonOverridable` (1.1).
+        copied non_overridable: Located<bool>,
     }
 }
 

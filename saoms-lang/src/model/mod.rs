@@ -10,6 +10,7 @@ mod component_type;
 mod composite;
 mod contract;
 mod contribution;
+mod details;
 mod looping;
 mod origin;
 mod property;

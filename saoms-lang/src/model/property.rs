@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Origin;
+use super::details::details;
 use super::origin::parts;
 use crate::source::{Located, Text};
 use crate::syntax::{Document, ElementId};
@@ -24,34 +25,35 @@ pub struct Property {
     pub details: Option<Box<PropertyDetails>>,
 }
 
-/// Rarely needed fields of properties.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PropertyDetails {
-    /// The text inside, where there is an attribute `value`, too.
-    pub inside: Option<Text>,
-    /// `type`: the QName of an XML Schema type.
-    pub r#type: Option<Text>,
-    /// `element`: the QName of a global XML Schema element.
-    pub element: Option<Text>,
-    /// `many`: whether it can have several values.
-    pub many: Option<Located<bool>>,
-    /// `mustSupply`, of a composite's property.
-    pub must_supply: Option<Located<bool>>,
-    /// `source`: where in a composite's property the value comes from, as `$currency` or `$order/total`.
-    pub source: Option<Text>,
-    /// `file`: a file that holds the value.
-    pub file: Option<Text>,
-    /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
-    pub env: Option<Text>,
-    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
-    /// read.
-    pub from_file: Option<Text>,
-    /// The same, where it is XML that is more than a text.
-    pub document: Option<ValueDocument>,
-    /// Its `<value>` elements.
-    pub values: Vec<ComponentProperty>,
-    /// Other elements inside: a complex value.
-    pub content: Vec<ElementId>,
+details! {
+    /// Rarely needed fields of properties.
+    PropertyDetails of Property {
+        /// The text inside, where there is an attribute `value`, too.
+        hidden inside: Text,
+        /// `type`: the QName of an XML Schema type.
+        optional r#type: Text,
+        /// `element`: the QName of a global XML Schema element.
+        optional element: Text,
+        /// `many`: whether it can have several values.
+        copied many: Located<bool>,
+        /// `mustSupply`, of a composite's property.
+        copied must_supply: Located<bool>,
+        /// `source`: where in a composite's property the value comes from, as `$currency` or `$order/total`.
+        optional source: Text,
+        /// `file`: a file that holds the value.
+        optional file: Text,
+        /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
+        optional env: Text,
+        /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
+        /// read.
+        optional from_file: Text,
+        /// The same, where it is XML that is more than a text.
+        optional document: ValueDocument,
+        /// Its `<value>` elements.
+        list values: ComponentProperty,
+        /// Other elements inside: a complex value.
+        list content: ElementId,
+    }
 }
 
 /// The XML of a file that a property takes its value from.
@@ -91,61 +93,6 @@ impl Property {
     /// The text inside, trimmed; `None` when there is none but white space.
     pub fn text(&self) -> Option<&Text> {
         if self.is_attribute { self.details.as_ref()?.inside.as_ref() } else { self.simple.as_ref() }
-    }
-
-    /// `type`: the QName of an XML Schema type.
-    pub fn r#type(&self) -> Option<&Text> {
-        self.details.as_ref()?.r#type.as_ref()
-    }
-
-    /// `element`: the QName of a global XML Schema element.
-    pub fn element(&self) -> Option<&Text> {
-        self.details.as_ref()?.element.as_ref()
-    }
-
-    /// `many`: whether it can have several values.
-    pub fn many(&self) -> Option<Located<bool>> {
-        self.details.as_ref()?.many
-    }
-
-    /// `mustSupply`, of a composite's property.
-    pub fn must_supply(&self) -> Option<Located<bool>> {
-        self.details.as_ref()?.must_supply
-    }
-
-    /// `source`: where in a composite's property the value comes from, as `$currency` or `$order/total`.
-    pub fn source(&self) -> Option<&Text> {
-        self.details.as_ref()?.source.as_ref()
-    }
-
-    /// `file`: a file that holds the value.
-    pub fn file(&self) -> Option<&Text> {
-        self.details.as_ref()?.file.as_ref()
-    }
-
-    /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
-    pub fn env(&self) -> Option<&Text> {
-        self.details.as_ref()?.env.as_ref()
-    }
-
-    /// The content of the file that `file` names, once it is read.
-    pub fn from_file(&self) -> Option<&Text> {
-        self.details.as_ref()?.from_file.as_ref()
-    }
-
-    /// The XML that the file that `file` names holds, where it is more than a text.
-    pub fn document(&self) -> Option<&ValueDocument> {
-        self.details.as_ref()?.document.as_ref()
-    }
-
-    /// Its `<value>` elements.
-    pub fn values(&self) -> &[ComponentProperty] {
-        self.details.as_ref().map_or(&[], |details| &details.values)
-    }
-
-    /// Other elements inside: a complex value.
-    pub fn content(&self) -> &[ElementId] {
-        self.details.as_ref().map_or(&[], |details| &details.content)
     }
 
     /// Every simple value that is given, in the order attribute, text, `<value>` elements.

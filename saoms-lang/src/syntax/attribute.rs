@@ -4,9 +4,44 @@ use std::borrow::Cow;
 
 use super::document::Document;
 use super::element::{offset, slice, split};
-use super::start_tag::{BAD_NAME, DUPLICATE, NO_VALUE, OPEN, RawAttribute, UNSURE};
 use super::value;
 use crate::source::{Located, Location, Span, Text};
+
+/// An attribute as written, declarations of namespaces included.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RawAttribute {
+    pub(super) start: u32,
+    pub(super) name_len: u32,
+    /// Without the quotes; empty, behind the name, where there is none.
+    pub(super) value: Span,
+    pub(super) namespace: u32,
+    pub(super) flags: u8,
+}
+
+/// There is no value.
+pub(super) const NO_VALUE: u8 = 1;
+/// The value has no closing quote.
+pub(super) const OPEN: u8 = 2;
+/// Nobody knows what the value, or the name, means.
+pub(super) const UNSURE: u8 = 4;
+/// Another attribute of the name stands before it.
+pub(super) const DUPLICATE: u8 = 8;
+/// The name is none, or its prefix is bound to no namespace.
+pub(super) const BAD_NAME: u8 = 16;
+
+/// The namespace of an attribute with a prefix, until all declarations of its tag are known.
+pub(super) const UNRESOLVED: u32 = u32::MAX;
+
+impl RawAttribute {
+    pub(super) fn name_span(&self) -> Span {
+        Span::new(self.start, self.start + self.name_len)
+    }
+
+    /// Behind the closing quote.
+    pub(super) fn end(&self) -> u32 {
+        self.value.end + u32::from(self.flags & (NO_VALUE | OPEN) == 0)
+    }
+}
 
 /// An attribute of an element.
 #[derive(Clone, Copy, Debug)]

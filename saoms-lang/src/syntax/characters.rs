@@ -1,7 +1,7 @@
 //! Characters: those that XML forbids, white space, and how much room a text needs.
 
+use super::attribute::UNSURE;
 use super::lexer::Lexer;
-use super::start_tag::UNSURE;
 use super::token::{DAMAGED_TAG, TokenKind, UNSURE_TEXT};
 use crate::diagnostic::codes;
 use crate::source::Span;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use super::Element;
-use super::start_tag::RawAttribute;
+use super::attribute::RawAttribute;
 use super::token::{Token, TokenKind};
 use crate::source::{FileId, Span};
 

@@ -3,10 +3,10 @@
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
+use super::attribute::RawAttribute;
 use super::characters::{Survey, is_blank};
 use super::document::{NONE, Node};
 use super::fault::{Faults, Input};
-use super::start_tag::RawAttribute;
 use super::token::{DAMAGED_TAG, Token, TokenKind, UNNAMED, UNSURE_TEXT};
 use super::{prolog, reference};
 use crate::diagnostic::codes;

@@ -9,9 +9,9 @@
 
 mod attribute;
 mod characters;
-mod counts;
 mod document;
 mod element;
+mod element_text;
 mod escape;
 mod fault;
 mod lexer;
@@ -20,16 +20,12 @@ mod namespaces;
 mod nest;
 mod parse;
 mod prolog;
-mod quotes;
 mod reference;
 mod resolve;
-mod slips;
 mod start_tag;
-mod tags;
 #[cfg(test)]
 mod tests;
 mod token;
-mod unbound;
 mod value;
 mod writer;
 
@@ -40,7 +36,7 @@ pub use escape::escaped;
 pub(crate) use names::is_local_name;
 pub use parse::{Parse, parse};
 pub use token::TokenKind;
-pub(crate) use value::Writing;
+pub(crate) use value::SourceMap;
 pub use writer::NewElement;
 
 /// The namespace to which the prefix `xml` is bound always.

@@ -2,14 +2,15 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::attribute::{BAD_NAME, DUPLICATE, NO_VALUE, RawAttribute, UNRESOLVED, UNSURE};
 use super::document::{NO_NAMESPACE, Node, XMLNS};
 use super::fault::Input;
+use super::fault::slips;
+use super::fault::unbound::{self, Meant};
 use super::lexer::Lexer;
 use super::namespaces::{Namespaces, refusal};
-use super::start_tag::{BAD_NAME, DUPLICATE, NO_VALUE, RawAttribute, UNRESOLVED, UNSURE};
 use super::token::{DAMAGED_TAG, PREFIXED, UNNAMED};
-use super::unbound::{self, Meant};
-use super::{slips, value};
+use super::value;
 use crate::diagnostic::codes;
 
 /// Binds all prefixes; gives the namespaces by number.

@@ -72,9 +72,9 @@ fn data_characters(stretch: &str, mut each: impl FnMut(char, Range<usize>)) {
 }
 
 /// Which bytes the parts of a value are written with.
-pub(crate) struct Writing(Option<Characters>);
+pub(crate) struct SourceMap(Option<Characters>);
 
-impl Writing {
+impl SourceMap {
     /// `written` is the stretch, or the attribute, that the value was read from, and may have white space at its ends that the value has
     /// not; `None` when it is another one.
     pub(crate) fn of(written: &str, value: &str) -> Option<Self> {

@@ -13,7 +13,7 @@ use crate::diagnostic::{
 };
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
-use crate::syntax::{Writing, escaped};
+use crate::syntax::{SourceMap, escaped};
 
 /// The number of diagnostics are taken back.
 const WITHDRAWALS: usize = 1000;
@@ -276,7 +276,7 @@ impl<'a> Report<'a> {
 
     /// The places of the parts of a text that is written at a place.
     pub(crate) fn parts_of(&self, text: &str, written: Location) -> Parts {
-        Parts { writing: Writing::of(self.sources.snippet(written), text), length: text.len(), written }
+        Parts { writing: SourceMap::of(self.sources.snippet(written), text), length: text.len(), written }
     }
 
     /// True if what stands in the file is XML, and not the bare text of a value.
@@ -339,7 +339,7 @@ fn said(one: &Diagnostic) -> Said {
 /// The places of the parts of a text.
 pub(crate) struct Parts {
     /// `None` where what is written is not the text.
-    writing: Option<Writing>,
+    writing: Option<SourceMap>,
     length: usize,
     written: Location,
 }

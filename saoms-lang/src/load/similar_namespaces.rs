@@ -9,7 +9,7 @@ use crate::syntax::{Attribute, Document};
 
 impl Loader<'_> {
     /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged with it.
-    pub(super) fn near_namespaces(&mut self, document: &Document) {
+    pub(super) fn similar_namespaces(&mut self, document: &Document) {
         let near =
             document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
         let near: Vec<(&str, &str)> = near.filter_map(|one| Some((one, meant(one)?))).collect();

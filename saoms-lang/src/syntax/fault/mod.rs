@@ -1,5 +1,9 @@
 //! Faults of a text, as diagnostics.
 
+pub(super) mod quotes;
+pub(super) mod slips;
+pub(super) mod unbound;
+
 use crate::diagnostic::{Code, Diagnostic};
 use crate::limits::TEXT_FAULTS;
 use crate::source::{FileId, Span};

@@ -1,6 +1,6 @@
 //! Quotes of word processors and web pages around values.
 
-use super::fault::Input;
+use super::Input;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Span;
 
@@ -9,7 +9,7 @@ const CURLY: [char; 9] =
     ['\u{201c}', '\u{201d}', '\u{201e}', '\u{201f}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}'];
 
 /// The fault of a value at `at` in the quotes of a word processor; also the value inside, and where it ends.
-pub(super) fn around(input: Input<'_>, at: u32) -> Option<(Diagnostic, Span, u32)> {
+pub(in crate::syntax) fn around(input: Input<'_>, at: u32) -> Option<(Diagnostic, Span, u32)> {
     let text = &input.text[at as usize..];
     let first = text.chars().next().filter(|first| CURLY.contains(first))?;
     let inside = &text[first.len_utf8()..];
@@ -28,7 +28,7 @@ pub(super) fn around(input: Input<'_>, at: u32) -> Option<(Diagnostic, Span, u32
 }
 
 /// The fault of a value that starts with a straight quote and is closed by one of a word processor before `end`; also where that is.
-pub(super) fn closing(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, Span)> {
+pub(in crate::syntax) fn closing(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, Span)> {
     let value = input.slice(quote_at + 1, end);
     let (length, found) = value.char_indices().find(|(_, c)| CURLY.contains(c))?;
     let at = quote_at + 1 + length as u32;

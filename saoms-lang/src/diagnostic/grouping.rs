@@ -13,7 +13,7 @@ const NAMED: usize = 10;
 
 /// The diagnostics to show, each with how many more are like it and where. Alike are those of one code and severity in one file whose messages differ
 /// in numbers alone, as those of robots that are written out one by one do.
-pub(super) fn told_together<'d>(
+pub(super) fn grouped<'d>(
     diagnostics: Vec<&'d Diagnostic>,
     sources: &Sources,
 ) -> Vec<(&'d Diagnostic, Option<String>)> {

@@ -4,15 +4,19 @@
 //! end tags, and from the vocabulary of composites which elements cannot stand in which; so an element that is never closed ends where it
 //! should have, and what follows it is read as what it is.
 
-use super::counts::Counts;
+mod counts;
+mod repair;
+mod tags;
+
+use counts::Counts;
+use tags::{Named, is_holder, local};
+
 use super::document::{NONE, Node};
 use super::fault::Input;
 use super::lexer::{Lexer, end_name};
-use super::tags::{self, Named, holders, is_holder, local};
 use super::token::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, HAS_TEXT, TokenKind, UNSURE_TEXT};
 use super::value;
-use crate::diagnostic::{codes, nearest, quoted};
-use crate::limits::{OPEN_ELEMENTS_SEARCHED, SIBLINGS_SEARCHED};
+use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
 
 /// The flags of start tags that are found here.
@@ -173,69 +177,6 @@ impl<'l, 'a> Nest<'l, 'a> {
         self.counts.as_mut().map(with)
     }
 
-    /// Closes elements that lack end tags, and that the next element, `named`, cannot stand in. Gives whether its start tag was meant as
-    /// an end tag, so that there is no such element.
-    fn makes_room(&mut self, at: u32, named: Named<'a>, is_bare: bool) -> bool {
-        let Some(holders) = holders(local(named.name)) else { return false };
-        let is_holder = |one: &&u32| tags::is_one_of(local(self.name(self.node(**one))), holders);
-        let Some(above) = self.open.iter().rev().take(OPEN_ELEMENTS_SEARCHED).position(|one| is_holder(&one))
-        else {
-            return false;
-        };
-        let above: Vec<u32> = self.open.iter().rev().take(above).copied().collect();
-        let Some(counts) = &self.counts else { return false };
-        let is_missing = |one: &u32| counts.missing_ends(self.name(self.node(*one))) > 0;
-        if above.is_empty() || !above.iter().all(is_missing) {
-            return false;
-        }
-        let open = self.named(self.node(above[0]));
-        if is_bare && open.name == named.name && counts.missing_ends(named.name) > 1 && above.len() == 1 {
-            self.lexer.faults.add(|| tags::start_for_end(self.input, named, open));
-            self.lexer.tokens[at as usize].kind = TokenKind::Error;
-            self.close(at, false);
-            return true;
-        }
-        for one in above {
-            let outer = self.named(self.node(one));
-            if self.token(self.node(one).token).flags & BROKEN_OFF == 0 {
-                self.lexer.faults.add(|| tags::not_closed(self.input, outer, named));
-            }
-            self.close(at, false);
-        }
-        false
-    }
-
-    /// Reports an element beside the root. What is not called as the root stands in it, which is closed too early then.
-    fn second_root(&mut self, named: Named<'a>) -> Result<(), Mismatch> {
-        if self.counts.is_none() {
-            return Err(Mismatch);
-        }
-        let root = *self.node(0);
-        let first = self.named(&root);
-        if !self.has_second_root {
-            self.lexer.faults.add(|| tags::second_root(self.input, named, first));
-            self.has_second_root = true;
-        }
-        self.has_other_root |= first.name == named.name;
-        if !self.has_other_root {
-            self.reopen(0);
-            self.open.push(0);
-            self.count_with(|counts| counts.open(first.name));
-        }
-        Ok(())
-    }
-
-    /// Takes the end of an element back.
-    fn reopen(&mut self, element: u32) {
-        let Node { token, end, .. } = *self.node(element);
-        let start = &mut self.lexer.tokens[token as usize];
-        start.kind = TokenKind::StartTag;
-        start.flags = start.flags & !CLOSED | DAMAGED_CONTENT;
-        if end != token && self.token(end).kind == TokenKind::EndTag {
-            self.lexer.tokens[end as usize].kind = TokenKind::Error;
-        }
-    }
-
     fn end_tag(&mut self, at: u32) -> Result<(), Mismatch> {
         let start = self.token(at).start;
         if self.counts.is_none()
@@ -275,85 +216,6 @@ impl<'l, 'a> Nest<'l, 'a> {
             Some(&top) => self.mismatch(at, found, top),
         }
         Ok(())
-    }
-
-    /// An end tag with another name than the element has that is open.
-    fn mismatch(&mut self, at: u32, found: &'a str, top: u32) {
-        let (input, tag) = (self.input, self.span(at));
-        let open = self.named(self.node(top));
-        let Some(counts) = &self.counts else { return };
-        let is_near = nearest(found, [open.name]).is_some();
-        let lacks_end = counts.missing_ends(open.name) > 0;
-        let fault = || tags::mismatch(input, found, tag, open);
-        let is_for_outer = counts.is_open(found) && !(is_near && lacks_end && counts.has_surplus_end(found));
-        let is_broken_off = self.token(self.node(top).token).flags & BROKEN_OFF != 0;
-        if is_for_outer {
-            let Node { token, .. } = *self.node(top);
-            let is_bare = top + 1 == self.count && self.token(token).flags & HAS_TEXT == 0;
-            if !is_broken_off {
-                self.lexer.faults.add(|| tags::closed_first(input, fault(), tag.start, open, is_bare));
-            }
-            while let Some(&top) = self.open.last() {
-                let is_it = self.name(self.node(top)) == found;
-                self.close(at, is_it);
-                if is_it {
-                    break;
-                }
-            }
-            return;
-        }
-        if !is_near && let Some(same) = self.sibling(found, top) {
-            let sibling = self.named(self.node(same));
-            let is_empty = self.token(self.node(same).token).kind == TokenKind::EmptyTag;
-            let is_early = is_empty && !input.slice(sibling.start_tag.end, tag.start).trim().is_empty();
-            let place = sibling.at.in_file(input.file);
-            self.lexer.faults.add(|| {
-                if is_early {
-                    let end = sibling.start_tag.end;
-                    let slash = Span::new(end - 2, end - 1).in_file(input.file);
-                    let one = fault().label(place, format!("this {} ends with `/>`", quoted(found)));
-                    return one.suggest("remove its `/`", slash, "");
-                }
-                let one = fault().label(place, format!("this {} is closed", quoted(found)));
-                one.suggest("remove it", tag.in_file(input.file), "")
-            });
-            if is_early {
-                self.close_late(same, top, at);
-            } else {
-                self.ignore(at, top);
-            }
-            return;
-        }
-        self.lexer.faults.add(|| tags::replaced(fault(), tag.in_file(input.file), open));
-        if is_near || lacks_end {
-            self.close(at, true);
-        } else {
-            self.ignore(at, top);
-        }
-    }
-
-    /// The last element of this name that is directly inside `parent`.
-    fn sibling(&self, name: &str, parent: u32) -> Option<u32> {
-        let inside = (parent + 1..self.count).rev().take(SIBLINGS_SEARCHED);
-        inside.filter(|one| self.node(*one).parent == parent).find(|one| self.name(self.node(*one)) == name)
-    }
-
-    /// Lets an element that ends in its start tag end at a later end tag: what is between is inside of it.
-    fn close_late(&mut self, element: u32, parent: u32, at: u32) {
-        self.reopen(element);
-        self.flag(parent, DAMAGED_CONTENT);
-        for one in element + 1..self.count {
-            let node = &mut self.lexer.elements[one as usize];
-            if node.parent == parent {
-                node.parent = element;
-            }
-        }
-        let token = self.node(element).token;
-        let has_text = (token..at).any(|one| self.token(one).kind == TokenKind::Text);
-        self.flag(element, if has_text { CLOSED | HAS_TEXT } else { CLOSED });
-        let count = self.count;
-        let node = &mut self.lexer.elements[element as usize];
-        (node.end, node.after) = (at, count);
     }
 
     fn ignore(&mut self, at: u32, top: u32) {

@@ -1,6 +1,6 @@
 //! Faults of prefixes that are bound to no namespace.
 
-use super::fault::Input;
+use super::Input;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::source::Span;
 
@@ -15,7 +15,7 @@ const USUAL: [(&str, &str); 5] = [
 
 /// The fault of a prefix that is none of `bound`, written at byte `start`; `root_end` is behind the name of the root element. Also the
 /// namespace that is meant, or the prefix.
-pub(super) fn prefix<'a>(
+pub(in crate::syntax) fn prefix<'a>(
     input: Input<'_>,
     prefix: &str,
     start: u32,
@@ -47,7 +47,7 @@ pub(super) fn prefix<'a>(
 }
 
 /// The meaning of a prefix that is bound to no namespace.
-pub(super) enum Meant<'a> {
+pub(in crate::syntax) enum Meant<'a> {
     Namespace(&'static str),
     Prefix(&'a str),
 }

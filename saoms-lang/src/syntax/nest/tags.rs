@@ -1,8 +1,8 @@
 //! Faults of start and end tags that do not fit.
 
-use super::fault::Input;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::source::{Location, Span};
+use crate::syntax::fault::Input;
 
 /// An element, for a message.
 #[derive(Clone, Copy, Debug)]

@@ -1,14 +1,14 @@
 //! Faults of tags, with what is probably meant.
 
-use super::fault::Input;
-use super::names::{is_qualified_name, name_length};
-use super::start_tag::RawAttribute;
+use super::Input;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Span;
+use crate::syntax::attribute::RawAttribute;
+use crate::syntax::names::{is_qualified_name, name_length};
 
 impl Input<'_> {
     /// The character at a byte, for a message.
-    pub(super) fn shown(self, at: u32) -> String {
+    pub(in crate::syntax) fn shown(self, at: u32) -> String {
         match self.text[at as usize..].chars().next() {
             Some(' ' | '\t' | '\r' | '\n') => "white space".to_owned(),
             Some(character) => quoted(character.encode_utf8(&mut [0; 4])),
@@ -18,7 +18,7 @@ impl Input<'_> {
 }
 
 /// The fault of a `<` without a name behind it.
-pub(super) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
+pub(in crate::syntax) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
     let message = match input.byte(start + 1) {
         Some(_) => {
             format!("{} cannot follow `<`: the name of an element is expected", input.shown(start + 1))
@@ -33,7 +33,7 @@ pub(super) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
 }
 
 /// The fault of a name that is none; `what` it is of.
-pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Option<Diagnostic> {
+pub(in crate::syntax) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Option<Diagnostic> {
     let name = input.slice(start, end);
     if is_qualified_name(name) {
         return None;
@@ -58,13 +58,13 @@ pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Op
 }
 
 /// The first character of a name that looks like a blank, or like nothing, and where it is.
-pub(super) fn odd_space(name: &str) -> Option<(usize, char)> {
+pub(in crate::syntax) fn odd_space(name: &str) -> Option<(usize, char)> {
     let is_odd = |c: char| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{2060}' | '\u{feff}');
     name.char_indices().find(|(_, c)| is_odd(*c))
 }
 
 /// The fault of a start tag, of the element at `name`, whose `>` is missing at `at`, before the text of the element.
-pub(super) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
+pub(in crate::syntax) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
     let shown = quoted(input.slice(name.start, name.end));
     let message = format!("the start tag of {shown} is not closed before the text");
     let one = input.fault(&codes::XML_UNCLOSED, name.start, name.end, message);
@@ -74,7 +74,7 @@ pub(super) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
 
 /// The quote that closes a value, of which the first character is at `at`, where the opening quote is missing or stands
 /// elsewhere: before it nothing ends the value, and behind it the tag goes on.
-pub(super) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
+pub(in crate::syntax) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
     let is_end = |byte: &u8| matches!(byte, b'"' | b'\'' | b'<' | b'>' | b'=' | b' ' | b'\t' | b'\r' | b'\n');
     let end = at + input.bytes()[at as usize..].iter().position(is_end)? as u32;
     let is_quote = matches!(input.byte(end), Some(b'"' | b'\''));
@@ -83,7 +83,12 @@ pub(super) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
 }
 
 /// The fault of a value from `at` to `end` without its first quote.
-pub(super) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32, end: u32) -> Diagnostic {
+pub(in crate::syntax) fn without_first_quote(
+    input: Input<'_>,
+    one: &RawAttribute,
+    at: u32,
+    end: u32,
+) -> Diagnostic {
     let name = quoted(input.slice(one.start, one.start + one.name_len));
     let quote = input.slice(end, end + 1);
     let message = format!("the value of {name} has no quote before it");
@@ -93,14 +98,14 @@ pub(super) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32,
 }
 
 /// The fault of the second of two quotes, at `at`.
-pub(super) fn doubled_quote(input: Input<'_>, at: u32) -> Diagnostic {
+pub(in crate::syntax) fn doubled_quote(input: Input<'_>, at: u32) -> Diagnostic {
     let shown = input.shown(at);
     let one = input.fault(&codes::XML_ATTRIBUTE, at, at + 1, format!("{shown} stands here twice"));
     one.suggest(format!("remove {shown}"), Span::new(at, at + 1).in_file(input.file), "")
 }
 
 /// The fault of an attribute without a value; with a quote at `quote_at`, it lacks a `=` alone.
-pub(super) fn without_value(
+pub(in crate::syntax) fn without_value(
     input: Input<'_>,
     start: u32,
     name_end: u32,
@@ -116,7 +121,7 @@ pub(super) fn without_value(
 }
 
 /// The fault of `name: "value"`, as other languages write it.
-pub(super) fn colon(input: Input<'_>, start: u32, name_end: u32, next: u32) -> Option<Diagnostic> {
+pub(in crate::syntax) fn colon(input: Input<'_>, start: u32, name_end: u32, next: u32) -> Option<Diagnostic> {
     let name = input.slice(start, name_end).strip_suffix(':').filter(|name| !name.is_empty())?;
     if !matches!(input.byte(next), Some(b'"' | b'\'')) {
         return None;
@@ -128,7 +133,7 @@ pub(super) fn colon(input: Input<'_>, start: u32, name_end: u32, next: u32) -> O
 }
 
 /// The fault of a value without quotes at `at`, and how long the value is.
-pub(super) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32) -> (Diagnostic, u32) {
+pub(in crate::syntax) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32) -> (Diagnostic, u32) {
     let name = quoted(input.slice(one.start, one.start + one.name_len));
     let rest = &input.text[at as usize..];
     let stop = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n' | '>' | '<' | '"' | '\'' | '/' | '&');
@@ -144,7 +149,7 @@ pub(super) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32) -> (Diagno
 }
 
 /// The fault of a value that is open at a `<`: its quote is missing before the end of the tag, or the character is meant.
-pub(super) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -> Diagnostic {
+pub(in crate::syntax) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -> Diagnostic {
     let name = quoted(name);
     let (quote, value) = (input.slice(quote_at, quote_at + 1), input.slice(quote_at + 1, at));
     if let Some(length) = value.find('>') {
@@ -173,7 +178,7 @@ pub(super) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -
 }
 
 /// Where a value with a `<` at `at` is closed, if that surely is its quote.
-pub(super) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32) -> Option<u32> {
+pub(in crate::syntax) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32) -> Option<u32> {
     if input.slice(quote_at, at).contains('>') {
         return None;
     }
@@ -194,7 +199,7 @@ fn ends_with_attribute_name(text: &str) -> bool {
 }
 
 /// Where a value without a closing quote ends, where its tag goes on, and whether it surely ends there.
-pub(super) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
+pub(in crate::syntax) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
     let start = quote_at + 1;
     let rest = &input.text[start as usize..];
     let mut length = 0;
@@ -220,7 +225,7 @@ pub(super) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
 
 /// The fault of a value that is closed by the quote at `end`, with which the next attribute starts: `a="b c="d"`. Also where the value
 /// should end.
-pub(super) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, u32)> {
+pub(in crate::syntax) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, u32)> {
     let value = input.slice(quote_at + 1, end);
     let next = value.strip_suffix('=')?;
     if !ends_with_attribute_name(next) {
@@ -237,7 +242,7 @@ pub(super) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(
 }
 
 /// The fault of the second of two attributes that are the same.
-pub(super) fn duplicate(
+pub(in crate::syntax) fn duplicate(
     input: Input<'_>,
     first: &RawAttribute,
     second: &RawAttribute,
