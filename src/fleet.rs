@@ -57,8 +57,8 @@ impl<'a, T> From<&'a Compilation<T>> for DiagnosticReport<'a> {
     }
 }
 
-impl<'a, T> From<&'a Compilations<T>> for DiagnosticReport<'a> {
-    fn from(of: &'a Compilations<T>) -> Self {
+impl<'a> From<&'a Compilations> for DiagnosticReport<'a> {
+    fn from(of: &'a Compilations) -> Self {
         Self { diagnostics: &of.diagnostics, sources: &of.sources }
     }
 }

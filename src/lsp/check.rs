@@ -151,7 +151,7 @@ impl Checker {
             .assume_classes(self.assume_classes)
             .without_plugin_code()
             .part(may_be_part);
-        let found = project.load_with(finder, self.registries.as_ref()).check();
+        let found = project.load_with(finder, self.registries.as_ref()).compile();
         for (_, file) in found.sources.iter() {
             seen.insert(identity(Path::new(file.path())));
         }

@@ -1,7 +1,7 @@
 //! From the model to an assembly: the faults that a fleet can have before anything runs.
 //!
-//! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but its arguments. A check is a sequence of phases; `examine` is
-//! the one place where their order is written down. Each phase looks at everything, so that all faults come in one run, from cheap rules to expensive
+//! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but its arguments. It is a sequence of phases, and the one place
+//! where their order is written down. Each phase looks at everything, so that all faults come in one run, from cheap rules to expensive
 //! ones. What depends on a faulty part is not looked at: one mistake gives one diagnostic. `component::State` says of a component that it is faulty.
 
 mod assemble;
@@ -21,16 +21,16 @@ mod variable;
 mod wiring;
 
 use crate::assembly::Assembly;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::{Diagnostics, codes};
 use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::Sources;
 
-use assemble::CheckedFleet;
 use fleet::classes;
 use report::Report;
 use report::severities::Severities;
-use unfolding::arena::Arena;
+use rules::unique_values::RepeatedValues;
+use unfolding::append_list::AppendList;
 use values::parameters::Parameters;
 
 pub use occurrences::{Occurrences, TopicUse};
@@ -64,80 +64,40 @@ pub fn check(
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly> {
-    examine(contribution, registry, options, sources, diagnostics, |sound, severities, report| {
-        let places = if options.wiring { sound.places(report) } else { Vec::new() };
-        let assembly = sound.assemble(|one| classes::library(one, contribution, sources))?;
-        if options.wiring {
-            let known = report.diagnostics().len();
-            rules::traffic::check(&assembly, &places, report);
-            severities.apply(known, report.diagnostics());
-        }
-        Some(assembly)
-    })
-}
-
-/// Checks composites for the diagnostics alone, without an assembly: the number of components that it would have.
-///
-/// What [`Options::wiring`] asks for is told of assemblies only.
-pub fn count(
-    contribution: &Contribution,
-    registry: &Registry,
-    options: &Options,
-    sources: &Sources,
-    diagnostics: &mut Diagnostics,
-) -> Option<usize> {
-    examine(contribution, registry, options, sources, diagnostics, |sound, _, _| sound.count())
-}
-
-/// Runs all phases in their order, and makes something of a fleet without errors.
-fn examine<T>(
-    contribution: &Contribution,
-    registry: &Registry,
-    options: &Options,
-    sources: &Sources,
-    diagnostics: &mut Diagnostics,
-    make: impl FnOnce(CheckedFleet<'_, '_>, &mut Severities, &mut Report<'_>) -> Option<T>,
-) -> Option<T> {
-    let assumes = options.assume_classes;
     let mut severities = Severities::of(contribution, options, registry, diagnostics);
     let report = &mut Report::new(sources, diagnostics);
-    report.assumes = assumes;
-    report.tells_echoes = severities.mentions(&codes::NOT_UNIQUE);
-    report.lowers_attributes = severities.mentions(&codes::UNKNOWN_ATTRIBUTE);
 
     // Composites, includes, inner composites, replicas and conditions become one list of components; each has its class.
-    let replicas = Arena::new();
-    let mut fleet = unfolding::unfold(contribution, options, &replicas, report);
+    let replicas = AppendList::new();
+    let mut fleet = unfolding::unfold(contribution, options, &severities, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);
-    let mut classes = classes::resolve(&mut fleet, contribution, registry, assumes, report);
+    classes::resolve(&mut fleet, registry, options, report);
 
     // Each component alone: properties, loops, tasks.
-    let mut checks = properties::check_all(&fleet, &classes, &mut parameters, report);
-    loops::resolve(&mut fleet, &mut classes, &mut checks, registry, &mut parameters, report);
+    let mut checks = properties::check_all(&fleet, &mut parameters, report);
+    loops::resolve(&mut fleet, &mut checks, (registry, options), &mut parameters, report);
     parameters.finish(&fleet, report);
     // From here on only components that are there count: rules below compare several.
     unfolding::remove_absent::remove(&mut fleet, &mut checks);
-    tasks::check_all(&fleet, &classes, &mut checks, report);
+    let repeated = tasks::check_all(&fleet, &mut checks, report);
+    // Where it is let pass that components share a value, that is no fault which others come of.
+    let repeated = if severities.mentions(&codes::NOT_UNIQUE) { RepeatedValues::default() } else { repeated };
 
     // Services, references, promotions and wires.
     rules::written::check(&fleet, report);
-    let is_misread = |one: &Diagnostic| one.code.id.starts_with("S10") && !severities.mentions(one.code);
-    let is_misread = report.diagnostics().iter().any(is_misread);
-    let known = report.errors();
-    rules::contracts::check(&fleet, &classes, report);
-    rules::component_types::check(&fleet, &classes, report);
-    let promoted = wiring::promotion::check(&fleet, &classes, report);
-    let wiring = wiring::check(&fleet, &classes, &promoted, report);
-    let has_open_wires = is_misread || report.errors() > known;
+    rules::contracts::check(&fleet, report);
+    rules::component_types::check(&fleet, report);
+    let promoted = wiring::promotion::check(&fleet, report);
+    let wiring = wiring::check(&fleet, &promoted, options, report);
 
     // The expensive rules: constructors, and rules of plugins over the whole fleet.
-    rules::constructors::check_all(&fleet, &classes, &checks, options.without_plugin_code, report);
+    rules::constructors::check_all(&fleet, &checks, &repeated, options, report);
     let rules = registry.rules().iter();
     let rules = rules.filter(|rule| !options.without_plugin_code || rule.origin().is_none());
-    rules::plugin_rules::check(&fleet, &classes, &checks, (&wiring, has_open_wires), rules, report);
+    rules::plugin_rules::check(&fleet, &checks, &wiring, &repeated, rules, report);
 
     // Severities count at the end, and an error anywhere keeps the fleet from running.
-    if assumes {
+    if options.assume_classes {
         properties::foreign::lower_missing_files(&fleet, report);
     }
     report.finish();
@@ -146,8 +106,14 @@ fn examine<T>(
         severities.overruled(report.diagnostics());
         return None;
     }
-    let made = make(CheckedFleet { fleet, classes, checks, wiring }, &mut severities, report);
+    let places = if options.wiring { rules::traffic::places(&fleet, &checks, report) } else { Vec::new() };
+    let assembly = assemble::assemble(&fleet, checks, &wiring, sources);
+    if let Some(assembly) = assembly.as_ref().filter(|_| options.wiring) {
+        let known = report.diagnostics().len();
+        rules::traffic::check(assembly, &places, report);
+        severities.apply(known, report.diagnostics());
+    }
     severities.finish(options.wiring, report.diagnostics());
     severities.overruled(report.diagnostics());
-    made.filter(|_| !report.has_errors())
+    assembly.filter(|_| !report.has_errors())
 }

@@ -15,7 +15,7 @@ use crate::check::report::Report;
 use crate::check::report::severities::Severities;
 use crate::check::tasks::Task;
 use crate::check::unfolding;
-use crate::check::unfolding::arena::Arena;
+use crate::check::unfolding::append_list::AppendList;
 use crate::check::values::parameters::Parameters;
 use crate::diagnostic::Diagnostics;
 use crate::model::{Contribution, Origin};
@@ -59,13 +59,14 @@ impl Occurrences {
     ) -> Self {
         let mut severities = Severities::of(contribution, options, registry, diagnostics);
         let report = &mut Report::new(sources, diagnostics);
-        let replicas = Arena::new();
-        let mut fleet = unfolding::unfold(contribution, options, &replicas, report);
+        let replicas = AppendList::new();
+        let mut fleet = unfolding::unfold(contribution, options, &severities, &replicas, report);
         let parameters = Parameters::of(&fleet, options, report);
         report.finish();
         severities.apply(0, report.diagnostics());
         let ways = ways(&fleet);
-        let topics = topics(&mut fleet, &ways, parameters, registry, sources);
+        let given = Options { assume_classes: true, ..options.clone() };
+        let topics = topics(&mut fleet, &ways, parameters, (registry, &given), sources);
         let mut counts: HashMap<(FileId, ElementId), usize> = HashMap::new();
         for composite in contribution.composites() {
             let special = composite.components.iter();
@@ -150,20 +151,19 @@ fn topics<'a>(
     fleet: &mut Fleet<'a>,
     ways: &[Way],
     mut parameters: Parameters<'a>,
-    registry: &'a Registry,
+    (registry, options): (&'a Registry, &Options),
     sources: &Sources,
 ) -> HashMap<Way, Rc<[TopicUse]>> {
     let mut unheard = Diagnostics::new();
     let report = &mut Report::new(sources, &mut unheard);
-    report.assumes = true;
-    let mut classes = classes::resolve(fleet, fleet.contribution, registry, true, report);
-    let mut checks = properties::check_all(fleet, &classes, &mut parameters, report);
-    loops::resolve(fleet, &mut classes, &mut checks, registry, &mut parameters, report);
+    classes::resolve(fleet, registry, options, report);
+    let mut checks = properties::check_all(fleet, &mut parameters, report);
+    loops::resolve(fleet, &mut checks, (registry, options), &mut parameters, report);
     let mut lists = Lists::default();
     let mut all: HashMap<Way, Used> = HashMap::new();
     for (at, member) in fleet.members.iter().enumerate().filter(|(_, member)| !member.is_absent) {
         let Kind::Class(index) = member.kind else { continue };
-        let class = &classes[index];
+        let class = &fleet.classes[index];
         let is_periodic = class.class.declaration().is_periodic();
         let task = Task { component: member.component, class, given: &checks[at].given };
         let renamed = if is_periodic { task.renamed(report) } else { Vec::new() };

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::merge::Merged;
-use super::{ClassPath, Classes, Compilation, Input, Loaded, PluginFault, Project, load};
+use super::{ClassPath, Classes, Input, PluginFault, Project, load};
 use crate::assembly::Assembly;
 use crate::check::{self, Options};
 use crate::contribution::{Finder, FolderFleet, SideFile};
@@ -15,9 +15,9 @@ use crate::source::{Sources, identity};
 
 /// The outcome of a compilation of several fleets.
 #[derive(Debug)]
-pub struct Compilations<T> {
-    /// The outputs; fleets with errors have none.
-    pub outputs: Vec<FleetOutput<T>>,
+pub struct Compilations {
+    /// The assemblies; fleets with errors have none.
+    pub outputs: Vec<FleetOutput>,
     /// The number of fleets.
     pub fleets: usize,
     /// The texts that were read.
@@ -28,13 +28,13 @@ pub struct Compilations<T> {
     pub problems: Vec<PluginFault>,
 }
 
-/// The output for one of several fleets.
+/// The assembly of one of several fleets.
 #[derive(Debug)]
-pub struct FleetOutput<T> {
+pub struct FleetOutput {
     /// The first file of the fleet.
     pub file: PathBuf,
-    /// The output.
-    pub output: T,
+    /// The assembly.
+    pub output: Assembly,
 }
 
 /// A fleet among several.
@@ -47,16 +47,6 @@ struct Member {
 }
 
 impl Project {
-    /// Loads and checks every fleet of the inputs: files and texts are one together, each folder has its own.
-    pub fn compile_each(&self, classes: &impl ClassPath) -> Compilations<Assembly> {
-        self.each(classes, Loaded::compile)
-    }
-
-    /// As [`compile_each`](Self::compile_each) for the diagnostics alone: the outputs are numbers of components.
-    pub fn check_each(&self, classes: &impl ClassPath) -> Compilations<usize> {
-        self.each(classes, Loaded::check)
-    }
-
     /// The faults of contributions, without those of their composites: every input is a folder.
     pub fn check_folders(&self, finder: &mut Finder) -> (Vec<Diagnostic>, Sources) {
         let (mut sources, mut diagnostics) = (self.sources(), Diagnostics::new());
@@ -66,11 +56,8 @@ impl Project {
         (diagnostics.into_all(), sources)
     }
 
-    fn each<T>(
-        &self,
-        class_path: &impl ClassPath,
-        step: impl Fn(Loaded) -> Compilation<T>,
-    ) -> Compilations<T> {
+    /// Loads and checks every fleet of the inputs: files and texts are one together, each folder has its own.
+    pub fn compile_each(&self, class_path: &impl ClassPath) -> Compilations {
         let (mut sources, mut diagnostics) = (self.sources(), Diagnostics::new());
         let mut finder = self.finder();
         let mut problems = Vec::new();
@@ -80,7 +67,7 @@ impl Project {
         if !beside.component_types().is_empty() {
             let classes = class_path.classes(&load::files(&self.inputs));
             add_new(&mut problems, classes.problems);
-            check::count(&beside, &classes.registry, &options, &sources, &mut diagnostics);
+            check::check(&beside, &classes.registry, &options, &sources, &mut diagnostics);
         }
         let mut merged = Merged::default();
         let mut count = fleets.len();
@@ -107,7 +94,8 @@ impl Project {
                 }
             };
             let start = (sources, Diagnostics::new());
-            let found = step(self.load_fleet(&inputs, &mut finder, classes.clone(), options.clone(), start));
+            let loaded = self.load_fleet(&inputs, &mut finder, classes.clone(), options.clone(), start);
+            let found = loaded.compile();
             sources = found.sources;
             // A composite that is made for others may lack what these give it, also where nothing else is in the
             // folder.

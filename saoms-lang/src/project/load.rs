@@ -141,11 +141,6 @@ impl Loaded {
         self.checked(check::check)
     }
 
-    /// As [`Project::check`].
-    pub fn check(self) -> Compilation<usize> {
-        self.checked(check::count)
-    }
-
     /// As [`Project::census`].
     pub fn census(self) -> Compilation<Occurrences> {
         self.checked(|contribution, registry, options, sources, diagnostics| {

@@ -205,14 +205,6 @@ impl Project {
         self.load(classes).compile()
     }
 
-    /// As [`compile`](Self::compile) for the diagnostics alone, which needs less: the output is the number of
-    /// components.
-    ///
-    /// The result of [`wiring`](Self::wiring) is reported of assemblies only.
-    pub fn check(&self, classes: &impl ClassPath) -> Compilation<usize> {
-        self.load(classes).check()
-    }
-
     /// The numbers and topics of the components as far as they can be known, also where there are errors.
     pub fn census(&self, classes: &impl ClassPath) -> Compilation<Occurrences> {
         self.load(classes).census()

@@ -5,7 +5,6 @@ mod wiring;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::{Compilations, FleetOutput};
 use serde::Serialize;
@@ -54,31 +53,17 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
         Err(exit) => return exit,
     };
     let project = project(&arguments.fleet).assume_classes(arguments.assume_classes).wiring(arguments.wiring);
-    let format = arguments.format;
-    match arguments.wiring {
-        true => report(&project.compile_each(&classes), |one| one.components.len(), |one| Some(one), format),
-        false => report(&project.check_each(&classes), |count| *count, |_| None, format),
-    }
-}
-
-/// Writes the diagnostics, with the wiring report if there are assemblies.
-fn report<T>(
-    found: &Compilations<T>,
-    components: impl Fn(&T) -> usize,
-    assembly: impl Fn(&T) -> Option<&Assembly>,
-    format: CheckFormat,
-) -> Exit {
-    let Compilations { outputs, fleets, problems, .. } = found;
+    let found = project.compile_each(&classes);
+    let Compilations { outputs, fleets, problems, .. } = &found;
     if let Err(exit) = usable(problems) {
         return exit;
     }
-    let shown = DiagnosticReport::from(found);
-    let wired: Vec<(&Path, Wiring<'_>)> = outputs
-        .iter()
-        .filter_map(|FleetOutput { file, output }| Some((file.as_path(), Wiring(assembly(output)?))))
-        .collect();
+    let shown = DiagnosticReport::from(&found);
+    let wired = outputs.iter().filter(|_| arguments.wiring);
+    let wired = wired.map(|FleetOutput { file, output }| (file.as_path(), Wiring(output)));
+    let wired: Vec<(&Path, Wiring<'_>)> = wired.collect();
     let wiring = (!wired.is_empty()).then_some(Wired { of: &wired, is_one: *fleets == 1 });
-    match format {
+    match arguments.format {
         CheckFormat::Json => print_json(&shown.json(wiring)),
         CheckFormat::Sarif => print_json(&shown.sarif(wiring.map(|wiring| Properties { wiring }))),
         CheckFormat::Human => {
@@ -91,7 +76,7 @@ fn report<T>(
             }
             let errors = counted(shown.count(Severity::Error), "error");
             let warnings = counted(shown.count(Severity::Warning), "warning");
-            let components = outputs.iter().map(|one| components(&one.output)).sum();
+            let components = outputs.iter().map(|one| one.output.components.len()).sum();
             let components = counted(components, "component");
             print(&match (*fleets, outputs.len()) {
                 (2.., _) => format!("{fleets} fleets, {components}: {errors}, {warnings}\n"),

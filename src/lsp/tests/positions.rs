@@ -21,7 +21,7 @@ fn hold(text: &str) -> usize {
     let path = Path::new("/nowhere/fleet.composite");
     let mut open = OpenTexts::default();
     open.insert(path, text.to_owned());
-    let found = Project::new().file(path).open_texts(open).check(&Registry::linked().unwrap());
+    let found = Project::new().file(path).open_texts(open).compile(&Registry::linked().unwrap());
     let all: Vec<_> = found.reported().cloned().collect();
     let told: Vec<_> = reported(&all, &found.sources).collect();
     assert_eq!(all.len(), told.len());

@@ -50,11 +50,6 @@ impl Input {
         self.measured(settings, |project| project.compile(registry))
     }
 
-    /// Checks it for the diagnostics alone.
-    pub(crate) fn counted(&self, settings: Settings, registry: &Registry) -> Compilation<usize> {
-        self.measured(settings, |project| project.check(registry))
-    }
-
     fn measured<T>(&self, settings: Settings, compile: impl FnOnce(Project) -> T) -> T {
         thread_local! {
             static FOLDER: TempDir = tempfile::tempdir().unwrap();

@@ -60,7 +60,7 @@ fn one_slip_gives_few_diagnostics() {
         let check = |text: &str| {
             let mut open = OpenTexts::default();
             open.insert(&path, text.to_owned());
-            let found = Project::new().file(&path).open_texts(open).check(&registry).diagnostics;
+            let found = Project::new().file(&path).open_texts(open).compile(&registry).diagnostics;
             let told = found.into_iter().filter(|one| one.severity != Severity::Note && !one.is_allowed());
             told.map(|one| format!("{} {}", one.code.id, one.message)).collect::<Vec<String>>()
         };

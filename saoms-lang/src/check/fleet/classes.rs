@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::{Fleet, Kind};
+use crate::check::options::Options;
 use crate::check::properties::property_table::PropertyTable;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
@@ -88,22 +89,21 @@ impl<'r> ClassIndex<'r> {
     }
 }
 
-/// Finds the class of every component; the classes that occur.
-pub(crate) fn resolve<'r>(
-    fleet: &mut Fleet<'_>,
-    contribution: &Contribution,
-    registry: &'r Registry,
-    assume_classes: bool,
+/// Finds the class of every component.
+pub(crate) fn resolve<'a>(
+    fleet: &mut Fleet<'a>,
+    registry: &'a Registry,
+    options: &Options,
     report: &mut Report<'_>,
-) -> Vec<ClassIndex<'r>> {
-    let mut classes = Vec::new();
+) {
+    let contribution = fleet.contribution;
     let mut known: HashMap<&str, usize> = HashMap::default();
     // What is near an unknown name, which a whole fleet may have.
     let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
     for place in 0..fleet.members.len() {
         let component = fleet.members[place].component;
         // What is not there may come with a plugin where its condition is true.
-        let assumes = assume_classes || fleet.members[place].is_absent;
+        let assumes = options.assume_classes || fleet.members[place].is_absent;
         report.about(&fleet.members[place]);
         let Some(class) = runnable(component, assumes, report) else {
             if assumes && fleet.members[place].kind == Kind::Nothing {
@@ -125,9 +125,9 @@ pub(crate) fn resolve<'r>(
             Some(index) => index,
             None => match registry.get(class) {
                 Some(found) => {
-                    classes.push(ClassIndex::new(found));
-                    known.insert(class, classes.len() - 1);
-                    classes.len() - 1
+                    fleet.classes.push(ClassIndex::new(found));
+                    known.insert(class, fleet.classes.len() - 1);
+                    fleet.classes.len() - 1
                 }
                 None if assumes => {
                     fleet.members[place].kind = Kind::Given;
@@ -144,7 +144,6 @@ pub(crate) fn resolve<'r>(
         fleet.members[place].kind = Kind::Class(index);
     }
     report.about_all();
-    classes
 }
 
 /// The name of the class of a component that names one.

@@ -7,6 +7,7 @@ use saoms_api::host::PropertyValue;
 use super::{Planned, order};
 use crate::check::fleet::Member;
 use crate::check::fleet::classes::ClassIndex;
+use crate::check::options::Options;
 use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -20,7 +21,7 @@ pub(super) fn plan<'a>(
     member: &Member<'a>,
     class: &ClassIndex<'a>,
     checked: &PropertyValues,
-    registry: &'a Registry,
+    (registry, options): (&'a Registry, &Options),
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {
     let (mut loops, mut is_sound) = by_default(member, class, checked, registry, report);
@@ -64,7 +65,9 @@ pub(super) fn plan<'a>(
             let found = registry.get_loop(class);
             if found.is_none() {
                 is_sound = false;
-                if !report.assumes && !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) {
+                if !options.assume_classes
+                    && !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location)
+                {
                     report.push(unknown_class(class, registry));
                 }
             }

@@ -11,8 +11,8 @@ use smol_str::SmolStr;
 
 use crate::assembly::LoopSpec;
 use crate::check::component::ComponentCheck;
-use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind, Member};
+use crate::check::options::Options;
 use crate::check::properties::conversion::Conversion;
 use crate::check::properties::given_values::ValuePlace;
 use crate::check::properties::property_table::PropertyTable;
@@ -73,9 +73,8 @@ struct Usual {
 /// Finds the loops of all components. The class of a component with loops becomes one that uses the topics and references of these as well.
 pub(crate) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
-    classes: &mut Vec<ClassIndex<'a>>,
     checks: &mut [ComponentCheck<'a>],
-    registry: &'a Registry,
+    (registry, options): (&'a Registry, &Options),
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
 ) {
@@ -91,7 +90,7 @@ pub(crate) fn resolve<'a>(
             without_class(member, parameters, report);
             continue;
         };
-        let class = &classes[index];
+        let class = &fleet.classes[index];
         let says_nothing = member.component.loops().is_empty();
         let choice = says_nothing.then(|| (index, list::choice(class, &check.given).map(SmolStr::new)));
         if let Some(Usual { with, specs }) = choice.as_ref().and_then(|choice| usual.get(choice)) {
@@ -99,16 +98,16 @@ pub(crate) fn resolve<'a>(
             check.loops = Some(Resolved { specs: Arc::clone(specs), changed: Vec::new() });
             continue;
         }
-        let (loops, is_planned) = list::plan(member, class, &check.given, registry, report);
+        let (loops, is_planned) = list::plan(member, class, &check.given, (registry, options), report);
         let is_team = is_planned && team::check(member, class, &loops, report);
         let used: Vec<&Arc<RegisteredLoop>> = loops.iter().filter_map(|one| one.class).collect();
         let mut with = index;
         if !used.is_empty() {
             let key = (index, used.iter().map(|one| one.name()).collect());
             with = *known.entry(key).or_insert_with(|| {
-                let with = classes[index].with(used.iter().map(|one| one.declaration()));
-                classes.push(with);
-                classes.len() - 1
+                let with = fleet.classes[index].with(used.iter().map(|one| one.declaration()));
+                fleet.classes.push(with);
+                fleet.classes.len() - 1
             });
             fleet.members[place].kind = Kind::Class(with);
         }

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use super::{given_twice, missing};
 use crate::check::fleet::{Member, Unit};
 use crate::check::report::Report;
-use crate::check::values::value_type::{self, Match, Typed};
+use crate::check::values::type_match::{self, Match};
+use crate::check::values::value_type::Typed;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
 use crate::model::{ComponentElement, ComponentProperty, Part, Property, Version};
@@ -34,7 +35,7 @@ pub(crate) fn check(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'
                     several((property, first, second), declared.property, report);
                 }
                 let own = Typed { property, document: &member.composite.document };
-                value_type::matches(own, *declared, Match::Declaration, report);
+                type_match::check(own, *declared, Match::Declaration, report);
             }
             // It is the one without a name, which is reported.
             None if names.contains(&"") => {}

@@ -84,7 +84,7 @@ pub(crate) fn missing(
     table: &PropertyTable<'_>,
     report: &mut Report<'_>,
 ) {
-    if giver.member.has_open_values() {
+    if giver.member.lacks_table() {
         return;
     }
     let name = declaration.name.as_str();

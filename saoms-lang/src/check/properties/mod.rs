@@ -10,7 +10,6 @@ pub(crate) mod property_table;
 mod wrong_text;
 
 use crate::check::component::ComponentCheck;
-use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind, Member};
 use crate::check::properties::conversion::Conversion;
 use crate::check::report::Report;
@@ -60,7 +59,6 @@ impl<'m, 'a> Giver<'m, 'a> {
 /// Checks the properties of all components.
 pub(crate) fn check_all<'a>(
     fleet: &Fleet<'a>,
-    classes: &[ClassIndex<'a>],
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
 ) -> Vec<ComponentCheck<'a>> {
@@ -72,7 +70,7 @@ pub(crate) fn check_all<'a>(
         let mut component = ComponentCheck::default();
         if let Kind::Class(index) = member.kind {
             let giver = Giver::component(member, fleet.component_type(place));
-            component.given = check(&giver, &classes[index].table, parameters, &mut conversion, report);
+            component.given = check(&giver, &fleet.classes[index].table, parameters, &mut conversion, report);
         } else {
             composite_properties::repeated(member.component, report);
             match fleet.inner(place) {

@@ -26,12 +26,6 @@ pub(crate) struct Report<'a> {
     candidates: Candidates,
     /// The number of may still be taken back.
     withdrawals: usize,
-    /// True if what is not known is taken as given.
-    pub(crate) assumes: bool,
-    /// True if what comes of a value that components share is told beside that: where sharing is let pass, it counts.
-    pub(crate) tells_echoes: bool,
-    /// True if somebody lets attributes pass that are not known.
-    pub(crate) lowers_attributes: bool,
     escalated: HashSet<(&'static str, FileId)>,
     /// The prefixes of types that are bound to nothing, by their files.
     unbound: HashSet<(FileId, String)>,
@@ -80,9 +74,6 @@ impl<'a> Report<'a> {
             diagnostics,
             candidates: Candidates::default(),
             withdrawals: WITHDRAWALS,
-            assumes: false,
-            tells_echoes: false,
-            lowers_attributes: false,
             escalated: HashSet::new(),
             unbound: HashSet::new(),
             said: HashSet::new(),
@@ -106,11 +97,6 @@ impl<'a> Report<'a> {
             one.code == code && one.location.file == file && self.sources.snippet(one.location) == text
         };
         self.diagnostics.iter().any(is_it)
-    }
-
-    /// True if something of this code was told of several replicas at this place.
-    pub(crate) fn has_told_of_replicas(&self, code: &'static Code, at: Location) -> bool {
-        self.known_copies.contains_key(&(code.id, at))
     }
 
     /// Takes back what was told of this code at this place, since something else says it better.

@@ -188,6 +188,11 @@ impl Severities {
         Self { rules, by_code, preventing }
     }
 
+    /// True if files have faults of syntax or structure that nobody lets pass.
+    pub(crate) fn is_misread(&self, diagnostics: &Diagnostics) -> bool {
+        diagnostics.iter().any(|one| one.code.id.starts_with("S10") && !self.mentions(one.code))
+    }
+
     /// True if anything is said about a code.
     pub(crate) fn mentions(&self, code: &Code) -> bool {
         self.by_code.get(code.id).is_some_and(|rules| rules.iter().any(|place| !self.rules[*place].is_wrong))

@@ -1,14 +1,13 @@
 //! Names in component types: held against each other, against the classes that they describe, and against the components that use them.
 
-use std::collections::HashMap;
-
 use crate::check::fleet::Fleet;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::properties::foreign;
 use crate::check::report::Report;
+use crate::check::rules::repeated_names;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
-use crate::model::{ComponentType, Part, Version};
-use crate::source::{Location, Text};
+use crate::model::{ComponentType, Part};
+use crate::source::Text;
 
 impl<'a> Fleet<'a> {
     /// The component type beside the implementation of a component.
@@ -21,27 +20,28 @@ impl<'a> Fleet<'a> {
     }
 }
 
-pub(crate) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut Report<'_>) {
+pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for described in fleet.contribution.component_types() {
-        repeated(
-            described.services.iter().map(|one| &one.name),
-            "service",
-            "ASM40003",
-            described.version,
+        let repeated = |what: &'static str, rule: &'static str| {
+            let version = described.version;
+            move |name: &Text| {
+                let message = format!("the component type has two {what} {}", quoted(name));
+                // SCA 1.0 leaves it open which of them counts.
+                let severity = if version.is_1_1() { Severity::Error } else { Severity::Warning };
+                let one = Diagnostic::new(&codes::COMPONENT_TYPE_REPEATED, name.location, message);
+                one.severity(severity).rule(rule).help("give each its own name")
+            }
+        };
+        let ComponentType { services, references, properties, .. } = described;
+        repeated_names::check(services.iter().map(|one| &one.name), repeated("services", "ASM40003"), report);
+        repeated_names::check(
+            references.iter().map(|one| &one.name),
+            repeated("references", "ASM40004"),
             report,
         );
-        repeated(
-            described.references.iter().map(|one| &one.name),
-            "reference",
-            "ASM40004",
-            described.version,
-            report,
-        );
-        repeated(
-            described.properties.iter().map(|one| &one.name),
-            "property",
-            "ASM40005",
-            described.version,
+        repeated_names::check(
+            properties.iter().map(|one| &one.name),
+            repeated("properties", "ASM40005"),
             report,
         );
     }
@@ -51,7 +51,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
         if let Some(described) = fleet.component_type(place) {
-            match fleet.class_of(place, classes) {
+            match fleet.class_of(place) {
                 Some(class) => of_class(described, class, report),
                 None => {
                     let known = fleet.known(place);
@@ -72,29 +72,6 @@ pub(crate) fn check(fleet: &Fleet<'_>, classes: &[ClassIndex<'_>], report: &mut 
         }
     }
     report.about_all();
-}
-
-fn repeated<'t>(
-    names: impl Iterator<Item = &'t Text>,
-    what: &str,
-    rule: &'static str,
-    version: Version,
-    report: &mut Report<'_>,
-) {
-    let mut seen: HashMap<&str, Location> = HashMap::new();
-    for name in names.filter(|name| !name.is_empty()) {
-        if let Some(first) = seen.get(name.as_str()) {
-            let message = format!("the component type has two {what}s {}", quoted(name))
-                .replace("propertys", "properties");
-            // SCA 1.0 leaves it open which of them counts.
-            let severity = if version.is_1_1() { Severity::Error } else { Severity::Warning };
-            let one = Diagnostic::new(&codes::COMPONENT_TYPE_REPEATED, name.location, message);
-            let one = one.severity(severity);
-            report.push(one.rule(rule).label(*first, "the first").help("give each its own name"));
-        } else {
-            seen.insert(name, name.location);
-        }
-    }
 }
 
 /// Reports what a component type says of a class that is not so.

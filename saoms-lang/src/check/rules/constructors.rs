@@ -4,8 +4,10 @@ use crate::check::component::{ComponentCheck, State};
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
+use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::report::findings::{Subject, diagnostic};
+use crate::check::rules::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::{PropertyDeclaration, RegisteredLoop};
 use saoms_api::host::declaration::PropertyKind;
@@ -17,26 +19,26 @@ use smol_str::SmolStr;
 pub(crate) fn component(
     subject: Subject<'_>,
     class: &ClassIndex<'_>,
-    without_plugin_code: bool,
+    (repeated, options): (&RepeatedValues, &Options),
     report: &mut Report<'_>,
 ) {
-    if without_plugin_code && class.class.origin().is_some() {
+    if options.without_plugin_code && class.class.origin().is_some() {
         return;
     }
-    judge(|| class.class.construct(subject.values).map(drop), subject, class.class.name(), report);
+    judge(|| class.class.construct(subject.values).map(drop), subject, class.class.name(), repeated, report);
 }
 
 /// The same for a loop.
 pub(crate) fn looping(
     subject: Subject<'_>,
     class: &RegisteredLoop,
-    without_plugin_code: bool,
+    (repeated, options): (&RepeatedValues, &Options),
     report: &mut Report<'_>,
 ) {
-    if without_plugin_code && class.origin().is_some() {
+    if options.without_plugin_code && class.origin().is_some() {
         return;
     }
-    judge(|| class.construct(subject.values).map(drop), subject, class.name(), report);
+    judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
 }
 
 /// The same for a component of which some values are not known, for faults that are reported: `unsure` are the places of these
@@ -46,15 +48,15 @@ pub(crate) fn partly(
     subject: Subject<'_>,
     class: &ClassIndex<'_>,
     unsure: &[usize],
-    without_plugin_code: bool,
+    (repeated, options): (&RepeatedValues, &Options),
     report: &mut Report<'_>,
 ) {
     let unsure: Vec<&PropertyDeclaration> =
         unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
     if unsure.is_empty() {
-        return component(subject, class, without_plugin_code, report);
+        return component(subject, class, (repeated, options), report);
     }
-    if without_plugin_code && class.class.origin().is_some() {
+    if options.without_plugin_code && class.class.origin().is_some() {
         return;
     }
     let ends: Option<Vec<[String; 2]>> = unsure.iter().map(|one| ends(one)).collect();
@@ -86,7 +88,7 @@ pub(crate) fn partly(
         name.is_some_and(|name| !is_unsure(name) && subject.gives(name))
     };
     let found: Vec<Finding> = found.unwrap_or_default().into_iter().filter(is_given).collect();
-    tell(&found, subject, class.class.name(), report);
+    findings(&found, subject, class.class.name(), repeated, report);
 }
 
 /// The values at both ends of what a property allows; `None` where it has none.
@@ -117,6 +119,7 @@ fn judge(
     construct: impl FnOnce() -> Result<(), Failure>,
     subject: Subject<'_>,
     class: &str,
+    repeated: &RepeatedValues,
     report: &mut Report<'_>,
 ) {
     let Err(failure) = contained(construct).and_then(|result| result) else { return };
@@ -125,15 +128,21 @@ fn judge(
         report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help(class)));
         return;
     }
-    tell(failure.findings(), subject, class, report);
+    findings(failure.findings(), subject, class, repeated, report);
 }
 
-fn tell(findings: &[Finding], subject: Subject<'_>, class: &str, report: &mut Report<'_>) {
+fn findings(
+    findings: &[Finding],
+    subject: Subject<'_>,
+    class: &str,
+    repeated: &RepeatedValues,
+    report: &mut Report<'_>,
+) {
     for finding in findings {
         let one = diagnostic(&codes::CONSTRUCTION, Severity::Error, finding, subject, &|_| None, report);
         let Some(one) = one else { continue };
-        // What comes of a value that replicas share is not told beside that.
-        if !report.tells_echoes && report.has_told_of_replicas(&codes::NOT_UNIQUE, one.location) {
+        // A value that replicas share is faulty already.
+        if repeated.is_of_replicas(one.location) {
             continue;
         }
         let is_plain = one.help.is_empty() && one.suggestions.is_empty();
@@ -148,9 +157,9 @@ fn help(class: &str) -> String {
 /// Lets the constructors of all components judge their values.
 pub(crate) fn check_all(
     fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
     checks: &[ComponentCheck<'_>],
-    without: bool,
+    repeated: &RepeatedValues,
+    options: &Options,
     report: &mut Report<'_>,
 ) {
     saoms_api::host::contain::install_hook();
@@ -158,18 +167,18 @@ pub(crate) fn check_all(
     for (member, check) in sound {
         report.about(member);
         if let Kind::Class(class) = member.kind {
-            component(check.subject(member), &classes[class], without, report);
+            component(check.subject(member), &fleet.classes[class], (repeated, options), report);
         }
         for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {
-            looping(subject, class, without, report);
+            looping(subject, class, (repeated, options), report);
         }
     }
     let faulty = fleet.members.iter().zip(checks).filter(|(_, check)| check.state == State::Faulty);
-    for (member, check) in faulty.filter(|(member, _)| !member.has_open_values()) {
+    for (member, check) in faulty.filter(|(member, _)| !member.lacks_table()) {
         report.about(member);
         if let Kind::Class(class) = member.kind {
             let unknown = &check.given.unknown;
-            partly(check.subject(member), &classes[class], unknown, without, report);
+            partly(check.subject(member), &fleet.classes[class], unknown, (repeated, options), report);
         }
     }
     report.about_all();

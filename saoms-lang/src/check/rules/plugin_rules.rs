@@ -11,8 +11,9 @@ use crate::check::fleet::Fleet;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::Report;
 use crate::check::report::findings::{Subject, diagnostic};
-use crate::check::wiring::Wiring;
-use crate::diagnostic::{Diagnostic, Severity, codes};
+use crate::check::rules::unique_values::RepeatedValues;
+use crate::check::wiring::{Targets, Wiring};
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::registry::{RegisteredClass, RegisteredRule};
 
 /// The declaration of a class and of those that it extends.
@@ -20,13 +21,13 @@ fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
     std::iter::once(class.class.declaration_json()).chain(class.class.extended_json()).collect()
 }
 
-/// Asks the rules about the components that are resolved; where some are not, only the rules that can judge a part of a fleet. With the wiring it
-/// is said whether faults leave some of it open.
+/// Asks the rules about the components that are resolved; where some are not, or where their wires lead is not known,
+/// only the rules that can judge a part of a fleet.
 pub(crate) fn check<'s>(
     fleet: &'s Fleet<'_>,
-    classes: &'s [ClassIndex<'_>],
     checks: &'s [ComponentCheck<'_>],
-    (wiring, has_open_wires): (&Wiring, bool),
+    wiring: &Wiring,
+    repeated: &RepeatedValues,
     rules: impl Iterator<Item = &'s RegisteredRule>,
     report: &mut Report<'_>,
 ) {
@@ -45,7 +46,7 @@ pub(crate) fn check<'s>(
         miss(&mut missing, None);
     }
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
-        let class = fleet.class_of(place, classes);
+        let class = fleet.class_of(place);
         // Of two components of one name nobody can say which is meant.
         if member.runs() && !member.is_repeated && check.is_sound() && class.is_some() {
             indices.push(Some(parts.len()));
@@ -57,7 +58,7 @@ pub(crate) fn check<'s>(
             miss(&mut missing, class);
         }
     }
-    let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place, classes)?));
+    let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place)?));
     let subject = |index: usize| {
         let place = *parts.get(index)?;
         let member = &fleet.members[place];
@@ -66,16 +67,14 @@ pub(crate) fn check<'s>(
     let Some(first) = subject(0) else { return };
     let is_whole = missing.is_empty();
     let all = || parts.iter().filter_map(part);
-    if has_open_wires {
-        let open = all().filter(|(place, ..)| wiring.of(*place).iter().any(Vec::is_empty));
-        open.for_each(|(.., class)| miss(&mut missing, Some(class)));
-    }
+    let open = all().filter(|(place, ..)| wiring.of(*place).iter().any(Targets::is_unknown));
+    open.for_each(|(.., class)| miss(&mut missing, Some(class)));
     let mut views_of_classes = ClassViews::default();
     let mut wires: Vec<(&str, usize)> = Vec::new();
     let mut ends = Vec::with_capacity(parts.len());
     for (place, _, class) in all() {
-        for (reference, providers) in class.references.iter().zip(wiring.of(place)) {
-            let known = providers.iter().filter_map(|provider| indices[provider.member]);
+        for (reference, targets) in class.references.iter().zip(wiring.of(place)) {
+            let known = targets.providers().iter().filter_map(|provider| indices[provider.member]);
             wires.extend(known.map(|index| (reference.name.as_str(), index)));
         }
         ends.push(wires.len());
@@ -111,9 +110,8 @@ pub(crate) fn check<'s>(
             let Some(one) = diagnostic(rule.code(), severity, finding, own, &subject, report) else {
                 continue;
             };
-            // What comes of a value that two components share is not told beside that, unless somebody lets that pass.
-            let is_echo = report.has_told(&codes::NOT_UNIQUE, one.location);
-            if !is_echo || report.tells_echoes {
+            // A value that two components share is faulty already.
+            if !repeated.contains(one.location) {
                 report.push(one);
             }
         }

@@ -6,8 +6,11 @@ use std::time::Duration;
 use saoms_api::host::{TopicKind, format_duration};
 
 use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic};
+use crate::check::component::ComponentCheck;
 use crate::check::fleet::similar_names::{Name, Similar};
+use crate::check::fleet::{Fleet, Member};
 use crate::check::report::Report;
+use crate::check::tasks::Task;
 use crate::check::tasks::renames::Renamed;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
@@ -19,6 +22,26 @@ pub(crate) struct ComponentPlaces {
     pub(crate) renamed: Vec<Renamed>,
     /// The place of its `queue`.
     pub(crate) queue: Option<Location>,
+}
+
+/// The places of the components of the assembly.
+pub(crate) fn places(
+    fleet: &Fleet<'_>,
+    checks: &[ComponentCheck<'_>],
+    report: &Report<'_>,
+) -> Vec<ComponentPlaces> {
+    let runs = fleet.members.iter().enumerate().filter(|(_, member)| member.runs());
+    let place = |(place, member): (usize, &Member<'_>)| {
+        let (component, given) = (member.component, &checks[place].given);
+        let class = fleet.class_of(place).filter(|class| class.class.declaration().is_periodic());
+        let task = class.map(|class| Task { component, class, given });
+        ComponentPlaces {
+            name: component.name.location,
+            renamed: task.as_ref().map_or_else(Vec::new, |task| task.renamed(report)),
+            queue: task.and_then(|task| task.place("queue")),
+        }
+    };
+    runs.map(place).collect()
 }
 
 /// Looks at all topics of a fleet; `places` are those of its components.

@@ -41,6 +41,26 @@ fn uses<'u, 'r>(
 pub(crate) struct Unique<'a> {
     /// The first users of each value: of each word one, and one task.
     seen: HashMap<Canonical, Vec<User<'a>>>,
+    pub(crate) repeated: RepeatedValues,
+}
+
+/// The values that components share and must not, which is reported. Rules over them say no more.
+#[derive(Default)]
+pub(crate) struct RepeatedValues {
+    /// The places of the values, with whether replicas have them.
+    places: HashMap<Location, bool>,
+}
+
+impl RepeatedValues {
+    /// True if the value at this place is one of them.
+    pub(crate) fn contains(&self, at: Location) -> bool {
+        self.places.contains_key(&at)
+    }
+
+    /// True if replicas share the value at this place.
+    pub(crate) fn is_of_replicas(&self, at: Location) -> bool {
+        self.places.get(&at).is_some_and(|is_of_replicas| *is_of_replicas)
+    }
 }
 
 /// The component that has a value.
@@ -72,7 +92,11 @@ impl<'a> Unique<'a> {
             if of_word.is_none() && user.word.is_some() || of_task.is_none() && user.is_task {
                 users.push(user);
             }
-            if let Some(first) = of_word {
+            // That there are two components of one name is reported.
+            if let Some(first) =
+                of_word.filter(|first| fleet.members[first.member].path() != fleet.members[member].path())
+            {
+                *self.repeated.places.entry(user.place).or_default() |= fleet.members[member].is_copy;
                 shared(&value, first, user, entry.main, fleet, report);
             }
             if let Some(first) = of_task {
@@ -92,10 +116,6 @@ fn shared(
     report: &mut Report<'_>,
 ) {
     let [earlier, later] = [first, user].map(|one| &fleet.members[one.member]);
-    // That there are two components of one name is told.
-    if earlier.path() == later.path() {
-        return;
-    }
     let message = format!(
         "components {} and {} have the same {} {}",
         quoted(earlier.path()),

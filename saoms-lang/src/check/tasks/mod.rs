@@ -15,7 +15,7 @@ use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::properties::given_values::{GivenValue, PropertyValues};
 use crate::check::report::{Report, list};
-use crate::check::rules::unique_values::Unique;
+use crate::check::rules::unique_values::{RepeatedValues, Unique};
 use crate::check::tasks::renames::Renamed;
 use crate::check::tasks::unused_renames::Listed;
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -186,20 +186,20 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
     });
 }
 
-/// Checks the tasks and topics of all components, and says which components are sound.
+/// Checks the tasks and topics of all components, and says which components are sound; the values that components share
+/// and must not.
 pub(crate) fn check_all<'a>(
     fleet: &Fleet<'a>,
-    classes: &[ClassIndex<'a>],
     checks: &mut [ComponentCheck<'a>],
     report: &mut Report<'_>,
-) {
+) -> RepeatedValues {
     let mut unique = Unique::default();
     let mut topics = topic_types::Topics::default();
     let mut listed = unused_renames::Renames::default();
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
         report.about(member);
         let Kind::Class(index) = member.kind else { continue };
-        let (class, component) = (&classes[index], member.component);
+        let (class, component) = (&fleet.classes[index], member.component);
         unique.add((place, fleet), class, &check.given, report);
         let is_periodic = class.class.declaration().is_periodic();
         let mut renamed = Vec::new();
@@ -219,4 +219,5 @@ pub(crate) fn check_all<'a>(
     }
     report.about_all();
     listed.finish(fleet, report);
+    unique.repeated
 }

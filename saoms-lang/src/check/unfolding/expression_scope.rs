@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use crate::check::report::{Report, list};
 use crate::check::values::parameters::is_misspelt;
-use crate::check::values::value_type;
+use crate::check::values::{type_name, value_type};
 use crate::diagnostic::{codes, nearest, quoted};
 use crate::expression::{ExpressionError, ExpressionValue, INDEX};
 use crate::model::{ComponentElement, Composite, Property};
@@ -160,7 +160,7 @@ fn value(property: &Property, supplied: &Supplied) -> Result<ExpressionValue, Ex
             return Err(ExpressionError::new(format!("the property {name} has no simple value")).help(help));
         }
     };
-    let of = property.r#type().filter(|of| !value_type::is_misspelt(of));
+    let of = property.r#type().filter(|of| !type_name::is_misspelt(of));
     let of = of.map(|of| of.rsplit(':').next().unwrap_or(of)).unwrap_or_default();
     let boolean = match text.as_str() {
         "true" => Some(true),

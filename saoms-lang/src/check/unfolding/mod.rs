@@ -1,7 +1,7 @@
 //! From composites to the components that they come to: what is included stands where it is included, and a component that a
 //! composite implements has the components of it inside.
 
-pub(crate) mod arena;
+pub(crate) mod append_list;
 pub(crate) mod conditions;
 pub(crate) mod expression_scope;
 pub(crate) mod remove_absent;
@@ -16,7 +16,8 @@ use crate::check::fleet::unique_names;
 use crate::check::fleet::{Fleet, Kind, Member, Scope, Unit};
 use crate::check::options::Options;
 use crate::check::report::Report;
-use crate::check::unfolding::arena::{Arena, End};
+use crate::check::report::severities::Severities;
+use crate::check::unfolding::append_list::{AppendList, Appender};
 use crate::check::unfolding::conditions::{Presence, UnitProperties};
 use crate::check::unfolding::replica::{Instance, Replica};
 use crate::check::unfolding::replica_plan::{MOST_REPLICAS, Plan};
@@ -36,7 +37,8 @@ const MOST_DEEP: usize = 250;
 pub(crate) fn unfold<'a>(
     contribution: &'a Contribution,
     options: &'a Options,
-    replicas: &'a Arena<Replica>,
+    severities: &Severities,
+    replicas: &'a AppendList<Replica>,
     report: &mut Report<'_>,
 ) -> Fleet<'a> {
     let asked_for = contribution.asked_for();
@@ -46,10 +48,12 @@ pub(crate) fn unfold<'a>(
         scopes: vec![Scope { members: Vec::with_capacity(count), ..Scope::default() }],
         units: Vec::with_capacity(asked_for.len()),
         members: Vec::with_capacity(count),
+        classes: Vec::new(),
         groups: BTreeMap::new(),
         absent: HashMap::default(),
         absent_wires: HashSet::new(),
         conditional: HashMap::new(),
+        is_misread: severities.is_misread(report.diagnostics()),
         names: Vec::new(),
     };
     let mut unfolding = Unfolding {
@@ -57,6 +61,7 @@ pub(crate) fn unfold<'a>(
         open: Vec::new(),
         is_full: false,
         options,
+        lowers_attributes: severities.mentions(&codes::UNKNOWN_ATTRIBUTE),
         sizes: HashMap::new(),
         loose: HashSet::new(),
         replicas: replicas.end(),
@@ -115,11 +120,13 @@ pub(crate) struct Unfolding<'a> {
     /// True if there are too many components; reported.
     pub(crate) is_full: bool,
     pub(crate) options: &'a Options,
+    /// True if errors about unknown attributes may be let pass.
+    pub(crate) lowers_attributes: bool,
     /// The number of components the composites come to that were asked about.
     sizes: HashMap<usize, usize>,
     /// The names that were told to mean something else than what they lead to.
     loose: HashSet<Location>,
-    pub(crate) replicas: End<'a, Replica>,
+    pub(crate) replicas: Appender<'a, Replica>,
     pub(crate) replicas_left: u64,
     /// The properties of units that have expressions.
     pub(crate) known: Vec<Option<UnitProperties<'a>>>,

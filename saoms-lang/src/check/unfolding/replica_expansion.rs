@@ -24,7 +24,14 @@ impl<'a> Unfolding<'a> {
             return self.member(component, component, None, presence, report);
         };
         let names = self.names(unit);
-        let Some(plan) = Plan::of(component, replicas, document, &names, self.replicas_left, report) else {
+        let Some(plan) = Plan::of(
+            component,
+            replicas,
+            document,
+            &names,
+            (self.replicas_left, self.lowers_attributes),
+            report,
+        ) else {
             return self.unplanned(component, replicas, &names, report);
         };
         let (is_empty, index) = (plan.count == 0, plan.sample());

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use super::expression_scope::Names;
 use super::replica::Instance;
-use crate::check::fleet::is_like;
+use crate::check::fleet::name_pattern::is_like;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::expression::{
@@ -44,11 +44,11 @@ impl<'a> Plan<'a> {
         replicas: &'a Replicas,
         document: &Document,
         names: &Rc<Names>,
-        left: u64,
+        (left, lowers_attributes): (u64, bool),
         report: &mut Report<'_>,
     ) -> Option<Self> {
         let Some(written) = &replicas.count else {
-            if is_told(component, document, report) {
+            if is_count_misread(component, document, lowers_attributes, report) {
                 return None;
             }
             let (what, at) = match (&replicas.from, &replicas.overrides) {
@@ -269,7 +269,12 @@ pub(crate) fn first_index(replicas: &Replicas, names: &Names) -> Option<i64> {
 
 /// True if a component has an attribute that `count` may be meant by, and that is told as an error, which nobody can lower: with it
 /// nothing is known of the replicas.
-fn is_told(component: &ComponentElement, document: &Document, report: &mut Report<'_>) -> bool {
+fn is_count_misread(
+    component: &ComponentElement,
+    document: &Document,
+    lowers_attributes: bool,
+    report: &mut Report<'_>,
+) -> bool {
     let file = document.file();
     let mut attributes = component.origin.element(document).attributes();
     let meant = attributes.find(|attribute| nearest(attribute.local_name(), ["count"]).is_some());
@@ -277,7 +282,7 @@ fn is_told(component: &ComponentElement, document: &Document, report: &mut Repor
     // Of an empty one the whole is told.
     let at = [meant.name_span().in_file(file), meant.location()];
     let is_error = |one: &Diagnostic| at.contains(&one.location) && one.severity == Severity::Error;
-    if !report.lowers_attributes && report.diagnostics().iter().any(is_error) {
+    if !lowers_attributes && report.diagnostics().iter().any(is_error) {
         return true;
     }
     // Its namespace may be nearly that of SAOMS.

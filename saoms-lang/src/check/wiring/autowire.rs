@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use super::offer::Offer;
 use super::target::Provider;
 use crate::check::fleet::Fleet;
-use crate::check::fleet::classes::ClassIndex;
 use crate::registry::InterfaceDeclaration;
 
 /// The services of each scope by interface, collected when somebody asks.
@@ -32,11 +31,10 @@ impl<'c> Autowire<'c> {
         most: usize,
         interface: &InterfaceDeclaration,
         fleet: &'c Fleet<'_>,
-        classes: &'c [ClassIndex<'_>],
     ) -> (Vec<(usize, Provider)>, bool) {
-        let services = self.scopes.entry(scope).or_insert_with(|| Services::of(scope, fleet, classes));
+        let services = self.scopes.entry(scope).or_insert_with(|| Services::of(scope, fleet));
         let named = services.by_interface.get(interface.name.as_str()).map_or(&[][..], Vec::as_slice);
-        let fits = |provider: Provider| fleet.interface_of(provider, classes) == Some(interface);
+        let fits = |provider: Provider| fleet.interface_of(provider) == Some(interface);
         let others = named.iter().filter(|(offering, _)| *offering != asking);
         let fitting = others.filter(|(_, provider)| fits(*provider)).copied();
         (fitting.take(most).collect(), services.is_open)
@@ -44,14 +42,14 @@ impl<'c> Autowire<'c> {
 }
 
 impl<'c> Services<'c> {
-    fn of(scope: usize, fleet: &'c Fleet<'_>, classes: &'c [ClassIndex<'_>]) -> Self {
+    fn of(scope: usize, fleet: &'c Fleet<'_>) -> Self {
         let mut all = Self::default();
         for &member in &fleet.scopes[scope].members {
-            all.is_open |= fleet.service_names(member, classes).is_none();
-            for (_, offer) in fleet.offers(member, classes) {
+            all.is_open |= fleet.service_names(member).is_none();
+            for (_, offer) in fleet.offers(member) {
                 match offer {
                     Offer::Service(provider) => {
-                        let Some(interface) = fleet.interface_of(provider, classes) else { continue };
+                        let Some(interface) = fleet.interface_of(provider) else { continue };
                         all.by_interface.entry(&interface.name).or_default().push((member, provider));
                     }
                     Offer::Open => all.is_open = true,

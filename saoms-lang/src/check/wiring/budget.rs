@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::target::parts;
+use super::uri::parts;
 use crate::check::fleet::Fleet;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes};

@@ -6,7 +6,6 @@
 use super::cycles::cycles;
 use super::target::Provider;
 use crate::check::fleet::Fleet;
-use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::source::Location;
@@ -37,10 +36,9 @@ impl<'f> CallCycles<'f> {
         to: Provider,
         place: Location,
         fleet: &Fleet<'_>,
-        classes: &[ClassIndex<'_>],
     ) {
         let ends = fleet
-            .class_of(to.member, classes)
+            .class_of(to.member)
             .is_some_and(|class| class.references.is_empty() || class.services[to.service].is_of_host());
         if !ends {
             self.wires.push(Wire { member, reference, to: to.member, place });

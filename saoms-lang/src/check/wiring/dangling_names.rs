@@ -3,9 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::promotion::ReferenceId;
-use super::target::parts;
+use super::uri::parts;
 use crate::check::fleet::Fleet;
-use crate::check::fleet::classes::ClassIndex;
 use crate::diagnostic::nearest;
 use crate::source::Text;
 
@@ -42,17 +41,11 @@ impl<'f> DanglingNames<'f> {
     }
 
     /// True if one of them is probably meant to be this reference.
-    pub(crate) fn means(
-        &self,
-        (member, name): ReferenceId<'_>,
-        fleet: &Fleet<'_>,
-        classes: &[ClassIndex<'_>],
-    ) -> bool {
+    pub(crate) fn means(&self, (member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
         let scope = fleet.members[member].scope;
         let own = fleet.members[member].component.name.as_str();
         let is_like = |lost: &&str| nearest(lost, [own]).is_some() || lost.starts_with(own);
-        let is_part =
-            |part: &Option<&str>| part.is_none_or(|part| is_meant(part, (member, name), fleet, classes));
+        let is_part = |part: &Option<&str>| part.is_none_or(|part| is_meant(part, (member, name), fleet));
         self.unsaid.contains(&scope)
             || self.of_members.get(&member).is_some_and(|parts| parts.iter().any(is_part))
             || self.lost.get(&scope).is_some_and(|lost| lost.iter().any(is_like))
@@ -60,22 +53,13 @@ impl<'f> DanglingNames<'f> {
 }
 
 /// True if a component says something about this reference under a name that is wrong.
-pub(crate) fn is_misspelt(
-    (member, name): ReferenceId<'_>,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-) -> bool {
+pub(crate) fn is_misspelt((member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
     let given = fleet.members[member].component.references.iter();
-    given.into_iter().any(|given| is_meant(&given.name, (member, name), fleet, classes))
+    given.into_iter().any(|given| is_meant(&given.name, (member, name), fleet))
 }
 
 /// True if a name that no reference of a component has stands for this one: it is like it, or like none.
-fn is_meant(
-    written: &str,
-    (member, name): ReferenceId<'_>,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-) -> bool {
-    let names = fleet.reference_names(member, classes).unwrap_or_default();
+fn is_meant(written: &str, (member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
+    let names = fleet.reference_names(member).unwrap_or_default();
     !names.contains(&written) && nearest(written, names).is_none_or(|near| near == name)
 }

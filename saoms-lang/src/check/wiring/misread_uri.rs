@@ -1,7 +1,7 @@
 //! URIs that are written in another way than SCA's, and their probable meaning.
 
 use super::offer::Side;
-use super::target::parts;
+use super::uri::parts;
 use crate::check::fleet::Fleet;
 use crate::check::report::{list, replacing};
 use crate::diagnostic::{Diagnostic, quoted};

@@ -1,7 +1,7 @@
 //! Services and references of components, whatever implements them.
 
-use super::target::{Provider, parts};
-use crate::check::fleet::classes::ClassIndex;
+use super::target::Provider;
+use super::uri::parts;
 use crate::check::fleet::{Fleet, Kind};
 use crate::registry::InterfaceDeclaration;
 
@@ -43,14 +43,10 @@ impl Side {
 
 impl<'a> Fleet<'a> {
     /// The names of the services of a component; `None` where any may be there.
-    pub(crate) fn service_names<'n>(
-        &'n self,
-        member: usize,
-        classes: &'n [ClassIndex<'_>],
-    ) -> Option<Vec<&'n str>> {
+    pub(crate) fn service_names<'n>(&'n self, member: usize) -> Option<Vec<&'n str>> {
         match self.members[member].kind {
             Kind::Class(class) => {
-                Some(classes[class].services.iter().map(|service| service.name.as_str()).collect())
+                Some(self.classes[class].services.iter().map(|service| service.name.as_str()).collect())
             }
             Kind::Composite(_) => {
                 Some(self.inner(member)?.services().map(|service| service.name.as_str()).collect())
@@ -60,14 +56,10 @@ impl<'a> Fleet<'a> {
     }
 
     /// The names of the references of a component; `None` where any may be there.
-    pub(crate) fn reference_names<'n>(
-        &'n self,
-        member: usize,
-        classes: &'n [ClassIndex<'_>],
-    ) -> Option<Vec<&'n str>> {
+    pub(crate) fn reference_names<'n>(&'n self, member: usize) -> Option<Vec<&'n str>> {
         match self.members[member].kind {
             Kind::Class(class) => {
-                Some(classes[class].references.iter().map(|reference| reference.name.as_str()).collect())
+                Some(self.classes[class].references.iter().map(|reference| reference.name.as_str()).collect())
             }
             Kind::Composite(_) => {
                 Some(self.inner(member)?.references().map(|reference| reference.name.as_str()).collect())
@@ -78,30 +70,26 @@ impl<'a> Fleet<'a> {
 
     /// The service of a component that is meant where none is named: the only one. What the host serves for a component counts
     /// where there is no other.
-    pub(crate) fn only_service<'n>(
-        &'n self,
-        member: usize,
-        classes: &'n [ClassIndex<'_>],
-    ) -> Option<&'n str> {
-        let names = match self.class_of(member, classes) {
+    pub(crate) fn only_service<'n>(&'n self, member: usize) -> Option<&'n str> {
+        let names = match self.class_of(member) {
             Some(class) if class.services.iter().any(|service| !service.is_of_host()) => {
                 let own = class.services.iter().filter(|service| !service.is_of_host());
                 own.map(|service| service.name.as_str()).collect()
             }
-            _ => self.service_names(member, classes)?,
+            _ => self.service_names(member)?,
         };
         if let [only] = names[..] { Some(only) } else { None }
     }
 
     /// The service of this name of a component.
-    pub(crate) fn offer(&self, member: usize, name: &str, classes: &[ClassIndex<'_>]) -> Offer {
+    pub(crate) fn offer(&self, member: usize, name: &str) -> Offer {
         // What a composite promotes and is not there is reported where it is promoted.
         let mut missing = Offer::Missing;
         let (mut member, mut name) = (member, name);
         loop {
             let scope = match self.members[member].kind {
                 Kind::Class(class) => {
-                    let found = classes[class].services.iter().position(|service| service.name == name);
+                    let found = self.classes[class].services.iter().position(|service| service.name == name);
                     return found.map_or(missing, |service| Offer::Service(Provider { member, service }));
                 }
                 Kind::Composite(scope) => scope,
@@ -115,7 +103,7 @@ impl<'a> Fleet<'a> {
             let next = service.promote.as_ref().and_then(|promote| {
                 let (component, part) = parts(promote);
                 let member = self.find(scope, component)?;
-                Some((member, part.or_else(|| self.only_service(member, classes))?))
+                Some((member, part.or_else(|| self.only_service(member))?))
             });
             match next {
                 Some(next) => (member, name) = next,
@@ -125,21 +113,13 @@ impl<'a> Fleet<'a> {
     }
 
     /// Every service of a component by name, as far as it is known.
-    pub(crate) fn offers<'n>(
-        &'n self,
-        member: usize,
-        classes: &'n [ClassIndex<'_>],
-    ) -> Vec<(&'n str, Offer)> {
-        let names = self.service_names(member, classes).unwrap_or_default();
-        names.into_iter().map(|name| (name, self.offer(member, name, classes))).collect()
+    pub(crate) fn offers<'n>(&'n self, member: usize) -> Vec<(&'n str, Offer)> {
+        let names = self.service_names(member).unwrap_or_default();
+        names.into_iter().map(|name| (name, self.offer(member, name))).collect()
     }
 
     /// The interface of a service.
-    pub(crate) fn interface_of<'c>(
-        &self,
-        provider: Provider,
-        classes: &'c [ClassIndex<'_>],
-    ) -> Option<&'c InterfaceDeclaration> {
-        Some(&self.class_of(provider.member, classes)?.services[provider.service].interface)
+    pub(crate) fn interface_of(&self, provider: Provider) -> Option<&InterfaceDeclaration> {
+        Some(&self.class_of(provider.member)?.services[provider.service].interface)
     }
 }

@@ -2,11 +2,10 @@
 
 use super::offer::Offer;
 use super::promotion::ReferenceId;
-use super::target::parts;
-use crate::check::fleet::classes::ClassIndex;
+use super::uri::parts;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::report::Report;
-use crate::check::rules::contracts;
+use crate::check::rules::interface;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ReferenceElement, ServiceElement};
 use crate::registry::InterfaceDeclaration;
@@ -17,15 +16,11 @@ pub(crate) type Found<'f> = (ReferenceId<'f>, Location);
 
 impl Fleet<'_> {
     /// The interface of a reference, which the innermost class declares that it leads to.
-    fn reference_interface<'c>(
-        &self,
-        (mut member, name): ReferenceId<'_>,
-        classes: &'c [ClassIndex<'_>],
-    ) -> Option<&'c InterfaceDeclaration> {
+    fn reference_interface(&self, (mut member, name): ReferenceId<'_>) -> Option<&InterfaceDeclaration> {
         let mut name = name.to_owned();
         // Each step leads one composite further in.
         loop {
-            if let Some(class) = self.class_of(member, classes) {
+            if let Some(class) = self.class_of(member) {
                 let declared = class.references.iter().find(|declared| declared.name == name)?;
                 return Some(&declared.interface);
             }
@@ -37,7 +32,7 @@ impl Fleet<'_> {
                 self.find(scope, component).or_else(|| self.group(scope, component)?.first().copied())?;
             name = match part {
                 Some(part) => part.to_owned(),
-                None => self.reference_names(member, classes)?.first()?.to_string(),
+                None => self.reference_names(member)?.first()?.to_string(),
             };
         }
     }
@@ -48,14 +43,13 @@ pub(crate) fn service(
     service: &ServiceElement,
     (member, name): ReferenceId<'_>,
     fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
 ) {
     if service.interface().is_some()
-        && let Offer::Service(provider) = fleet.offer(member, name, classes)
-        && let Some(declared) = fleet.interface_of(provider, classes)
+        && let Offer::Service(provider) = fleet.offer(member, name)
+        && let Some(declared) = fleet.interface_of(provider)
     {
-        contracts::interface(service.interface(), declared, &service.name, "ASM60005", report);
+        interface::check(service.interface(), declared, &service.name, "ASM60005", report);
     }
 }
 
@@ -65,19 +59,18 @@ pub(crate) fn reference(
     reference: &ReferenceElement,
     found: &[Found<'_>],
     fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> bool {
     if reference.interface().is_none() && found.len() < 2 {
         return true;
     }
     let interfaces = found.iter().filter_map(|(place, at)| {
-        let interface = fleet.reference_interface(*place, classes)?;
+        let interface = fleet.reference_interface(*place)?;
         Some((interface, *at))
     });
     let mut interfaces = interfaces;
     let Some((first, first_at)) = interfaces.next() else { return true };
-    contracts::interface(reference.interface(), first, &reference.name, "ASM60012", report);
+    interface::check(reference.interface(), first, &reference.name, "ASM60012", report);
     let Some((other, at)) = interfaces.find(|(other, _)| *other != first) else { return true };
     let message = format!(
         "reference {} of the composite promotes references with the interfaces {} and {}",

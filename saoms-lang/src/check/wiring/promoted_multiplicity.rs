@@ -1,10 +1,9 @@
 //! Multiplicities of promoted references, and references that must not be overridden.
 
 use super::promotion::ReferenceId;
-use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::report::{Report, list};
-use crate::check::rules::contracts::of_class;
+use crate::check::rules::multiplicity::of_class;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Multiplicity, Part, ReferenceElement};
 use crate::source::Location;
@@ -24,14 +23,13 @@ pub(crate) fn check<'f>(
     by: &ReferenceElement,
     found: impl Iterator<Item = ReferenceId<'f>>,
     fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
 ) {
     let mut narrower: Vec<Narrower<'f>> = Vec::new();
     let mut fixed: Vec<(ReferenceId<'f>, Location)> = Vec::new();
     for place @ (member, name) in found {
         let own = fleet.members[member].component.reference(name);
-        let Some((takes, is_known)) = takes(place, fleet, classes) else { continue };
+        let Some((takes, is_known)) = takes(place, fleet) else { continue };
         let said = own.and_then(|own| own.non_overridable()).filter(|said| said.value && !takes.is_many());
         fixed.extend(said.map(|said| (place, said.location)));
         let Some(outer) = by.multiplicity() else { continue };
@@ -55,13 +53,9 @@ pub(crate) fn check<'f>(
 }
 
 /// The number of targets a reference of a component takes, as far as that is known, and whether its class is.
-fn takes(
-    (member, name): ReferenceId<'_>,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-) -> Option<(Multiplicity, bool)> {
+fn takes((member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> Option<(Multiplicity, bool)> {
     let own = fleet.members[member].component.reference(name);
-    let class = fleet.class_of(member, classes);
+    let class = fleet.class_of(member);
     let declared = class.and_then(|class| class.references.iter().find(|declared| declared.name == name));
     let given = own.and_then(|own| own.multiplicity()).map(|given| given.value);
     let takes = match declared {

@@ -6,13 +6,13 @@ use super::dangling_names::DanglingNames;
 use super::offer::Side;
 use super::promoted_interface::{self, Found};
 use super::promoted_multiplicity;
-use super::target::{Uri, parts, spread};
-use crate::check::fleet::classes::ClassIndex;
+use super::uri::{Uri, parts, spread};
 use crate::check::fleet::{Fleet, Kind, Unit};
 use crate::check::report::{Report, list};
+use crate::check::rules::repeated_names;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Binding, Part, ReferenceElement};
-use crate::source::{Location, Text};
+use crate::source::Text;
 
 /// A reference of a component, by its name.
 pub(crate) type ReferenceId<'f> = (usize, &'f str);
@@ -31,22 +31,26 @@ pub(crate) struct Promoted<'f> {
 }
 
 /// Checks that what composites promote exists, and that their services and references have names of their own.
-pub(crate) fn check<'f>(
-    fleet: &'f Fleet<'_>,
-    classes: &'f [ClassIndex<'_>],
-    report: &mut Report<'_>,
-) -> Promoted<'f> {
+pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promoted<'f> {
     let mut promoted = Promoted::default();
     // What is wrong where a component is implemented counts, and is said once.
     let is_outermost = |unit: &&Unit<'_>| fleet.scopes[unit.scope].owner.is_none();
     let inner = fleet.units.iter().filter(|unit| !is_outermost(unit));
     for unit in inner.chain(fleet.units.iter().filter(is_outermost)) {
         let known = report.diagnostics().len();
-        repeated(unit.services().map(|service| &service.name), Side::Service, "ASM60003", report);
-        repeated(unit.references().map(|reference| &reference.name), Side::Reference, "ASM60006", report);
+        let repeated = |what: &'static str, rule: &'static str| {
+            move |name: &Text| {
+                let message = format!("the composite has two {what} {}", quoted(name));
+                let one = Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, name.location, message);
+                one.rule(rule).help("give each its own name")
+            }
+        };
+        let (services, references) = (unit.services(), unit.references());
+        repeated_names::check(services.map(|one| &one.name), repeated("services", "ASM60003"), report);
+        repeated_names::check(references.map(|one| &one.name), repeated("references", "ASM60006"), report);
         for (service, promote) in unit.services().filter_map(|one| Some((one, one.promote.as_ref()?))) {
-            if let Some(found) = find(promote, Side::Service, unit, fleet, classes, report) {
-                promoted_interface::service(service, found, fleet, classes, report);
+            if let Some(found) = find(promote, Side::Service, unit, fleet, report) {
+                promoted_interface::service(service, found, fleet, report);
             }
         }
         let owner = fleet.scopes[unit.scope].owner;
@@ -57,20 +61,14 @@ pub(crate) fn check<'f>(
             let mut found: Vec<Found<'f>> = Vec::new();
             for promote in reference.promote() {
                 for (text, _) in spread(promote, unit.scope, fleet) {
-                    match find(&text, Side::Reference, unit, fleet, classes, report) {
+                    match find(&text, Side::Reference, unit, fleet, report) {
                         Some(one) => found.push((one, text.location)),
                         None => promoted.dangling.add(unit.scope, Some(promote), fleet),
                     }
                 }
             }
-            promoted_multiplicity::check(
-                reference,
-                found.iter().map(|(inner, _)| *inner),
-                fleet,
-                classes,
-                report,
-            );
-            let is_one = promoted_interface::reference(reference, &found, fleet, classes, report);
+            promoted_multiplicity::check(reference, found.iter().map(|(inner, _)| *inner), fleet, report);
+            let is_one = promoted_interface::reference(reference, &found, fleet, report);
             // What is taken as given wires itself.
             let found = found.into_iter().map(|(inner, _)| inner);
             let found: Vec<ReferenceId<'f>> =
@@ -86,7 +84,7 @@ pub(crate) fn check<'f>(
                 }
                 None => {
                     let has_address = || has_address(reference.bindings());
-                    let needs_target = || found.iter().any(|inner| needs_target(*inner, fleet, classes));
+                    let needs_target = || found.iter().any(|inner| needs_target(*inner, fleet));
                     if reference.targets.is_empty() && !has_address() && needs_target() {
                         unwired(reference, report);
                     }
@@ -111,7 +109,7 @@ fn has_address(bindings: &[Binding]) -> bool {
 }
 
 /// True if the reference of a component comes to that of a class, by nothing that has an address of its own.
-fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>, classes: &[ClassIndex<'_>]) -> bool {
+fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
     let mut waiting = vec![place];
     let mut seen = HashSet::new();
     while let Some((member, name)) = waiting.pop() {
@@ -123,7 +121,7 @@ fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>, classes: &[ClassIndex
             continue;
         }
         let Some(inner) = fleet.inner(member) else {
-            if fleet.class_of(member, classes).is_some() {
+            if fleet.class_of(member).is_some() {
                 return true;
             }
             continue;
@@ -151,24 +149,6 @@ fn unwired(reference: &ReferenceElement, report: &mut Report<'_>) {
     let at = if reference.name.is_empty() { reference.tag() } else { reference.name.location };
     let one = Diagnostic::new(&codes::PROMOTED_UNWIRED, at, message);
     report.push(one.help("the composite runs by itself, and nothing around it can wire its references"));
-}
-
-fn repeated<'a>(
-    names: impl Iterator<Item = &'a Text>,
-    side: Side,
-    rule: &'static str,
-    report: &mut Report<'_>,
-) {
-    let mut seen: HashMap<&str, Location> = HashMap::new();
-    for name in names.filter(|name| !name.is_empty()) {
-        if let Some(first) = seen.get(name.as_str()) {
-            let message = format!("the composite has two {}s {}", side.name(), quoted(name));
-            let one = Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, name.location, message);
-            report.push(one.rule(rule).label(*first, "the first").help("give each its own name"));
-        } else {
-            seen.insert(name, name.location);
-        }
-    }
 }
 
 /// The name of what a URI promotes of a component that is taken as given, as far as it is written anywhere. Faults are reported.
@@ -199,21 +179,20 @@ fn find<'f>(
     side: Side,
     unit: &Unit<'_>,
     fleet: &'f Fleet<'_>,
-    classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Option<ReferenceId<'f>> {
     let uri = Uri::of(text, (2, side), (unit.scope, fleet), report)?;
     let member = uri.member(text, (unit.scope, None), fleet, Some(side.rule()), report)?;
     let names = match side {
-        Side::Service => fleet.service_names(member, classes),
-        Side::Reference => fleet.reference_names(member, classes),
+        Side::Service => fleet.service_names(member),
+        Side::Reference => fleet.reference_names(member),
     };
     let Some(names) = names else {
         return find_given(text, &uri, member, side, fleet, report).map(|name| (member, name));
     };
     let (what, component) = (side.name(), quoted(uri.component));
     let only = match side {
-        Side::Service => fleet.only_service(member, classes),
+        Side::Service => fleet.only_service(member),
         Side::Reference => (names.len() == 1).then(|| names[0]),
     };
     let (at, message, wanted) = match (&uri.part, only) {

@@ -1,13 +1,12 @@
-//! Targets: the resolver of URIs such as `Robot001/move`.
+//! Targets: the services that URIs such as `Robot001/move` lead to.
 
-use std::borrow::Cow;
-use std::ops::Range;
-
-use super::misread_uri::{inside, misread};
+use super::misread_uri::inside;
 use super::offer::{Offer, Side};
 use super::replica_index::beyond;
+use super::uri::{Uri, is_address};
 use crate::check::fleet::Fleet;
-use crate::check::fleet::classes::{ClassIndex, Fitting};
+use crate::check::fleet::classes::Fitting;
+use crate::check::options::Options;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
@@ -35,154 +34,6 @@ pub(crate) enum Target {
     Wrong,
 }
 
-/// The component of a URI, and the name behind it.
-pub(crate) fn parts(uri: &str) -> (&str, Option<&str>) {
-    let (component, rest) =
-        uri.split_once('/').map_or((uri, None), |(component, rest)| (component, Some(rest)));
-    (component, rest.map(|rest| rest.split('/').next().unwrap_or(rest)))
-}
-
-/// The parts of `component/part/binding`, each with its bytes.
-pub(crate) struct Uri<'t> {
-    /// True if the part is a service or a reference.
-    side: Side,
-    pub(crate) component: &'t str,
-    pub(crate) part: Option<(&'t str, Range<usize>)>,
-    pub(crate) binding: Option<(&'t str, Range<usize>)>,
-}
-
-impl<'t> Uri<'t> {
-    /// Splits a URI of at most `most` parts that names a service or a reference of a component in this scope; another one is reported.
-    pub(crate) fn of(
-        text: &'t Text,
-        (most, side): (usize, Side),
-        (scope, fleet): (usize, &Fleet<'_>),
-        report: &mut Report<'_>,
-    ) -> Option<Self> {
-        let mut start = 0;
-        let mut parts = text.split('/').map(|part| {
-            let at = start..start + part.len();
-            start = at.end + 1;
-            (part, at)
-        });
-        let (component, _) = parts.next()?;
-        let uri = Self { side, component, part: parts.next(), binding: parts.next() };
-        let has_more = parts.next().is_some() || (most < 3 && uri.binding.is_some());
-        let inner = [uri.part.as_ref(), uri.binding.as_ref()];
-        if component.is_empty() || inner.into_iter().flatten().any(|(part, _)| part.is_empty()) || has_more {
-            let form = if most < 3 {
-                "`component` or `component/name`"
-            } else {
-                "`component`, `component/service` or `component/service/binding`"
-            };
-            let message = format!("{} has the wrong form", quoted(text));
-            let one = Diagnostic::new(&codes::URI_MALFORMED, text.location, message);
-            let named: Vec<&str> = text.split('/').filter(|part| !part.is_empty()).collect();
-            let meant = named.join("/");
-            let is_known = named.first().is_some_and(|name| fleet.find(scope, name).is_some());
-            let promoted = named.split_first().and_then(|(component, behind)| {
-                inside(fleet.find(scope, component)?, behind, side, fleet).filter(|_| most < 3)
-            });
-            report.push(match promoted {
-                Some(promoted) => promoted.told(one, text),
-                None if is_known && named.len() <= most => {
-                    one.suggest(replacing(text, &meant), text.location, escaped(&meant))
-                }
-                None => one.help(format!("write {form}")),
-            });
-            return None;
-        }
-        Some(uri)
-    }
-
-    /// The component, which has to exist in the scope.
-    ///
-    /// `own` is the component that names it: another one is meant.
-    pub(crate) fn member(
-        &self,
-        text: &Text,
-        (scope, own): (usize, Option<usize>),
-        fleet: &Fleet<'_>,
-        rule: Option<&'static str>,
-        report: &mut Report<'_>,
-    ) -> Option<usize> {
-        let found = fleet.find(scope, self.component);
-        if found.is_none() {
-            if fleet.is_missing(scope, self.component) {
-                return None;
-            }
-            if let Some(condition) = fleet.absent.get(&(scope, self.component)) {
-                let message = format!("the component {} is not there", quoted(self.component));
-                let at = report.part(text, 0..self.component.len());
-                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
-                // Promotions are written in services and references of composites, and have a rule of their own.
-                report.push(one.label(*condition, "this is false").help(match rule {
-                    None => "give what names it the same condition",
-                    Some(_) => {
-                        "what a composite promotes has no condition: put both into a composite that is included with this one"
-                    }
-                }));
-                return None;
-            }
-            let at = report.part(text, 0..self.component.len());
-            if let Some([first, ..]) = fleet.group(scope, self.component) {
-                let message =
-                    format!("{} names all replicas, and one component is expected", quoted(self.component));
-                let first = fleet.members[*first].component.name.as_str();
-                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
-                let one = one.help(format!("name one of them, such as {}", quoted(first)));
-                report.push(match rule {
-                    Some(rule) => one.rule(rule),
-                    None => one,
-                });
-                return None;
-            }
-            let message = format!("there is no component {}", quoted(self.component));
-            if let Some(misread) = misread(text, scope, self.side, fleet) {
-                let one = misread.told(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text);
-                report.push(match rule {
-                    Some(rule) => one.rule(rule),
-                    None => one,
-                });
-                return None;
-            }
-            // A reference of a composite can stand for those of all replicas.
-            let is_promoted = rule == Some(Side::Reference.rule());
-            let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
-            let own = own.map(|own| fleet.members[own].component.name.as_str());
-            let names = fleet.names(scope).filter(|name| Some(*name) != own);
-            let known =
-                ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
-            let one = match beyond(self.component, scope, fleet) {
-                Some(beyond) => beyond.told(self.component, own, at, message),
-                None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known),
-            };
-            report.push(match rule {
-                Some(rule) => one.rule(rule),
-                None => one,
-            });
-        }
-        found
-    }
-}
-
-/// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with its place.
-pub(crate) fn spread<'t>(
-    text: &'t Text,
-    scope: usize,
-    fleet: &'t Fleet<'_>,
-) -> impl Iterator<Item = (Cow<'t, Text>, Option<usize>)> + use<'t> {
-    let (component, _) = parts(text);
-    let members = fleet.group(scope, component);
-    let itself = members.is_none().then_some((Cow::Borrowed(text), None));
-    let rest = &text[component.len()..];
-    let named = members.into_iter().flatten().map(move |&member| {
-        let name = format!("{}{rest}", fleet.members[member].component.name);
-        (Cow::Owned(Text::new(name.into(), text.location)), Some(member))
-    });
-    itself.into_iter().chain(named)
-}
-
 /// The service that a target in a scope leads to, for a reference of a component with this interface, or with any. Faults are reported.
 ///
 /// Without the name of a service the component has to have exactly one with the interface.
@@ -190,18 +41,17 @@ pub(crate) fn target(
     text: &Text,
     (scope, own): (usize, Option<usize>),
     interface: Option<&InterfaceDeclaration>,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
+    (fleet, options): (&Fleet<'_>, &Options),
     report: &mut Report<'_>,
 ) -> Target {
     // An expression that is still there has a fault, which is reported.
-    if report.assumes && is_address(text) || fleet.scopes[scope].is_faulty && has_expression(text) {
+    if options.assume_classes && is_address(text) || fleet.scopes[scope].is_faulty && has_expression(text) {
         return Target::Open;
     }
     let Some(uri) = Uri::of(text, (3, Side::Service), (scope, fleet), report) else { return Target::Wrong };
     let is_elsewhere =
         || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
-    if scope == 0 && report.assumes && is_elsewhere() {
+    if scope == 0 && options.assume_classes && is_elsewhere() {
         elsewhere(text, (uri.component, own), fleet, report);
         return Target::Open;
     }
@@ -211,11 +61,11 @@ pub(crate) fn target(
     let component = fleet.members[member].component;
     let Some((name, at)) = uri.part.clone() else {
         return match interface {
-            Some(interface) => only_service(text, member, interface, fleet, classes, report),
+            Some(interface) => only_service(text, member, interface, fleet, report),
             None => Target::Open,
         };
     };
-    let provider = match fleet.offer(member, name, classes) {
+    let provider = match fleet.offer(member, name) {
         Offer::Service(provider) => provider,
         Offer::Open => {
             let at = report.part(text, at);
@@ -236,12 +86,11 @@ pub(crate) fn target(
                 report.push(promoted.told(one, text));
                 return Target::Wrong;
             }
-            let names = fleet.service_names(member, classes).unwrap_or_default();
+            let names = fleet.service_names(member).unwrap_or_default();
             let known = ("its services are", names.iter().copied());
             let one = report.unknown(&codes::UNKNOWN_TARGET_SERVICE, at, message, name, known);
-            let offers = fleet.offers(member, classes);
-            let is_fitting =
-                |offer: Offer| interface.is_some_and(|interface| fits(offer, interface, fleet, classes));
+            let offers = fleet.offers(member);
+            let is_fitting = |offer: Offer| interface.is_some_and(|interface| fits(offer, interface, fleet));
             let mut fitting = offers.iter().filter(|(_, offer)| is_fitting(*offer));
             report.push(match (fitting.next(), fitting.next()) {
                 (Some((fitting, _)), None) if one.suggestions.is_empty() => {
@@ -252,7 +101,7 @@ pub(crate) fn target(
             return Target::Wrong;
         }
     };
-    let Some(found) = fleet.interface_of(provider, classes) else { return Target::Open };
+    let Some(found) = fleet.interface_of(provider) else { return Target::Open };
     if let Some(interface) = interface.filter(|interface| found != *interface) {
         let at = report.part(text, at);
         let message = format!(
@@ -263,11 +112,11 @@ pub(crate) fn target(
             quoted(&interface.name)
         );
         let one = Diagnostic::new(&codes::WIRE_INTERFACE, at, message);
-        let offers = fleet.offers(member, classes);
-        let fitting = offers.iter().find(|(_, offer)| fits(*offer, interface, fleet, classes));
+        let offers = fleet.offers(member);
+        let fitting = offers.iter().find(|(_, offer)| fits(*offer, interface, fleet));
         report.push(match fitting {
             Some((fitting, _)) => one.suggest(replacing(name, fitting), at, escaped(fitting)),
-            None => one.help(offered(member, interface, fleet, classes)),
+            None => one.help(offered(member, interface, fleet)),
         });
         return Target::Wrong;
     }
@@ -308,14 +157,6 @@ fn bound(
     false
 }
 
-/// True if a target is an address on a network rather than a component.
-pub(crate) fn is_address(text: &str) -> bool {
-    let scheme = text.split(':').next().unwrap_or_default();
-    scheme.len() < text.len()
-        && !scheme.contains('/')
-        && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
-}
-
 /// Says that a target is not in the composites at hand. Where things are taken as given, it may be in others of its domain.
 fn elsewhere(
     text: &Text,
@@ -337,13 +178,8 @@ fn elsewhere(
     );
 }
 
-fn fits(
-    offer: Offer,
-    interface: &InterfaceDeclaration,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-) -> bool {
-    matches!(offer, Offer::Service(provider) if fleet.interface_of(provider, classes) == Some(interface))
+fn fits(offer: Offer, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -> bool {
+    matches!(offer, Offer::Service(provider) if fleet.interface_of(provider) == Some(interface))
 }
 
 fn only_service(
@@ -351,19 +187,18 @@ fn only_service(
     member: usize,
     interface: &InterfaceDeclaration,
     fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Target {
-    if let Some(class) = fleet.class_of(member, classes)
+    if let Some(class) = fleet.class_of(member)
         && let Fitting::One(service) = class.fitting(interface)
     {
         return Target::Service(Provider { member, service });
     }
-    if fleet.service_names(member, classes).is_none() {
+    if fleet.service_names(member).is_none() {
         return Target::Open;
     }
-    let offers = fleet.offers(member, classes);
-    let mut fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet, classes));
+    let offers = fleet.offers(member);
+    let mut fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet));
     match (fitting.next(), fitting.next()) {
         (Some((_, Offer::Service(provider))), None) => Target::Service(*provider),
         (None, _) if offers.iter().any(|(_, offer)| *offer == Offer::Open) => Target::Open,
@@ -374,11 +209,11 @@ fn only_service(
                 quoted(&interface.name)
             );
             let one = Diagnostic::new(&codes::WIRE_INTERFACE, text.location, message);
-            report.push(one.help(offered(member, interface, fleet, classes)));
+            report.push(one.help(offered(member, interface, fleet)));
             Target::Wrong
         }
         (Some(_), _) => {
-            let fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet, classes));
+            let fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet));
             let names = fitting.map(|(name, _)| *name);
             let message = format!(
                 "component {} has several services with the interface {}",
@@ -393,16 +228,11 @@ fn only_service(
 }
 
 /// The services that a component offers in place of the interface that is asked for, for help.
-fn offered(
-    member: usize,
-    interface: &InterfaceDeclaration,
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-) -> String {
+fn offered(member: usize, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -> String {
     let mut all = Vec::new();
-    for (name, offer) in fleet.offers(member, classes) {
+    for (name, offer) in fleet.offers(member) {
         let Offer::Service(provider) = offer else { continue };
-        let Some(found) = fleet.interface_of(provider, classes) else { continue };
+        let Some(found) = fleet.interface_of(provider) else { continue };
         if found.name == interface.name {
             return "it offers the interface with other operations: build both components from one version"
                 .to_owned();
@@ -416,13 +246,9 @@ fn offered(
 }
 
 /// `component/service`: how a service is named where the component is that offers it, which may do so for one inside of it.
-pub(crate) fn uri(
-    (offering, provider): (usize, Provider),
-    fleet: &Fleet<'_>,
-    classes: &[ClassIndex<'_>],
-) -> String {
+pub(crate) fn uri((offering, provider): (usize, Provider), fleet: &Fleet<'_>) -> String {
     let component = &fleet.members[offering].component.name;
-    let offers = fleet.offers(offering, classes);
+    let offers = fleet.offers(offering);
     let service = offers.iter().find(|(_, offer)| *offer == Offer::Service(provider));
     format!("{component}/{}", service.map_or("", |(name, _)| name))
 }

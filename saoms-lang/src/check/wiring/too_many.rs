@@ -2,7 +2,7 @@
 
 use super::Wires;
 use super::promotion::ReferenceId;
-use super::target::parts;
+use super::uri::parts;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::Multiplicity;

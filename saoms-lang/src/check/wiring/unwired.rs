@@ -4,12 +4,13 @@ use super::Wires;
 use super::dangling_names;
 use super::promotion::ReferenceId;
 use crate::check::report::Report;
-use crate::check::rules::contracts::of_class;
+use crate::check::rules::multiplicity::of_class;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::ReferenceDeclaration;
 
 impl Wires<'_, '_> {
-    /// A required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of the manual.
+    /// Reports a required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of the
+    /// manual. True if it is an error, or a fault that is reported keeps its target from being known.
     ///
     /// Where composites promote it, the outermost component is the one that lacks a target.
     pub(super) fn unwired(
@@ -17,15 +18,15 @@ impl Wires<'_, '_> {
         place: ReferenceId<'_>,
         declared: &ReferenceDeclaration,
         report: &mut Report<'_>,
-    ) {
-        let (fleet, classes) = (self.fleet, self.classes);
+    ) -> bool {
+        let fleet = self.fleet;
         let mut place = place;
         let mut is_autowired = false;
         let mut is_promoted = false;
         let mut is_required = of_class(declared).is_required();
         loop {
             if self.promoted.outermost.contains_key(&place) {
-                return;
+                return fleet.is_misread;
             }
             is_required |= fleet.given_multiplicity(place).is_some_and(|given| given.value.is_required());
             let reference = fleet.members[place.0].component.reference(place.1);
@@ -34,7 +35,7 @@ impl Wires<'_, '_> {
                     || reference.bindings().iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
             });
             if is_wired_elsewhere {
-                return;
+                return fleet.is_misread;
             }
             is_autowired |= self.is_autowired(place, reference);
             match self.promoted.to.get(&place).and_then(|outer| outer.first()) {
@@ -44,21 +45,21 @@ impl Wires<'_, '_> {
         }
         let (member, name) = place;
         let reference = fleet.members[member].component.reference(name);
-        if !is_required || fleet.lacks_include(fleet.members[member].scope) {
-            return;
-        }
-        // A name that stands twice, and a target that stands where none can, are told.
+        // A name that stands twice, a target that stands where none can, and names that lead nowhere are reported.
         let is_text = reference.is_some_and(|reference| {
             let element = reference.origin.element(&fleet.members[member].composite.document);
             reference.targets.is_empty() && element.has_text()
         });
-        if is_text || fleet.members[member].is_repeated {
-            return;
+        if is_text
+            || fleet.lacks_include(fleet.members[member].scope)
+            || fleet.members[member].is_repeated
+            || [&self.dangling, &self.promoted.dangling].iter().any(|one| one.means(place, fleet))
+            || dangling_names::is_misspelt(place, fleet)
+        {
+            return true;
         }
-        let is_meant =
-            [&self.dangling, &self.promoted.dangling].iter().any(|one| one.means(place, fleet, classes));
-        if is_meant || dangling_names::is_misspelt(place, fleet, classes) {
-            return;
+        if !is_required {
+            return fleet.is_misread;
         }
         let (interface, component) = (&declared.interface.name, &fleet.members[member].component.name);
         let place = reference.map(|reference| reference.name.location);
@@ -85,5 +86,6 @@ impl Wires<'_, '_> {
             (false, false) => one.rule("ASM50040"),
         };
         report.push(if is_1_1 { one } else { one.help("calls through it fail") });
+        is_1_1 || fleet.is_misread
     }
 }

@@ -5,9 +5,10 @@ use std::collections::HashMap;
 use super::budget::WireBudget;
 use super::dangling_names::DanglingNames;
 use super::offer::{Offer, Side};
-use super::target::{Uri, parts, spread, target};
-use crate::check::fleet::classes::ClassIndex;
+use super::target::target;
+use super::uri::{Uri, parts, spread};
 use crate::check::fleet::{Fleet, Kind};
+use crate::check::options::Options;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::source::Text;
@@ -26,7 +27,7 @@ pub(crate) struct Wire<'f> {
 /// The `<wire>` elements of all composites by the component they start from, and those that start nowhere.
 pub(crate) fn wires<'f>(
     fleet: &'f Fleet<'_>,
-    classes: &'f [ClassIndex<'_>],
+    options: &Options,
     room: &WireBudget,
     report: &mut Report<'_>,
 ) -> (HashMap<usize, Vec<Wire<'f>>>, DanglingNames<'f>) {
@@ -45,7 +46,7 @@ pub(crate) fn wires<'f>(
                 continue;
             }
             let is_replacing = wire.replace().is_some_and(|replace| replace.value);
-            if let Some((member, name)) = backwards((source, to), scope, fleet, classes) {
+            if let Some((member, name)) = backwards((source, to), scope, fleet) {
                 let message = format!(
                     "this wire goes backwards: {} offers a service, and {} is a reference",
                     quoted(source),
@@ -65,11 +66,11 @@ pub(crate) fn wires<'f>(
                 continue;
             }
             for (one, _) in spread(source, scope, fleet) {
-                let Some((member, name)) = source_of(&one, source, scope, fleet, classes, report) else {
+                let Some((member, name)) = source_of(&one, source, scope, fleet, report) else {
                     dangling.add(scope, Some(source), fleet);
                     // Both ends can be wrong. All replicas of a group have the same faults.
                     if let Some((to, _)) = spread(to, scope, fleet).next() {
-                        target(&to, (scope, None), None, fleet, classes, report);
+                        target(&to, (scope, None), None, (fleet, options), report);
                     }
                     continue;
                 };
@@ -85,18 +86,17 @@ fn backwards<'f>(
     (source, to): (&Text, &'f Text),
     scope: usize,
     fleet: &'f Fleet<'_>,
-    classes: &'f [ClassIndex<'_>],
 ) -> Option<(usize, &'f str)> {
     let reference = parts(to).1?;
     let ends = [source, to].map(|end| fleet.find(scope, parts(end).0));
     let [Some(from), Some(member)] = ends else { return None };
     let is_reference =
-        |member, name| fleet.reference_names(member, classes).is_some_and(|names| names.contains(&name));
-    let is_service = |member, name| matches!(fleet.offer(member, name, classes), Offer::Service(_));
+        |member, name| fleet.reference_names(member).is_some_and(|names| names.contains(&name));
+    let is_service = |member, name| matches!(fleet.offer(member, name), Offer::Service(_));
     let starts_at_service = match parts(source).1 {
         Some(service) => !is_reference(from, service) && is_service(from, service),
         // It could mean the only reference, and there is none.
-        None => fleet.reference_names(from, classes).is_some_and(|names| names.is_empty()),
+        None => fleet.reference_names(from).is_some_and(|names| names.is_empty()),
     };
     let is_backwards = starts_at_service && is_reference(member, reference) && !is_service(member, reference);
     is_backwards.then_some((member, reference))
@@ -109,13 +109,12 @@ fn source_of<'f>(
     written: &'f Text,
     scope: usize,
     fleet: &'f Fleet<'_>,
-    classes: &'f [ClassIndex<'_>],
     report: &mut Report<'_>,
 ) -> Option<(usize, &'f str)> {
     let uri = Uri::of(source, (2, Side::Reference), (scope, fleet), report)?;
     let member = uri.member(source, (scope, None), fleet, None, report)?;
     let named = parts(written).1.unwrap_or_default();
-    let Some(names) = fleet.reference_names(member, classes) else {
+    let Some(names) = fleet.reference_names(member) else {
         if let Some((name, at)) = &uri.part {
             let at = report.part(source, at.clone());
             fleet.unknown_name(
@@ -134,7 +133,7 @@ fn source_of<'f>(
         (Some((name, at)), names) => {
             let at = report.part(source, at.clone());
             let message = format!("component {component} has no reference {}", quoted(name));
-            if fleet.offer(member, name, classes) != Offer::Missing {
+            if fleet.offer(member, name) != Offer::Missing {
                 let one = Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, at, message);
                 let help =
                     format!("{} is a service: a wire goes from a reference to a service", quoted(name));

@@ -13,7 +13,7 @@ use crate::check::support::shown;
 use crate::load::collection::collection;
 
 fn checked(path: &Path) -> (Vec<Diagnostic>, Sources) {
-    let compilation = Project::new().file(path).assume_classes(true).check(&Registry::new());
+    let compilation = Project::new().file(path).assume_classes(true).compile(&Registry::new());
     (compilation.diagnostics, compilation.sources)
 }
 

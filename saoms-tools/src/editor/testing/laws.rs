@@ -16,7 +16,7 @@ fn checked(scene: &Scene, texts: &[String]) -> (Vec<Diagnostic>, Sources) {
         open.insert(&file.path, text.clone());
     }
     let project = Project::new().file(&scene.file().path).open_texts(open).assume_classes(true);
-    let mut found = project.check(scene.registry.as_ref());
+    let mut found = project.compile(scene.registry.as_ref());
     found.diagnostics.retain(|one| !one.is_allowed());
     (found.diagnostics, found.sources)
 }

@@ -19,7 +19,8 @@ use crate::check::unfolding::replica::Instance;
 use crate::check::values::path::expression;
 use crate::check::values::raw::{Raw, beside_source, raw};
 use crate::check::values::shared_values::SharedValues;
-use crate::check::values::value_type::{self, Match, Typed};
+use crate::check::values::type_match::{self, Match};
+use crate::check::values::value_type::Typed;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
@@ -29,6 +30,7 @@ use crate::syntax::escaped;
 pub(crate) struct Parameters<'a> {
     /// By the places of the fleet's units.
     units: Vec<Declared<'a>>,
+    options: &'a Options,
     /// The number of more values sources with several can lead to.
     left: usize,
     /// The number of more bytes of text sources can lead to.
@@ -116,7 +118,7 @@ impl<'a> Parameters<'a> {
         let owner = |unit: &Unit<'_>| Some(fleet.members[fleet.scopes[unit.scope].owner?].component);
         let with_owner = |unit| Declared { owner: owner(unit), ..declared(unit, report) };
         let units = fleet.units.iter().map(with_owner).collect();
-        let mut parameters = Self { units, left: MOST_VALUES, bytes_left: MOST_BYTES };
+        let mut parameters = Self { units, options, left: MOST_VALUES, bytes_left: MOST_BYTES };
         for (place, unit) in fleet.units.iter().enumerate() {
             let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];
@@ -155,7 +157,7 @@ impl<'a> Parameters<'a> {
                     _ => continue,
                 };
                 if parameter.is_some_and(|parameter| std::ptr::eq(parameter.property, property)) {
-                    value_type::given(Typed { property, document }, value, report);
+                    Typed { property, document }.check(value, report);
                 }
             }
         }
@@ -214,7 +216,7 @@ impl<'a> Parameters<'a> {
                 && let Some(from) = self.declaration(member.unit, source)
             {
                 let own = Typed { property, document: &member.composite.document };
-                value_type::matches(own, from, Match::Source(source.location), report);
+                type_match::check(own, from, Match::Source(source.location), report);
             }
         }
     }
@@ -348,7 +350,7 @@ impl<'a> Parameters<'a> {
                     });
                 if is_asked_for(property) && !is_given {
                     owner.into_iter().for_each(|owner| report.about(owner));
-                    report.push(self.missing(place, property, report.assumes));
+                    report.push(self.missing(place, property, self.options.assume_classes));
                     report.about_all();
                 }
                 let origin = property.origin;

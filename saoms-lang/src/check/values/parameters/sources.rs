@@ -10,7 +10,7 @@ use crate::check::report::{Report, replacing};
 use crate::check::values::path::{FORMS, Fault, expression, steps};
 use crate::check::values::raw::{Piece, Raw, raw};
 use crate::check::values::shared_values::SharedValues;
-use crate::check::values::value_type::{self, Typed};
+use crate::check::values::value_type::Typed;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::source::Text;
 use crate::syntax::escaped;
@@ -91,7 +91,7 @@ impl<'a> Parameters<'a> {
             }
             Ok(raw) => Ok(SharedValues::new(raw)),
             Err(fault) => {
-                malformed(source, name.len() + 1, fault, report);
+                self.malformed(source, name.len() + 1, fault, report);
                 Err(())
             }
         }
@@ -139,7 +139,7 @@ impl<'a> Parameters<'a> {
         let mut whole = match given {
             // One that is not of its type is reported.
             Some(Given::Setting(Setting { value, .. }) | Given::Variable(Variable { value, .. })) => {
-                if !value_type::is_right(typed, value) {
+                if !typed.accepts(value) {
                     return Err(());
                 }
                 SharedValues::new(Raw::one(value))
@@ -150,7 +150,7 @@ impl<'a> Parameters<'a> {
                     if let Piece::Text(text) = piece
                         && !report.has_told(&codes::COMPOSITE_VALUE_TYPE, text.location)
                     {
-                        value_type::given(typed, text, report);
+                        typed.check(text, report);
                     }
                 }
                 whole
@@ -160,8 +160,8 @@ impl<'a> Parameters<'a> {
         if whole.raw().0.is_empty() {
             whole = SharedValues::new(match variable {
                 Some(Variable { value, .. }) => {
-                    if !value_type::is_right(typed, value) {
-                        value_type::given(typed, value, report);
+                    if !typed.accepts(value) {
+                        typed.check(value, report);
                         return Err(());
                     }
                     Raw::one(value)
@@ -191,7 +191,7 @@ impl<'a> Parameters<'a> {
             let fault = braced(source).unwrap_or_else(|| {
                 Fault::unknown(0..source.len(), format!("{} is no path from a property", quoted(source)))
             });
-            return malformed(source, 0, fault, report);
+            return self.malformed(source, 0, fault, report);
         }
         let message = format!("{} names no property of the composite", quoted(source));
         let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
@@ -201,6 +201,30 @@ impl<'a> Parameters<'a> {
         }
         report.push(one);
     }
+
+    /// Reports a fault of a `source`, whose bytes count from a place in it. Another program may understand any XPath.
+    fn malformed(&self, source: &Text, start: usize, fault: Fault, report: &mut Report<'_>) {
+        let Fault { step, message, is_understood, instead } = fault;
+        let step = start + step.start..start + step.end;
+        let at = report.part(source, step.clone());
+        let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
+        if let Some((name, meant)) = instead
+            && let Some(place) = source[step.clone()].find(&name)
+        {
+            let place = step.start + place;
+            let place = report.part(source, place..place + name.len());
+            one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
+        }
+        report.push(match (is_understood, self.options.assume_classes) {
+            (true, _) => one,
+            (false, true) => one
+                .severity(Severity::Warning)
+                .help("another program may understand it: it is taken as given"),
+            (false, false) => one.help(format!(
+                "a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"
+            )),
+        });
+    }
 }
 
 /// The fault of `${name}`, as where texts are made of others.
@@ -209,30 +233,6 @@ fn braced(source: &str) -> Option<Fault> {
     let written = format!("${{{name}}}");
     let fault = Fault::unknown(0..written.len(), "names of properties stand without braces here");
     is_name(name.trim()).then(|| Fault { instead: Some((written, format!("${}", name.trim()))), ..fault })
-}
-
-/// Reports a fault of a `source`, whose bytes count from a place in it. Another program may understand any XPath.
-fn malformed(source: &Text, start: usize, fault: Fault, report: &mut Report<'_>) {
-    let Fault { step, message, is_understood, instead } = fault;
-    let step = start + step.start..start + step.end;
-    let at = report.part(source, step.clone());
-    let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
-    if let Some((name, meant)) = instead
-        && let Some(place) = source[step.clone()].find(&name)
-    {
-        let place = step.start + place;
-        let place = report.part(source, place..place + name.len());
-        one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
-    }
-    report.push(match (is_understood, report.assumes) {
-        (true, _) => one,
-        (false, true) => {
-            one.severity(Severity::Warning).help("another program may understand it: it is taken as given")
-        }
-        (false, false) => one.help(format!(
-            "a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"
-        )),
-    });
 }
 
 /// True if it can be the name of a property, as far as that tells it from other parts of a path.

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 /// The values.
-pub(crate) struct Arena<T> {
+pub(crate) struct AppendList<T> {
     first: Link<T>,
 }
 
@@ -14,25 +14,25 @@ struct Node<T> {
     next: Link<T>,
 }
 
-/// The end of an arena, where values are added.
-pub(crate) struct End<'a, T> {
+/// The end of a list, where values are added.
+pub(crate) struct Appender<'a, T> {
     next: &'a Link<T>,
 }
 
-impl<T> Arena<T> {
+impl<T> AppendList<T> {
     /// Without values.
     pub(crate) const fn new() -> Self {
         Self { first: OnceCell::new() }
     }
 
     /// The end of the list, where values are added.
-    pub(crate) const fn end(&self) -> End<'_, T> {
-        End { next: &self.first }
+    pub(crate) const fn end(&self) -> Appender<'_, T> {
+        Appender { next: &self.first }
     }
 }
 
-impl<'a, T> End<'a, T> {
-    /// Adds a value, which stays as long as the arena.
+impl<'a, T> Appender<'a, T> {
+    /// Adds a value, which stays as long as the list.
     pub(crate) fn add(&mut self, value: T) -> &'a T {
         while let Some(node) = self.next.get() {
             self.next = &node.next;
@@ -43,7 +43,7 @@ impl<'a, T> End<'a, T> {
     }
 }
 
-impl<T> Drop for Arena<T> {
+impl<T> Drop for AppendList<T> {
     /// One by one: the nodes hold each other, and would otherwise be dropped by recursion.
     fn drop(&mut self) {
         let mut next = self.first.take();

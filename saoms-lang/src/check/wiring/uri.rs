@@ -1,0 +1,163 @@
+//! URIs such as `Robot001/move`, and the components that they name.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::misread_uri::{inside, misread};
+use super::offer::Side;
+use super::replica_index::beyond;
+use crate::check::fleet::Fleet;
+use crate::check::report::{Report, replacing};
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::source::Text;
+use crate::syntax::escaped;
+
+/// The component of a URI, and the name behind it.
+pub(crate) fn parts(uri: &str) -> (&str, Option<&str>) {
+    let (component, rest) =
+        uri.split_once('/').map_or((uri, None), |(component, rest)| (component, Some(rest)));
+    (component, rest.map(|rest| rest.split('/').next().unwrap_or(rest)))
+}
+
+/// The parts of `component/part/binding`, each with its bytes.
+pub(crate) struct Uri<'t> {
+    /// True if the part is a service or a reference.
+    pub(crate) side: Side,
+    pub(crate) component: &'t str,
+    pub(crate) part: Option<(&'t str, Range<usize>)>,
+    pub(crate) binding: Option<(&'t str, Range<usize>)>,
+}
+
+impl<'t> Uri<'t> {
+    /// Splits a URI of at most `most` parts that names a service or a reference of a component in this scope; another one is reported.
+    pub(crate) fn of(
+        text: &'t Text,
+        (most, side): (usize, Side),
+        (scope, fleet): (usize, &Fleet<'_>),
+        report: &mut Report<'_>,
+    ) -> Option<Self> {
+        let mut start = 0;
+        let mut parts = text.split('/').map(|part| {
+            let at = start..start + part.len();
+            start = at.end + 1;
+            (part, at)
+        });
+        let (component, _) = parts.next()?;
+        let uri = Self { side, component, part: parts.next(), binding: parts.next() };
+        let has_more = parts.next().is_some() || (most < 3 && uri.binding.is_some());
+        let inner = [uri.part.as_ref(), uri.binding.as_ref()];
+        if component.is_empty() || inner.into_iter().flatten().any(|(part, _)| part.is_empty()) || has_more {
+            let form = if most < 3 {
+                "`component` or `component/name`"
+            } else {
+                "`component`, `component/service` or `component/service/binding`"
+            };
+            let message = format!("{} has the wrong form", quoted(text));
+            let one = Diagnostic::new(&codes::URI_MALFORMED, text.location, message);
+            let named: Vec<&str> = text.split('/').filter(|part| !part.is_empty()).collect();
+            let meant = named.join("/");
+            let is_known = named.first().is_some_and(|name| fleet.find(scope, name).is_some());
+            let promoted = named.split_first().and_then(|(component, behind)| {
+                inside(fleet.find(scope, component)?, behind, side, fleet).filter(|_| most < 3)
+            });
+            report.push(match promoted {
+                Some(promoted) => promoted.told(one, text),
+                None if is_known && named.len() <= most => {
+                    one.suggest(replacing(text, &meant), text.location, escaped(&meant))
+                }
+                None => one.help(format!("write {form}")),
+            });
+            return None;
+        }
+        Some(uri)
+    }
+
+    /// The component, which has to exist in the scope.
+    ///
+    /// `own` is the component that names it: another one is meant.
+    pub(crate) fn member(
+        &self,
+        text: &Text,
+        (scope, own): (usize, Option<usize>),
+        fleet: &Fleet<'_>,
+        rule: Option<&'static str>,
+        report: &mut Report<'_>,
+    ) -> Option<usize> {
+        let found = fleet.find(scope, self.component);
+        let push = |one: Diagnostic, report: &mut Report<'_>| {
+            report.push(Diagnostic { rule: rule.or(one.rule), ..one });
+        };
+        if found.is_none() {
+            if fleet.is_missing(scope, self.component) {
+                return None;
+            }
+            if let Some(condition) = fleet.absent.get(&(scope, self.component)) {
+                let message = format!("the component {} is not there", quoted(self.component));
+                let at = report.part(text, 0..self.component.len());
+                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+                // Promotions are written in services and references of composites, and have a rule of their own.
+                report.push(one.label(*condition, "this is false").help(match rule {
+                    None => "give what names it the same condition",
+                    Some(_) => {
+                        "what a composite promotes has no condition: put both into a composite that is included with this one"
+                    }
+                }));
+                return None;
+            }
+            let at = report.part(text, 0..self.component.len());
+            if let Some([first, ..]) = fleet.group(scope, self.component) {
+                let message =
+                    format!("{} names all replicas, and one component is expected", quoted(self.component));
+                let first = fleet.members[*first].component.name.as_str();
+                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+                let one = one.help(format!("name one of them, such as {}", quoted(first)));
+                push(one, report);
+                return None;
+            }
+            let message = format!("there is no component {}", quoted(self.component));
+            if let Some(misread) = misread(text, scope, self.side, fleet) {
+                let one = misread.told(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text);
+                push(one, report);
+                return None;
+            }
+            // A reference of a composite can stand for those of all replicas.
+            let is_promoted = rule == Some(Side::Reference.rule());
+            let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
+            let own = own.map(|own| fleet.members[own].component.name.as_str());
+            let names = fleet.names(scope).filter(|name| Some(*name) != own);
+            let known =
+                ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
+            let one = match beyond(self.component, scope, fleet) {
+                Some(beyond) => beyond.told(self.component, own, at, message),
+                None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known),
+            };
+            push(one, report);
+        }
+        found
+    }
+}
+
+/// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with its place.
+pub(crate) fn spread<'t>(
+    text: &'t Text,
+    scope: usize,
+    fleet: &'t Fleet<'_>,
+) -> impl Iterator<Item = (Cow<'t, Text>, Option<usize>)> + use<'t> {
+    let (component, _) = parts(text);
+    let members = fleet.group(scope, component);
+    let itself = members.is_none().then_some((Cow::Borrowed(text), None));
+    let rest = &text[component.len()..];
+    let named = members.into_iter().flatten().map(move |&member| {
+        let name = format!("{}{rest}", fleet.members[member].component.name);
+        (Cow::Owned(Text::new(name.into(), text.location)), Some(member))
+    });
+    itself.into_iter().chain(named)
+}
+
+/// True if a target is an address on a network rather than a component.
+pub(crate) fn is_address(text: &str) -> bool {
+    let scheme = text.split(':').next().unwrap_or_default();
+    scheme.len() < text.len()
+        && !scheme.contains('/')
+        && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
+}
