@@ -1,8 +1,9 @@
 //! From the model to an assembly: the faults that a fleet can have before anything runs.
 //!
-//! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but its arguments. It is a sequence of phases, and the one place
-//! where their order is written down. Each phase looks at everything, so that all faults come in one run, from cheap rules to expensive
-//! ones. What depends on a faulty part is not looked at: one mistake gives one diagnostic. `component::State` says of a component that it is faulty.
+//! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but its arguments. It is a sequence
+//! of phases, and the one place where their order is written down. Each phase looks at everything, so that all faults
+//! come in one run, from cheap rules to expensive ones. What depends on a faulty part is not looked at: one mistake
+//! gives one diagnostic. `component::State` says of a component that it is faulty.
 
 mod assemble;
 mod component;
@@ -67,7 +68,8 @@ pub fn check(
     let mut severities = Severities::of(contribution, options, registry, diagnostics);
     let report = &mut Report::new(sources, diagnostics);
 
-    // Composites, includes, inner composites, replicas and conditions become one list of components; each has its class.
+    // Composites, includes, inner composites, replicas and conditions become one list of components; each has its
+    // class.
     let replicas = AppendList::new();
     let mut fleet = unfolding::unfold(contribution, options, &severities, &replicas, report);
     let mut parameters = Parameters::of(&fleet, options, report);

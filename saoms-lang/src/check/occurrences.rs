@@ -23,18 +23,19 @@ use crate::registry::{ClassTopic, Registry};
 use crate::source::{FileId, Sources};
 use crate::syntax::ElementId;
 
-/// The number of times each replicated or conditional part of the composites is in a fleet, and which topics its components use.
+/// The number of times each replicated or conditional part of the composites is in a fleet, and which topics its
+/// components use.
 #[derive(Clone, Debug, Default)]
 pub struct Occurrences {
     counts: HashMap<(FileId, ElementId), usize>,
     /// The fewest and the most in one of the composites around them.
-    ranges: HashMap<Way, (usize, usize)>,
+    ranges: HashMap<ElementPath, (usize, usize)>,
     /// Components of one class with the same renames share a list.
-    topics: HashMap<Way, Rc<[TopicUse]>>,
+    topics: HashMap<ElementPath, Rc<[TopicUse]>>,
 }
 
 /// A component, with those around it that composites implement before it, the outermost first.
-type Way = Vec<(FileId, ElementId)>;
+type ElementPath = Vec<(FileId, ElementId)>;
 
 /// A topic that a component publishes or subscribes to, itself or by one of its loops.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,8 +49,8 @@ pub struct TopicUse {
 }
 
 impl Occurrences {
-    /// Counts the parts of the fleet that these composites come to with these options. What is wrong with replicas, conditions and settings
-    /// is reported.
+    /// Counts the parts of the fleet that these composites come to with these options. What is wrong with replicas,
+    /// conditions and settings is reported.
     pub fn of(
         contribution: &Contribution,
         registry: &Registry,
@@ -64,9 +65,9 @@ impl Occurrences {
         let parameters = Parameters::of(&fleet, options, report);
         report.finish();
         severities.apply(0, report.diagnostics());
-        let ways = ways(&fleet);
+        let paths = paths(&fleet);
         let given = Options { assume_classes: true, ..options.clone() };
-        let topics = topics(&mut fleet, &ways, parameters, (registry, &given), sources);
+        let topics = topics(&mut fleet, &paths, parameters, (registry, &given), sources);
         let mut counts: HashMap<(FileId, ElementId), usize> = HashMap::new();
         for composite in contribution.composites() {
             let special = composite.components.iter();
@@ -83,29 +84,29 @@ impl Occurrences {
         }
         // How often each composite is there at the same place of the picture.
         let mut times: HashMap<&[(FileId, ElementId)], usize> = HashMap::new();
-        for (way, scope) in ways.iter().zip(&fleet.scopes) {
+        for (path, scope) in paths.iter().zip(&fleet.scopes) {
             let is_there = scope.owner.is_none_or(|owner| !fleet.members[owner].is_absent);
-            *times.entry(way).or_default() += usize::from(is_there);
+            *times.entry(path).or_default() += usize::from(is_there);
         }
-        let mut all: HashMap<Way, (usize, usize, usize)> = HashMap::new();
+        let mut all: HashMap<ElementPath, (usize, usize, usize)> = HashMap::new();
         for ((scope, place), count) in here {
-            let (least, most, found) = all.entry(within(&ways[scope], place)).or_insert((count, count, 0));
+            let (least, most, found) = all.entry(within(&paths[scope], place)).or_insert((count, count, 0));
             (*least, *most, *found) = ((*least).min(count), (*most).max(count), *found + 1);
         }
-        let ranges = all.into_iter().map(|(way, (least, most, found))| {
-            let is_everywhere = times.get(&way[..way.len() - 1]).is_none_or(|times| *times <= found);
-            (way, (if is_everywhere { least } else { 0 }, most))
+        let ranges = all.into_iter().map(|(path, (least, most, found))| {
+            let is_everywhere = times.get(&path[..path.len() - 1]).is_none_or(|times| *times <= found);
+            (path, (if is_everywhere { least } else { 0 }, most))
         });
         let ranges = ranges.collect();
         counts.extend(fleet.conditional.iter().map(|(place, is_there)| (*place, usize::from(*is_there))));
         Self { counts, ranges, topics }
     }
 
-    /// The fewest and the most of a component in one of the composites that implement `around`, the outermost first; `None` for one that is neither
-    /// replicated nor conditional.
+    /// The fewest and the most of a component in one of the composites that implement `around`, the outermost first;
+    /// `None` for one that is neither replicated nor conditional.
     pub fn range(&self, around: &[Origin], origin: Origin) -> Option<(usize, usize)> {
         self.counts.get(&place(origin))?;
-        Some(self.ranges.get(&way(around, origin)).copied().unwrap_or_default())
+        Some(self.ranges.get(&path_of(around, origin)).copied().unwrap_or_default())
     }
 
     /// True if a part is there at all.
@@ -113,9 +114,10 @@ impl Occurrences {
         self.counts.get(&place(origin)) != Some(&0)
     }
 
-    /// The topics that a component in the composites that implement `around` and its loops use, those of all its replicas.
+    /// The topics that a component in the composites that implement `around` and its loops use, those of all its
+    /// replicas.
     pub fn topics(&self, around: &[Origin], origin: Origin) -> &[TopicUse] {
-        self.topics.get(&way(around, origin)).map_or(&[], |uses| &**uses)
+        self.topics.get(&path_of(around, origin)).map_or(&[], |uses| &**uses)
     }
 }
 
@@ -123,44 +125,44 @@ fn place(origin: Origin) -> (FileId, ElementId) {
     (origin.file(), origin.element)
 }
 
-fn way(around: &[Origin], origin: Origin) -> Way {
+fn path_of(around: &[Origin], origin: Origin) -> ElementPath {
     around.iter().copied().chain([origin]).map(place).collect()
 }
 
-fn within(way: &[(FileId, ElementId)], place: (FileId, ElementId)) -> Way {
-    way.iter().copied().chain([place]).collect()
+fn within(path: &[(FileId, ElementId)], place: (FileId, ElementId)) -> ElementPath {
+    path.iter().copied().chain([place]).collect()
 }
 
 /// The components around each scope.
-fn ways(fleet: &Fleet<'_>) -> Vec<Way> {
-    let mut all: Vec<Way> = Vec::with_capacity(fleet.scopes.len());
+fn paths(fleet: &Fleet<'_>) -> Vec<ElementPath> {
+    let mut all: Vec<ElementPath> = Vec::with_capacity(fleet.scopes.len());
     for scope in &fleet.scopes {
         // A scope comes behind that of the component that it implements.
-        let way = scope.owner.map(|owner| {
+        let path = scope.owner.map(|owner| {
             let owner = &fleet.members[owner];
             within(&all[owner.scope], place(owner.component.origin))
         });
-        all.push(way.unwrap_or_default());
+        all.push(path.unwrap_or_default());
     }
     all
 }
 
-/// The topics of all components whose classes are known, found in the way in which the checker finds them. What is wrong with them is
-/// left to it.
+/// The topics of all components whose classes are known, found in the way in which the checker finds them. What is
+/// wrong with them is left to it.
 fn topics<'a>(
     fleet: &mut Fleet<'a>,
-    ways: &[Way],
+    paths: &[ElementPath],
     mut parameters: Parameters<'a>,
     (registry, options): (&'a Registry, &Options),
     sources: &Sources,
-) -> HashMap<Way, Rc<[TopicUse]>> {
+) -> HashMap<ElementPath, Rc<[TopicUse]>> {
     let mut unheard = Diagnostics::new();
     let report = &mut Report::new(sources, &mut unheard);
     classes::resolve(fleet, registry, options, report);
     let mut checks = properties::check_all(fleet, &mut parameters, report);
     loops::resolve(fleet, &mut checks, (registry, options), &mut parameters, report);
     let mut lists = Lists::default();
-    let mut all: HashMap<Way, Used> = HashMap::new();
+    let mut all: HashMap<ElementPath, Used> = HashMap::new();
     for (at, member) in fleet.members.iter().enumerate().filter(|(_, member)| !member.is_absent) {
         let Kind::Class(index) = member.kind else { continue };
         let class = &fleet.classes[index];
@@ -169,12 +171,12 @@ fn topics<'a>(
         let renamed = if is_periodic { task.renamed(report) } else { Vec::new() };
         let renames = TopicRenames(renamed.into_iter().map(|one| (one.old, one.new)).collect());
         let list = lists.of((index, class), renames);
-        let used = all.entry(within(&ways[member.scope], place(member.component.origin))).or_default();
+        let used = all.entry(within(&paths[member.scope], place(member.component.origin))).or_default();
         if used.seen.insert(list.as_ptr()) {
             used.lists.push(list);
         }
     }
-    all.into_iter().map(|(way, used)| (way, used.joined())).collect()
+    all.into_iter().map(|(path, used)| (path, used.joined())).collect()
 }
 
 /// Lists of topics, each made once.

@@ -16,8 +16,8 @@ pub struct Options {
     pub variables: Vec<Variable>,
     /// Severities that count where composites say nothing else.
     pub severities: Vec<SeveritySetting>,
-    /// True if what the registry does not know is taken as given: classes, and implementations of other kinds. There is no
-    /// assembly then when a component has such a one.
+    /// True if what the registry does not know is taken as given: classes, and implementations of other kinds. There is
+    /// no assembly then when a component has such a one.
     pub assume_classes: bool,
     /// True if the wiring of the fleet is judged as a whole, too: topics without another end, queues that overflow.
     pub wiring: bool,

@@ -6,8 +6,8 @@ use crate::model::{Composite, Missing, Naming, Version};
 use crate::source::Span;
 use crate::syntax::{Element, escaped};
 
-/// True if a name means the very composite that it leads to. A name without a prefix is of the default namespace, as all QNames in values are
-/// (SCA Assembly 1.1, 5.6.1 and 5.7; XML Schema 1.0, part 2, 3.2.18).
+/// True if a name means the very composite that it leads to. A name without a prefix is of the default namespace, as
+/// all QNames in values are (SCA Assembly 1.1, 5.6.1 and 5.7; XML Schema 1.0, part 2, 3.2.18).
 pub(crate) fn is_exact(naming: Naming<'_>, around: &Composite, found: &Composite) -> bool {
     let prefix = naming.name.split_once(':').map_or("", |(prefix, _)| prefix);
     let element = naming.origin.element(&around.document);

@@ -20,8 +20,8 @@ pub(crate) struct Member<'a> {
     pub(crate) is_copy: bool,
     /// True if a condition keeps it away: it is checked as far as it can be known, and is in no fleet.
     pub(crate) is_absent: bool,
-    /// True if it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is said of what others
-    /// would share with it.
+    /// True if it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is
+    /// said of what others would share with it.
     pub(crate) is_partial: bool,
     /// True if it has the name of an earlier one, which is reported.
     pub(crate) is_repeated: bool,

@@ -10,8 +10,8 @@ use crate::diagnostic::{Candidates, nearest};
 pub(crate) struct Similar<'t> {
     /// Those of one kind with one type of messages, in the order of their names.
     groups: HashMap<(&'static str, &'t str), Vec<Known<'t>>>,
-    /// The number of more names are looked at for all topics together: in a fleet in which each robot has topics of its own every search
-    /// goes through those of all others.
+    /// The number of more names are looked at for all topics together: in a fleet in which each robot has topics of its
+    /// own every search goes through those of all others.
     candidates: RefCell<Candidates>,
 }
 
@@ -51,7 +51,8 @@ impl<'t> Similar<'t> {
 }
 
 impl Known<'_> {
-    /// True if its name and another one are different on purpose: one adds something to the other, or they differ in their numbers.
+    /// True if its name and another one are different on purpose: one adds something to the other, or they differ in
+    /// their numbers.
     pub(crate) fn is_apart(&self, name: &Name) -> bool {
         let adds =
             |long: &str, short: &str| long != short && (long.starts_with(short) || long.ends_with(short));

@@ -26,7 +26,8 @@ pub(crate) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     }
 }
 
-/// Checks that no two composites of one namespace have one name; the places of those that are there again, text for text.
+/// Checks that no two composites of one namespace have one name; the places of those that are there again, text for
+/// text.
 pub(crate) fn composites(composites: &[Composite], report: &mut Report<'_>) -> HashSet<usize> {
     let mut again = HashSet::new();
     let mut names: HashMap<(&str, &str), &Composite> = HashMap::new();

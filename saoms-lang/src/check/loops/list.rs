@@ -1,4 +1,5 @@
-//! The list of a component's loops: those of its class, some of them removed, replaced or moved, and those that are added.
+//! The list of a component's loops: those of its class, some of them removed, replaced or moved, and those that are
+//! added.
 
 use std::collections::HashMap;
 
@@ -140,7 +141,8 @@ fn by_default<'a>(
     (loops, is_sound)
 }
 
-/// What one element says has to make sense: one that is removed cannot be anything else, and nothing stands at two places.
+/// What one element says has to make sense: one that is removed cannot be anything else, and nothing stands at two
+/// places.
 fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
     let contradiction = |at, message: String, other, what: &str| {
         Diagnostic::new(&codes::LOOP_CONTRADICTION, at, message).label(other, what)
@@ -166,7 +168,8 @@ fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
     true
 }
 
-/// Says that an element names a loop that the component has, and leaves all of it as it is. What was meant to change it may be wrong, which is told.
+/// Says that an element names a loop that the component has, and leaves all of it as it is. What was meant to change it
+/// may be wrong, which is told.
 fn unchanged(one: &LoopElement, member: &Member<'_>, report: &mut Report<'_>) {
     let says_something = [&one.class, &one.before, &one.after].into_iter().any(Option::is_some);
     let document = &member.composite.document;

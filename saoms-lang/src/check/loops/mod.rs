@@ -41,7 +41,8 @@ struct Changed<'a> {
 }
 
 impl Resolved<'_> {
-    /// Those that the composite says something about, for the judgement of their constructors: the others are as their class has them.
+    /// Those that the composite says something about, for the judgement of their constructors: the others are as their
+    /// class has them.
     pub(crate) fn changed(&self) -> impl Iterator<Item = (&RegisteredLoop, Subject<'_>)> {
         self.changed.iter().map(|one| {
             let (spec, name) = (&self.specs[one.place], &one.element.name);
@@ -70,7 +71,8 @@ struct Usual {
     specs: Arc<[LoopSpec]>,
 }
 
-/// Finds the loops of all components. The class of a component with loops becomes one that uses the topics and references of these as well.
+/// Finds the loops of all components. The class of a component with loops becomes one that uses the topics and
+/// references of these as well.
 pub(crate) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
     checks: &mut [ComponentCheck<'a>],

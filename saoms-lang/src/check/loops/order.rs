@@ -1,8 +1,8 @@
 //! The order of a component's loops.
 //!
-//! Those that are not moved keep the order of the class, added ones behind them in document order. A loop that is moved stands directly
-//! before or after another, which may be moved as well: such loops hang on each other like the nodes of a tree, whose roots are the loops
-//! that are not moved. What hangs on no root hangs on itself, in a circle.
+//! Those that are not moved keep the order of the class, added ones behind them in document order. A loop that is moved
+//! stands directly before or after another, which may be moved as well: such loops hang on each other like the nodes of
+//! a tree, whose roots are the loops that are not moved. What hangs on no root hangs on itself, in a circle.
 
 use std::collections::{HashMap, HashSet};
 

@@ -213,7 +213,7 @@ impl Conversion {
     fn report(&mut self, mut one: Diagnostic, target: Target<'_>, report: &mut Report<'_>) {
         if let Some(source) = target.source {
             // That it is not of the type of the composite's property is told.
-            if report.has_told(&codes::COMPOSITE_VALUE_TYPE, one.location)
+            if report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, one.location)
                 || !self.shared.insert((one.location, one.code.id, target.to_string()))
             {
                 return;

@@ -36,8 +36,8 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// The diagnostic for a finding about these components; `own` is the one that a place without a component is in. `None` where there were
-/// so many that it is only counted.
+/// The diagnostic for a finding about these components; `own` is the one that a place without a component is in. `None`
+/// where there were so many that it is only counted.
 pub(crate) fn diagnostic<'s>(
     code: &'static Code,
     severity: Severity,

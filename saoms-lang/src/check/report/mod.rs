@@ -34,11 +34,12 @@ pub(crate) struct Report<'a> {
     /// The replica that is looked at.
     copy: Option<Copied>,
     /// Diagnostics about replicas: of the first one, and of how many more.
-    copies: Vec<Told>,
+    copies: Vec<ReplicaDiagnostic>,
     known_copies: HashMap<(&'static str, Location), usize>,
     /// The lines of tables that are about replicas that are there.
     lines: HashSet<Location>,
-    /// Diagnostics about lines without a replica: the same composite may have the replica where it is there another time.
+    /// Diagnostics about lines without a replica: the same composite may have the replica where it is there another
+    /// time.
     lines_of_none: Vec<Diagnostic>,
 }
 
@@ -50,7 +51,7 @@ struct Copied {
 }
 
 /// A diagnostic about replicas at one place.
-struct Told {
+struct ReplicaDiagnostic {
     one: Diagnostic,
     first: Copied,
     last: Copied,
@@ -86,13 +87,13 @@ impl<'a> Report<'a> {
     }
 
     /// True if something of this code was told at this place.
-    pub(crate) fn has_told(&self, code: &'static Code, at: Location) -> bool {
+    pub(crate) fn has_diagnostic(&self, code: &'static Code, at: Location) -> bool {
         self.known_copies.contains_key(&(code.id, at))
             || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
     }
 
     /// True if something of this code was told of this text anywhere in a file.
-    pub(crate) fn has_told_of(&self, code: &'static Code, file: FileId, text: &str) -> bool {
+    pub(crate) fn has_diagnostic_about(&self, code: &'static Code, file: FileId, text: &str) -> bool {
         let is_it = |one: &Diagnostic| {
             one.code == code && one.location.file == file && self.sources.snippet(one.location) == text
         };
@@ -108,7 +109,8 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how many.
+    /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how
+    /// many.
     #[inline]
     pub(crate) fn about(&mut self, member: &Member<'_>) {
         if member.is_copy || self.copy.is_some() {
@@ -150,7 +152,8 @@ impl<'a> Report<'a> {
         self.lines.insert(key);
     }
 
-    /// Adds what is told of a line of a table that is about no replica of this composite, unless it is about one elsewhere.
+    /// Adds what is told of a line of a table that is about no replica of this composite, unless it is about one
+    /// elsewhere.
     pub(crate) fn line_of_none(&mut self, diagnostic: Diagnostic) {
         self.lines_of_none.push(diagnostic);
     }
@@ -163,7 +166,9 @@ impl<'a> Report<'a> {
                 self.diagnostics.push(one);
             }
         }
-        for Told { mut one, first: Copied { path, index }, more, .. } in std::mem::take(&mut self.copies) {
+        for ReplicaDiagnostic { mut one, first: Copied { path, index }, more, .. } in
+            std::mem::take(&mut self.copies)
+        {
             // What a component around them is told at this place is the same mistake.
             if self.said.contains(&said(&one)) {
                 continue;
@@ -186,7 +191,7 @@ impl<'a> Report<'a> {
     fn push_copy(&mut self, mut one: Diagnostic, copy: Copied) {
         let key = (one.code.id, one.location);
         if let Some(known) = self.known_copies.get(&key) {
-            let Told { first, last, more, .. } = &mut self.copies[*known];
+            let ReplicaDiagnostic { first, last, more, .. } = &mut self.copies[*known];
             // What is found again from components inside of a replica is of that one.
             let depth = |copy: &Copied| copy.path.matches('/').count();
             if *last != copy && depth(first) == depth(&copy) {
@@ -208,7 +213,7 @@ impl<'a> Report<'a> {
         one.suggestions = suggestions;
         one.help.extend(of_all.into_iter().map(|suggestion| suggestion.description));
         self.known_copies.insert(key, self.copies.len());
-        self.copies.push(Told { one, first: copy.clone(), last: copy, more: 0 });
+        self.copies.push(ReplicaDiagnostic { one, first: copy.clone(), last: copy, more: 0 });
     }
 
     /// Adds a diagnostic, unless the same was said of the same place.
@@ -244,7 +249,7 @@ impl<'a> Report<'a> {
 
     /// The number of errors there are, as far as they are told.
     pub(crate) fn errors(&self) -> usize {
-        let of_copies = self.copies.iter().filter(|told| told.one.severity == Severity::Error);
+        let of_copies = self.copies.iter().filter(|kept| kept.one.severity == Severity::Error);
         let of_lines = self.lines_of_none.iter().filter(|one| one.severity == Severity::Error);
         let of_lines = of_lines.filter(|one| !self.lines.contains(&one.location));
         self.diagnostics.errors() + of_copies.count() + of_lines.count()
@@ -281,8 +286,8 @@ impl<'a> Report<'a> {
         self.copy.is_none() && self.diagnostics.skip(code, severity, at)
     }
 
-    /// A diagnostic about a name that stands for nothing: with the likeliest right ones as suggestions, or else with all
-    /// right ones, introduced by `known_as`.
+    /// A diagnostic about a name that stands for nothing: with the likeliest right ones as suggestions, or else with
+    /// all right ones, introduced by `known_as`.
     pub(crate) fn unknown<'n>(
         &mut self,
         code: &'static Code,

@@ -22,8 +22,8 @@ pub struct SeveritySetting {
 }
 
 impl SeveritySetting {
-    /// Reads `CODE=LEVEL` or `CODE=LEVEL:REASON`, the value of the option `option` (as `--severity`). It becomes a source text of that name, so
-    /// that diagnostics can point into it. `None`, and a diagnostic, when it is none.
+    /// Reads `CODE=LEVEL` or `CODE=LEVEL:REASON`, the value of the option `option` (as `--severity`). It becomes a
+    /// source text of that name, so that diagnostics can point into it. `None`, and a diagnostic, when it is none.
     pub fn parse(
         option: &str,
         text: &str,
@@ -251,7 +251,8 @@ impl Severities {
         }
     }
 
-    /// Reports options that change nothing, because composites set what there is to something else: what has a reason there stays.
+    /// Reports options that change nothing, because composites set what there is to something else: what has a reason
+    /// there stays.
     pub(crate) fn overruled(&self, diagnostics: &mut Diagnostics) {
         let options = self.rules.iter().filter(|rule| matches!(rule.scope, Scope::Option) && !rule.is_used);
         for option in options {

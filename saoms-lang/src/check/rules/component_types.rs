@@ -1,4 +1,5 @@
-//! Names in component types: held against each other, against the classes that they describe, and against the components that use them.
+//! Names in component types: held against each other, against the classes that they describe, and against the
+//! components that use them.
 
 use crate::check::fleet::Fleet;
 use crate::check::fleet::classes::ClassIndex;

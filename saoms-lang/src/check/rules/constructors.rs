@@ -41,9 +41,9 @@ pub(crate) fn looping(
     judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
 }
 
-/// The same for a component of which some values are not known, for faults that are reported: `unsure` are the places of these
-/// properties. Told is what the constructor finds about the others whichever values those have, from one end of what is allowed to the
-/// other, so that a wrong value has no consequences.
+/// The same for a component of which some values are not known, for faults that are reported: `unsure` are the places
+/// of these properties. Told is what the constructor finds about the others whichever values those have, from one end
+/// of what is allowed to the other, so that a wrong value has no consequences.
 pub(crate) fn partly(
     subject: Subject<'_>,
     class: &ClassIndex<'_>,

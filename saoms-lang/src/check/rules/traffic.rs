@@ -113,8 +113,9 @@ impl All<'_> {
         format!("{} {does}", self.who(ends))
     }
 
-    /// The topic that those who use this one meant by a `topicRename`: of the same messages, with nearly its name, which is the one that it has
-    /// without renaming. Names that only add something to another one, or differ in their numbers, keep parts of a fleet apart.
+    /// The topic that those who use this one meant by a `topicRename`: of the same messages, with nearly its name,
+    /// which is the one that it has without renaming. Names that only add something to another one, or differ in their
+    /// numbers, keep parts of a fleet apart.
     fn missed<'t>(&self, topic: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
         if topic.writers.is_empty()
             || topic.readers.is_empty()
@@ -199,7 +200,8 @@ impl All<'_> {
         let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
         let pace = topic.pace();
         let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
-        // Those of one period, and of these those that lose messages with one queue: one is told of each, since a fleet of robots says the same.
+        // Those of one period, and of these those that lose messages with one queue: one is told of each, since a fleet
+        // of robots says the same.
         let mut alike: HashMap<Duration, Vec<TopicEnd>> = HashMap::new();
         let mut queues: HashMap<(Duration, usize), Vec<TopicEnd>> = HashMap::new();
         let losing = |reader: &TopicEnd| {
@@ -260,7 +262,8 @@ impl All<'_> {
     }
 }
 
-/// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one lacks.
+/// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one
+/// lacks.
 fn meant<'t>(lone: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
     similar.nearest(lone, |other| match lone.writers.is_empty() {
         true => !other.topic.writers.is_empty(),
@@ -268,8 +271,8 @@ fn meant<'t>(lone: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTo
     })
 }
 
-/// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with nearly its name,
-/// and used by several others.
+/// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with
+/// nearly its name, and used by several others.
 fn left<'t>(topic: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
     let only = topic.writers.first()?.component;
     if topic.readers.is_empty() || topic.ends().any(|end| end.component != only) {

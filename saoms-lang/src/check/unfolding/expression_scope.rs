@@ -46,7 +46,8 @@ pub(crate) enum Supplied {
 }
 
 impl Names {
-    /// The names that the expressions in a composite and in what it includes can use, the first of each, with what is taken of each. `owner` is the component that it implements.
+    /// The names that the expressions in a composite and in what it includes can use, the first of each, with what is
+    /// taken of each. `owner` is the component that it implements.
     pub(crate) fn of(
         composites: &[&Composite],
         owner: Option<&ComponentElement>,
@@ -87,11 +88,12 @@ impl Names {
         found.value.clone()
     }
 
-    /// True if an expression has no value because a name has none, or one that is not of its type: that is told, and once.
-    pub(crate) fn tell_value(&self, name: &str, report: &mut Report<'_>) -> bool {
+    /// True if an expression has no value because a name has none, or one that is not of its type: that is told, and
+    /// once.
+    pub(crate) fn report_value(&self, name: &str, report: &mut Report<'_>) -> bool {
         match self.all.get(name) {
             Some(Name { mistyped: Some(property), text: Some(text), .. }) => {
-                let is_told = report.has_told(&codes::COMPOSITE_VALUE_TYPE, text.location);
+                let is_told = report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, text.location);
                 is_told || report.of_all(|report| !value_type::holds_by_name(property, text, report))
             }
             Some(Name { is_told, text: None, .. }) => is_told.replace(true),

@@ -1,9 +1,11 @@
-//! From composites to the components that they come to: what is included stands where it is included, and a component that a
-//! composite implements has the components of it inside.
+//! From composites to the components that they come to: what is included stands where it is included, and a component
+//! that a composite implements has the components of it inside.
 
 pub(crate) mod append_list;
 pub(crate) mod conditions;
 pub(crate) mod expression_scope;
+mod inner;
+mod members;
 pub(crate) mod remove_absent;
 pub(crate) mod replica;
 pub(crate) mod replica_expansion;
@@ -11,25 +13,21 @@ pub(crate) mod replica_plan;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use crate::check::fleet::composite_names;
 use crate::check::fleet::unique_names;
-use crate::check::fleet::{Fleet, Kind, Member, Scope, Unit};
+use crate::check::fleet::{Fleet, Scope, Unit};
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::report::severities::Severities;
 use crate::check::unfolding::append_list::{AppendList, Appender};
-use crate::check::unfolding::conditions::{Presence, UnitProperties};
-use crate::check::unfolding::replica::{Instance, Replica};
+use crate::check::unfolding::conditions::UnitProperties;
+use crate::check::unfolding::replica::Replica;
 use crate::check::unfolding::replica_plan::{MOST_REPLICAS, Plan};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
 use crate::source::Location;
-use crate::syntax::Element;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
 pub(crate) const MOST_MEMBERS: usize = 1_000_000;
-/// Composites of one circle that are named.
-const SHOWN: usize = 8;
 /// Composites inside each other.
 const MOST_DEEP: usize = 250;
 
@@ -130,46 +128,6 @@ pub(crate) struct Unfolding<'a> {
     pub(crate) replicas_left: u64,
     /// The properties of units that have expressions.
     pub(crate) known: Vec<Option<UnitProperties<'a>>>,
-}
-
-/// The number of components a composite comes to, known before they are made.
-fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut HashMap<usize, usize>) -> usize {
-    if let Some(size) = known.get(&place) {
-        return *size;
-    }
-    // What is in a circle, or too deep, is reported otherwise.
-    known.insert(place, 0);
-    let composite = &contribution.composites()[place];
-    let mut size = composite.components.len();
-    for naming in composite.namings() {
-        if let Some(Link::To(inner)) = contribution.link(naming.origin)
-            && deep <= MOST_DEEP
-        {
-            size = size.saturating_add(self::size(contribution, *inner, deep + 1, known));
-        }
-    }
-    known.insert(place, size);
-    size
-}
-
-/// True if two elements say the same in the same words, however they are laid out.
-fn is_same(one: Element<'_>, other: Element<'_>) -> bool {
-    let says = |element: Element<'_>| {
-        let attributes: Vec<_> = element
-            .written_attributes()
-            .map(|one| (one.name().to_owned(), one.value().into_owned()))
-            .collect();
-        let text = element.trimmed_text().map(|text| text.value);
-        (element.name().to_owned(), attributes, text, element.children().count())
-    };
-    let (mut mine, mut others) = (one.descendants(), other.descendants());
-    loop {
-        match (mine.next(), others.next()) {
-            (None, None) => return true,
-            (Some(one), Some(other)) if says(one) == says(other) => {}
-            _ => return false,
-        }
-    }
 }
 
 /// A composite whose components are being collected.
@@ -310,168 +268,5 @@ impl<'a> Unfolding<'a> {
             });
         }
         self.open(place, composite, unit, Some(naming), report);
-    }
-
-    /// Adds a component as it is `written`, and what is inside it.
-    pub(crate) fn member(
-        &mut self,
-        written: &'a ComponentElement,
-        component: &'a ComponentElement,
-        instance: Option<&'a Instance>,
-        presence: Presence,
-        report: &mut Report<'_>,
-    ) {
-        let Some(open) = self.open.last() else { return };
-        let (composite, unit, autowire) = (open.composite, open.unit, open.autowire);
-        let is_seen = presence != Presence::Absent && !open.is_absent;
-        let scope = self.fleet.units[unit].scope;
-        let index = self.fleet.members.len();
-        let mut member = Member::new(composite, unit, scope, component);
-        let owner = self.fleet.scopes[scope].owner;
-        member.autowire = autowire;
-        member.instance = instance;
-        member.is_absent = !is_seen;
-        member.is_partial = presence == Presence::Unknown
-            || instance.is_some_and(|instance| instance.partial.is_some())
-            || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
-        let is_partial = member.is_partial;
-        member.is_copy = instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy);
-        let own = component.path().unwrap_or(&component.name);
-        match owner {
-            Some(owner) => member.set_path(format!("{}/{own}", self.fleet.members[owner].path())),
-            None if component.path().is_some() => member.set_path(own.to_string()),
-            None => {}
-        }
-        self.fleet.members.push(member);
-        let name = component.name.as_str();
-        if is_seen {
-            self.fleet.scopes[scope].members.push(index);
-        }
-        let by_name = &mut self.fleet.scopes[scope].by_name;
-        let first = by_name.get(name).copied();
-        if first.is_none() && is_seen && !name.is_empty() {
-            by_name.insert(component.name.value.clone(), index);
-        }
-        match first {
-            _ if name.is_empty() => {}
-            None if is_seen => {}
-            Some(_) if is_seen && is_partial => {}
-            Some(first) if is_seen && self.fleet.members[first].is_partial => {
-                self.fleet.scopes[scope].by_name.insert(component.name.value.clone(), index);
-            }
-            Some(first) if is_seen => {
-                self.fleet.members[index].is_repeated = true;
-                report.about(&self.fleet.members[index]);
-                self.repeated(component, first, report);
-                report.about_all();
-            }
-            _ => {
-                let condition = written.condition().map_or(component.name.location, |text| text.location);
-                self.fleet.absent.insert((scope, name), condition);
-            }
-        }
-        if let Some(naming) = Naming::of_component(component) {
-            self.inner(index, naming, !is_seen, report);
-        }
-    }
-
-    fn repeated(&self, component: &ComponentElement, first: usize, report: &mut Report<'_>) {
-        let first = &self.fleet.members[first];
-        let message = format!("there are two components {}", quoted(&component.name));
-        let mut one = Diagnostic::new(&codes::COMPONENT_REPEATED, component.name.location, message)
-            .label(first.component.name.location, "the first");
-        let by = self.open.last().and_then(|open| open.by.filter(|_| self.open.len() > 1));
-        if let Some(by) = by.filter(|_| first.composite.file() != component.origin.file()) {
-            one = one.label(by.name.location, "included here");
-        }
-        let here = self.open.last().map(|open| component.origin.element(&open.composite.document));
-        let there = first.component.origin.element(&first.composite.document);
-        report.push(match here {
-            Some(here) if !first.is_copy && is_same(here, there) => {
-                let at = here.span().in_file(component.origin.file());
-                one.suggest("remove the second: both are the same, word for word", at, "")
-            }
-            _ => one.help("give each its own name"),
-        });
-    }
-
-    /// Opens the composite that implements a component.
-    fn inner(&mut self, member: usize, naming: Naming<'a>, is_absent: bool, report: &mut Report<'_>) {
-        let Some((place, composite)) = self.find(naming, report) else {
-            let is_given = self.options.assume_classes
-                && !matches!(self.fleet.contribution.link(naming.origin), Some(Link::Faulty));
-            if is_given {
-                self.fleet.members[member].kind = Kind::Given;
-            }
-            return;
-        };
-        if self.is_circle(place, naming, report) || self.is_full(place, naming, report) {
-            return;
-        }
-        let scope = self.fleet.scopes.len();
-        self.fleet.scopes.push(Scope { owner: Some(member), ..Scope::default() });
-        self.fleet.members[member].kind = Kind::Composite(scope);
-        let unit = self.unit(scope);
-        self.fleet.units[unit].is_absent = is_absent;
-        self.open(place, composite, unit, Some(naming), report);
-    }
-
-    fn is_full(&mut self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
-        let is_too_deep = self.open.len() > MOST_DEEP;
-        let more = size(self.fleet.contribution, place, self.open.len(), &mut self.sizes);
-        if !is_too_deep && self.fleet.members.len().saturating_add(more) <= MOST_MEMBERS {
-            return false;
-        }
-        if !std::mem::replace(&mut self.is_full, true) {
-            let message = match is_too_deep {
-                true => format!("composites are inside each other more than {MOST_DEEP} deep"),
-                false => format!("inner composites come to more than {MOST_MEMBERS} components"),
-            };
-            let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, naming.name.location, message);
-            report.push(one.help("a composite inside a composite multiplies: is this what is meant?"));
-        }
-        true
-    }
-
-    /// The composite that a name leads to. A name that leads nowhere is reported.
-    fn find(&mut self, naming: Naming<'a>, report: &mut Report<'_>) -> Option<(usize, &'a Composite)> {
-        let contribution = self.fleet.contribution;
-        let link = contribution.link(naming.origin)?;
-        let around = self.open.last()?.composite;
-        match link {
-            Link::To(place) => {
-                let composite = &contribution.composites()[*place];
-                if !composite_names::is_exact(naming, around, composite)
-                    && self.loose.insert(naming.name.location)
-                {
-                    report.push(composite_names::loose(naming, around, composite));
-                }
-                Some((*place, composite))
-            }
-            Link::Faulty => None,
-            Link::Missing(missing) => {
-                report.push(composite_names::not_found(naming, missing, around, self.options.assume_classes));
-                None
-            }
-        }
-    }
-
-    fn is_circle(&self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
-        let Some(start) = self.open.iter().position(|open| open.place == place) else { return false };
-        let circle = &self.open[start..];
-        let mut names: Vec<String> =
-            circle.iter().take(SHOWN).map(|open| quoted(&open.composite.name)).collect();
-        if circle.len() > SHOWN {
-            names.push(format!("{} more", circle.len() - SHOWN));
-        }
-        names.push(names[0].clone());
-        let message = format!("composites hold each other in a circle: {}", names.join(" -> "));
-        let mut one = Diagnostic::new(&codes::COMPOSITE_CIRCLE, naming.name.location, message)
-            .help("a composite cannot be a part of itself: remove one of these");
-        for by in self.open[start + 1..].iter().filter_map(|open| open.by).take(8) {
-            one = one.label(by.name.location, "through this");
-        }
-        report.push(one);
-        true
     }
 }

@@ -68,7 +68,8 @@ impl Instance {
                     .any(|text| render(&text, &mut |name| self.value(name)).is_err()))
     }
 
-    /// A component with the numbers of this index in all its texts; and the faults in these, each with the text it is in.
+    /// A component with the numbers of this index in all its texts; and the faults in these, each with the text it is
+    /// in.
     pub(crate) fn of(
         &self,
         template: &ComponentElement,

@@ -1,5 +1,5 @@
-//! Making components: one as it is written, or its replicas. Where a fault keeps replicas from being made, one stands for them, so that
-//! everything else about them is checked all the same.
+//! Making components: one as it is written, or its replicas. Where a fault keeps replicas from being made, one stands
+//! for them, so that everything else about them is checked all the same.
 
 use std::rc::Rc;
 

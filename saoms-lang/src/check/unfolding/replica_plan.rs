@@ -38,7 +38,8 @@ pub(crate) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// The plan of the replicas of a component; `None` with a fault, which is reported. `left` is how many there may be.
+    /// The plan of the replicas of a component; `None` with a fault, which is reported. `left` is how many there may
+    /// be.
     pub(crate) fn of(
         component: &'a ComponentElement,
         replicas: &'a Replicas,
@@ -267,8 +268,8 @@ pub(crate) fn first_index(replicas: &Replicas, names: &Names) -> Option<i64> {
     parse(from).and_then(|one| integer(&one, &mut |name| names.value(name))).ok()
 }
 
-/// True if a component has an attribute that `count` may be meant by, and that is told as an error, which nobody can lower: with it
-/// nothing is known of the replicas.
+/// True if a component has an attribute that `count` may be meant by, and that is told as an error, which nobody can
+/// lower: with it nothing is known of the replicas.
 fn is_count_misread(
     component: &ComponentElement,
     document: &Document,
@@ -286,7 +287,7 @@ fn is_count_misread(
         return true;
     }
     // Its namespace may be nearly that of SAOMS.
-    let is_near = report.has_told_of(&codes::NAMESPACE_NEAR, file, meant.namespace());
+    let is_near = report.has_diagnostic_about(&codes::NAMESPACE_NEAR, file, meant.namespace());
     if is_near {
         let why = format!(
             "{} in it says how many replicas there are, and they cannot be made without",
@@ -342,7 +343,7 @@ pub(crate) fn as_index(text: &str) -> Option<String> {
 /// The number that an attribute comes to. Faults are reported.
 fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Option<i64> {
     let value = parse(text).and_then(|one| integer(&one, &mut |name| names.value(name)));
-    value.map_err(|fault| tell(text, &report.parts(text), &fault, names, report)).ok()
+    value.map_err(|fault| report_fault(text, &report.parts(text), &fault, names, report)).ok()
 }
 
 /// True if a condition is true. Faults are reported.
@@ -353,11 +354,11 @@ pub(crate) fn condition(
     report: &mut Report<'_>,
 ) -> Option<bool> {
     let holds = parse(text).and_then(|one| boolean(&one, value));
-    holds.map_err(|fault| tell(text, &report.parts(text), &fault, names, report)).ok()
+    holds.map_err(|fault| report_fault(text, &report.parts(text), &fault, names, report)).ok()
 }
 
 /// Reports what is wrong with an expression in a text.
-pub(crate) fn tell(
+pub(crate) fn report_fault(
     text: &Text,
     parts: &Parts,
     fault: &ExpressionFault,
@@ -365,7 +366,7 @@ pub(crate) fn tell(
     report: &mut Report<'_>,
 ) {
     let written = text.get(fault.at.clone()).unwrap_or_default();
-    if !names.tell_value(written.trim(), report) {
+    if !names.report_value(written.trim(), report) {
         report.push(wrong(text, parts, fault, names));
     }
 }

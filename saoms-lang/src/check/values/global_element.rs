@@ -8,7 +8,8 @@ use crate::source::Text;
 use crate::syntax::{Document, Element, ElementId};
 
 impl<'a> Raw<'a> {
-    /// What components take of a property of this declaration: where an `element` is its type, what is inside of each such element.
+    /// What components take of a property of this declaration: where an `element` is its type, what is inside of each
+    /// such element.
     pub(crate) fn inside_elements_of(self, property: &Property) -> Self {
         let Some(of) = property.element() else { return self };
         let name = local(of);
@@ -49,7 +50,8 @@ fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
 }
 
-/// Checks that the values of a property that has an `element` are such elements; `code` is that of a value of the wrong type.
+/// Checks that the values of a property that has an `element` are such elements; `code` is that of a value of the wrong
+/// type.
 pub(crate) fn check(property: &Property, document: &Document, code: &'static Code, report: &mut Report<'_>) {
     let Some(of) = property.element().filter(|of| !of.is_empty() && property.r#type().is_none()) else {
         return;
@@ -113,7 +115,8 @@ struct Expected<'a> {
 }
 
 impl<'a> Expected<'a> {
-    /// A name without a prefix says nothing of a namespace: the default one is that of SCA, which has no elements for values.
+    /// A name without a prefix says nothing of a namespace: the default one is that of SCA, which has no elements for
+    /// values.
     fn of(name: &'a Text, at: Element<'_>) -> Self {
         let namespace = name.split_once(':').and_then(|(prefix, _)| at.resolve_prefix(prefix));
         Self { local: local(name), namespace: namespace.map(|one| one.into_owned()) }

@@ -1,8 +1,9 @@
 //! Paths of a `source`: `$name`, and the part of its value that steps lead to.
 //!
-//! SCA takes an XPath (Assembly 1.1, 4.1.3). A path is the part of it that fleets use: steps down into elements by name or `*`, each with one
-//! predicate, steps to any depth (`//`), and at the end an attribute or a text. Where a step leads to several elements, the next one starts from
-//! all of them, as in XPath. Prefixes do not count. Everything else of XPath is an error.
+//! SCA takes an XPath (Assembly 1.1, 4.1.3). A path is the part of it that fleets use: steps down into elements by name
+//! or `*`, each with one predicate, steps to any depth (`//`), and at the end an attribute or a text. Where a step
+//! leads to several elements, the next one starts from all of them, as in XPath. Prefixes do not count. Everything else
+//! of XPath is an error.
 
 use std::ops::Range;
 
@@ -101,7 +102,8 @@ pub(crate) fn no_step(step: &str, at: Range<usize>) -> Fault {
     Fault::unknown(at, NO_STEP)
 }
 
-/// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within quotation marks is none.
+/// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within
+/// quotation marks is none.
 pub(crate) fn steps(path: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
     let mut start = Some(0);
     std::iter::from_fn(move || {

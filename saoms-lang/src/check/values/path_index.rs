@@ -1,4 +1,5 @@
-//! The parts of the value of a property, found by the steps of many paths: a fleet can take each of its values from one complex property.
+//! The parts of the value of a property, found by the steps of many paths: a fleet can take each of its values from one
+//! complex property.
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::{HashMap, HashSet};
@@ -18,8 +19,8 @@ pub(crate) struct PathIndex<'a> {
     instance: Option<&'a Instance>,
     /// The elements that steps start from.
     first: Rc<IndexLevel<'a>>,
-    /// What they start from where each value is one element, and the first step means a part of that: `$order/total` also means the
-    /// `total` of a value that is written as one element.
+    /// What they start from where each value is one element, and the first step means a part of that: `$order/total`
+    /// also means the `total` of a value that is written as one element.
     inside: Option<Rc<IndexLevel<'a>>>,
     /// The elements behind steps, by these and the place where they start.
     behind: RefCell<HashMap<(bool, String), Rc<IndexLevel<'a>>>>,

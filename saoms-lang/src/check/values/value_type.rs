@@ -24,7 +24,8 @@ impl Typed<'_> {
         element.resolve_prefix(prefix).map(|namespace| namespace.into_owned())
     }
 
-    /// Its type, where that is a simple one of XML Schema. A type of the same name in a namespace of users is another one.
+    /// Its type, where that is a simple one of XML Schema. A type of the same name in a namespace of users is another
+    /// one.
     fn simple_type(&self) -> Option<&'static SimpleType> {
         let of = self.property.r#type()?;
         let found = SimpleType::find(local(of))?;
@@ -45,7 +46,8 @@ impl Typed<'_> {
     }
 }
 
-/// True if a value is of the type of a property, where it is not known what the prefixes of types mean; where it is not, that is reported.
+/// True if a value is of the type of a property, where it is not known what the prefixes of types mean; where it is
+/// not, that is reported.
 pub(crate) fn holds_by_name(property: &Property, value: &Text, report: &mut Report<'_>) -> bool {
     let of = property.r#type().and_then(|of| SimpleType::find(local(of)));
     of.is_none_or(|of| holds(property, of, value, report))
@@ -66,7 +68,8 @@ fn holds(property: &Property, of: &SimpleType, value: &Text, report: &mut Report
     let is_hidden = value.is_empty() && value.location.file == property.tag().file;
     let at = if is_hidden { property.tag() } else { value.location };
     let code = &codes::COMPOSITE_VALUE_TYPE;
-    if report.skip(code, Severity::Error, at) || report.has_told(code, at) || is_refused(value, report) {
+    if report.skip(code, Severity::Error, at) || report.has_diagnostic(code, at) || is_refused(value, report)
+    {
         return false;
     }
     let named = property.r#type();
@@ -99,5 +102,5 @@ fn meant_boolean(text: &str) -> Option<&'static str> {
 fn is_refused(value: &Text, report: &Report<'_>) -> bool {
     const OF_CLASSES: [&Code; 4] =
         [&codes::VALUE_TYPE, &codes::VALUE_EMPTY, &codes::VALUE_RANGE, &codes::VALUE_NOT_ALLOWED];
-    OF_CLASSES.into_iter().any(|code| report.has_told(code, value.location))
+    OF_CLASSES.into_iter().any(|code| report.has_diagnostic(code, value.location))
 }

@@ -23,8 +23,8 @@ struct Services<'c> {
 }
 
 impl<'c> Autowire<'c> {
-    /// The services with an interface in a scope, at most so many, each with the component of the scope that offers it, which is another one
-    /// than the one that asks; and whether there may be more.
+    /// The services with an interface in a scope, at most so many, each with the component of the scope that offers it,
+    /// which is another one than the one that asks; and whether there may be more.
     pub(crate) fn offers(
         &mut self,
         (scope, asking): (usize, usize),

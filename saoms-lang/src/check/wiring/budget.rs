@@ -21,7 +21,8 @@ impl Default for WireBudget {
 }
 
 impl WireBudget {
-    /// True if there may be as many more as this target or source stands for. That there are too many is reported, once.
+    /// True if there may be as many more as this target or source stands for. That there are too many is reported,
+    /// once.
     pub(crate) fn take(&self, text: &Text, scope: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
         let Some(group) = fleet.group(scope, parts(text).0) else { return true };
         let left = self.0.get();

@@ -1,7 +1,7 @@
 //! Wires that lead back to where they came from.
 //!
-//! A call runs inside the caller's execution. A component that is called back by the one it is calling is busy and cannot
-//! answer, so such a circle of wires is a fault of the composite.
+//! A call runs inside the caller's execution. A component that is called back by the one it is calling is busy and
+//! cannot answer, so such a circle of wires is a fault of the composite.
 
 use super::cycles::cycles;
 use super::target::Provider;
@@ -27,8 +27,8 @@ struct Wire<'f> {
 }
 
 impl<'f> CallCycles<'f> {
-    /// Adds a wire, unless no circle can go through it: what the host serves for a component does not disturb the component, and one without
-    /// references calls nobody.
+    /// Adds a wire, unless no circle can go through it: what the host serves for a component does not disturb the
+    /// component, and one without references calls nobody.
     pub(crate) fn add(
         &mut self,
         member: usize,

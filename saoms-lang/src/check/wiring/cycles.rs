@@ -2,9 +2,9 @@
 
 /// Finds the cycles among so many nodes that have these edges, each from a node to another one.
 ///
-/// A cycle is the places of its edges in the order of walking it; there is one for each edge that leads back to where a walk in
-/// order of the nodes came from: without all those there is no cycle. Time and space are linear in the graph; all cycles together can
-/// have as many edges as its square, so that each is only lent to `found`.
+/// A cycle is the places of its edges in the order of walking it; there is one for each edge that leads back to where a
+/// walk in order of the nodes came from: without all those there is no cycle. Time and space are linear in the graph;
+/// all cycles together can have as many edges as its square, so that each is only lent to `found`.
 pub(crate) fn cycles(nodes: usize, edges: &[(usize, usize)], mut found: impl FnMut(&[usize])) {
     #[derive(Clone, Copy, PartialEq)]
     enum State {

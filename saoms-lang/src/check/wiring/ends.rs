@@ -98,7 +98,8 @@ impl<'f> Wires<'f, '_> {
         for wire in wires {
             self.add(wire.target, (wire.scope, own), true, interface, &mut level, report);
         }
-        // A composite wires its references to what is around it, where the component that it implements says nothing (SCA Assembly 1.1, 5.3).
+        // A composite wires its references to what is around it, where the component that it implements says nothing
+        // (SCA Assembly 1.1, 5.3).
         let inner = fleet.inner(member).filter(|_| !is_said);
         let declared = inner.into_iter().flat_map(|inner| inner.references()).find(|one| one.name == name);
         for text in declared.map_or(&[][..], |declared| &declared.targets) {

@@ -21,7 +21,7 @@ impl Misread {
     }
 
     /// A diagnostic about the URI with what to write.
-    pub(crate) fn told(self, one: Diagnostic, text: &Text) -> Diagnostic {
+    pub(crate) fn add_to(self, one: Diagnostic, text: &Text) -> Diagnostic {
         let one = one.help(self.help);
         match self.meant {
             Some(meant) => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),
@@ -30,8 +30,8 @@ impl Misread {
     }
 }
 
-/// What a URI means that is written in another way: with the index of a replica where there is none, or as other languages write it, with commas between
-/// several, or something else than `/` before the name of a service.
+/// What a URI means that is written in another way: with the index of a replica where there is none, or as other
+/// languages write it, with commas between several, or something else than `/` before the name of a service.
 pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -> Option<Misread> {
     const LISTED: [char; 3] = [',', ';', '|'];
     const BEHIND: [char; 6] = ['#', '.', ':', '\\', '>', '-'];
@@ -62,8 +62,8 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
     Some(promoted.unwrap_or_else(plain))
 }
 
-/// What is meant by a URI that leads into the composite of a component, by the name of a component there and perhaps of its service or reference: what of
-/// it the composite promotes.
+/// What is meant by a URI that leads into the composite of a component, by the name of a component there and perhaps of
+/// its service or reference: what of it the composite promotes.
 pub(crate) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'_>) -> Option<Misread> {
     let inner = fleet.inner(member)?;
     let (first, rest) = behind.split_first()?;

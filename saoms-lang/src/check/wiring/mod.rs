@@ -1,7 +1,7 @@
 //! Wiring: the resolver of references to services.
 //!
-//! A reference of a component of a class collects its targets from the inside out: those of its own component, and those of
-//! every component around it that a composite's reference promotes it to.
+//! A reference of a component of a class collects its targets from the inside out: those of its own component, and
+//! those of every component around it that a composite's reference promotes it to.
 
 pub(crate) mod autowire;
 pub(crate) mod budget;
@@ -145,8 +145,8 @@ impl<'f, 'a> Wires<'f, 'a> {
                 let is_1_1 = self.fleet.members[member].composite.version.is_1_1();
                 let severity = if is_again && !is_1_1 { Severity::Warning } else { Severity::Error };
                 let places = (first.place, second.place);
-                let told = TooMany { place, places, count: all.len(), is_again };
-                self.too_many(told, multiplicity, severity, report);
+                let found = TooMany { place, places, count: all.len(), is_again };
+                self.too_many(found, multiplicity, severity, report);
             }
             _ => {}
         }
@@ -192,8 +192,8 @@ impl<'f, 'a> Wires<'f, 'a> {
                     // In SCA 1.0 a warning: another program may take the first.
                     let is_1_1 = fleet.members[member].composite.version.is_1_1();
                     let severity = if is_1_1 { Severity::Error } else { Severity::Warning };
-                    let told = TooMany { place, places, count: written.count, is_again: false };
-                    self.too_many(told, most, severity, report);
+                    let found = TooMany { place, places, count: written.count, is_again: false };
+                    self.too_many(found, most, severity, report);
                 }
             }
             for wire in self.wires_of(member).iter().filter(|wire| component.reference(wire.name).is_none()) {
@@ -207,9 +207,9 @@ impl<'f, 'a> Wires<'f, 'a> {
             if let Some(places) = ends.written.first_two
                 && !multiplicity.is_many()
             {
-                let told =
+                let found =
                     TooMany { place: (member, name), places, count: ends.written.count, is_again: false };
-                self.too_many(told, multiplicity, Severity::Error, report);
+                self.too_many(found, multiplicity, Severity::Error, report);
             }
         }
     }

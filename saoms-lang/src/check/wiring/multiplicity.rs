@@ -5,8 +5,8 @@ use crate::check::fleet::Fleet;
 use crate::model::{Multiplicity, ReferenceElement};
 use crate::source::Located;
 
-/// True if the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1): only with
-/// `nonOverridable`. In SCA 1.0 those of a reference that takes several do.
+/// True if the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1):
+/// only with `nonOverridable`. In SCA 1.0 those of a reference that takes several do.
 pub(crate) fn keeps_own(
     fleet: &Fleet<'_>,
     (member, _): ReferenceId<'_>,

@@ -43,7 +43,7 @@ impl Side {
 
 impl<'a> Fleet<'a> {
     /// The names of the services of a component; `None` where any may be there.
-    pub(crate) fn service_names<'n>(&'n self, member: usize) -> Option<Vec<&'n str>> {
+    pub(crate) fn service_names(&self, member: usize) -> Option<Vec<&str>> {
         match self.members[member].kind {
             Kind::Class(class) => {
                 Some(self.classes[class].services.iter().map(|service| service.name.as_str()).collect())
@@ -56,7 +56,7 @@ impl<'a> Fleet<'a> {
     }
 
     /// The names of the references of a component; `None` where any may be there.
-    pub(crate) fn reference_names<'n>(&'n self, member: usize) -> Option<Vec<&'n str>> {
+    pub(crate) fn reference_names(&self, member: usize) -> Option<Vec<&str>> {
         match self.members[member].kind {
             Kind::Class(class) => {
                 Some(self.classes[class].references.iter().map(|reference| reference.name.as_str()).collect())
@@ -68,9 +68,9 @@ impl<'a> Fleet<'a> {
         }
     }
 
-    /// The service of a component that is meant where none is named: the only one. What the host serves for a component counts
-    /// where there is no other.
-    pub(crate) fn only_service<'n>(&'n self, member: usize) -> Option<&'n str> {
+    /// The service of a component that is meant where none is named: the only one. What the host serves for a component
+    /// counts where there is no other.
+    pub(crate) fn only_service(&self, member: usize) -> Option<&str> {
         let names = match self.class_of(member) {
             Some(class) if class.services.iter().any(|service| !service.is_of_host()) => {
                 let own = class.services.iter().filter(|service| !service.is_of_host());
@@ -113,7 +113,7 @@ impl<'a> Fleet<'a> {
     }
 
     /// Every service of a component by name, as far as it is known.
-    pub(crate) fn offers<'n>(&'n self, member: usize) -> Vec<(&'n str, Offer)> {
+    pub(crate) fn offers(&self, member: usize) -> Vec<(&str, Offer)> {
         let names = self.service_names(member).unwrap_or_default();
         names.into_iter().map(|name| (name, self.offer(member, name))).collect()
     }

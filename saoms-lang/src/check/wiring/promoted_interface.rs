@@ -53,8 +53,8 @@ pub(crate) fn service(
     }
 }
 
-/// Checks the interface that a composite's reference says, and that all that it promotes has one interface: one target cannot serve two. Whether
-/// it has.
+/// Checks the interface that a composite's reference says, and that all that it promotes has one interface: one target
+/// cannot serve two. Whether it has.
 pub(crate) fn reference(
     reference: &ReferenceElement,
     found: &[Found<'_>],

@@ -18,7 +18,8 @@ struct Narrower<'f> {
     severity: Severity,
 }
 
-/// Checks what a composite's reference promotes. What is wrong with several of them is told once, as one thing is to be changed.
+/// Checks what a composite's reference promotes. What is wrong with several of them is told once, as one thing is to be
+/// changed.
 pub(crate) fn check<'f>(
     by: &ReferenceElement,
     found: impl Iterator<Item = ReferenceId<'f>>,
@@ -38,7 +39,8 @@ pub(crate) fn check<'f>(
         if outer.value.narrows(takes) || has_target && outer.value.is_many() <= takes.is_many() {
             continue;
         }
-        // In SCA 1.0 files the two often differ, and other programs take the outer one: it is wrong where a class needs its target.
+        // In SCA 1.0 files the two often differ, and other programs take the outer one: it is wrong where a class needs
+        // its target.
         let is_error = fleet.members[member].composite.version.is_1_1() || is_known;
         let severity = if is_error { Severity::Error } else { Severity::Warning };
         narrower.push(Narrower { place, takes, severity });

@@ -94,8 +94,8 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
                 }
             }
         }
-        // What a composite offers that runs by itself nobody here takes: it runs the same with faults in it, and other programs say so of those of
-        // SCA 1.0. A component that it implements is another matter.
+        // What a composite offers that runs by itself nobody here takes: it runs the same with faults in it, and other
+        // programs say so of those of SCA 1.0. A component that it implements is another matter.
         if owner.is_none() && unit.composites.iter().all(|composite| !composite.version.is_1_1()) {
             report.diagnostics().adjust(known, |one| one.severity = one.severity.min(Severity::Warning));
         }
@@ -151,7 +151,8 @@ fn unwired(reference: &ReferenceElement, report: &mut Report<'_>) {
     report.push(one.help("the composite runs by itself, and nothing around it can wire its references"));
 }
 
-/// The name of what a URI promotes of a component that is taken as given, as far as it is written anywhere. Faults are reported.
+/// The name of what a URI promotes of a component that is taken as given, as far as it is written anywhere. Faults are
+/// reported.
 fn find_given<'f>(
     text: &Text,
     uri: &Uri<'_>,

@@ -16,7 +16,13 @@ pub(crate) struct Beyond<'f> {
 
 impl Beyond<'_> {
     /// The diagnostic about the name, which `own` has written: that means another one.
-    pub(crate) fn told(self, name: &str, own: Option<&str>, at: Location, message: String) -> Diagnostic {
+    pub(crate) fn diagnostic(
+        self,
+        name: &str,
+        own: Option<&str>,
+        at: Location,
+        message: String,
+    ) -> Diagnostic {
         let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(self.help);
         match Some(self.meant) == own {
             true => one,
@@ -25,7 +31,8 @@ impl Beyond<'_> {
     }
 }
 
-/// The replica of a scope with the number that is the nearest to that of a name which is like those of a group: `R02` for `R03`, and for `R2`.
+/// The replica of a scope with the number that is the nearest to that of a name which is like those of a group: `R02`
+/// for `R03`, and for `R2`.
 pub(crate) fn beyond<'f>(name: &str, scope: usize, fleet: &'f Fleet<'_>) -> Option<Beyond<'f>> {
     let bytes = name.as_bytes();
     let mut end = 0;

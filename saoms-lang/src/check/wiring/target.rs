@@ -34,7 +34,8 @@ pub(crate) enum Target {
     Wrong,
 }
 
-/// The service that a target in a scope leads to, for a reference of a component with this interface, or with any. Faults are reported.
+/// The service that a target in a scope leads to, for a reference of a component with this interface, or with any.
+/// Faults are reported.
 ///
 /// Without the name of a service the component has to have exactly one with the interface.
 pub(crate) fn target(
@@ -83,7 +84,7 @@ pub(crate) fn target(
             let behind: Vec<&str> = text.split('/').skip(1).collect();
             if let Some(promoted) = inside(member, &behind, Side::Service, fleet) {
                 let one = Diagnostic::new(&codes::UNKNOWN_TARGET_SERVICE, at, message);
-                report.push(promoted.told(one, text));
+                report.push(promoted.add_to(one, text));
                 return Target::Wrong;
             }
             let names = fleet.service_names(member).unwrap_or_default();
@@ -157,7 +158,8 @@ fn bound(
     false
 }
 
-/// Says that a target is not in the composites at hand. Where things are taken as given, it may be in others of its domain.
+/// Says that a target is not in the composites at hand. Where things are taken as given, it may be in others of its
+/// domain.
 fn elsewhere(
     text: &Text,
     (component, own): (&str, Option<usize>),
@@ -169,7 +171,7 @@ fn elsewhere(
     let own = own.map(|own| fleet.members[own].component.name.as_str());
     let known = ("the components are", fleet.names(0).filter(|name| Some(*name) != own));
     let one = match beyond(component, 0, fleet) {
-        Some(beyond) => beyond.told(component, own, at, message),
+        Some(beyond) => beyond.diagnostic(component, own, at, message),
         None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, component, known),
     };
     report.push(
@@ -245,7 +247,8 @@ fn offered(member: usize, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -
     }
 }
 
-/// `component/service`: how a service is named where the component is that offers it, which may do so for one inside of it.
+/// `component/service`: how a service is named where the component is that offers it, which may do so for one inside of
+/// it.
 pub(crate) fn uri((offering, provider): (usize, Provider), fleet: &Fleet<'_>) -> String {
     let component = &fleet.members[offering].component.name;
     let offers = fleet.offers(offering);

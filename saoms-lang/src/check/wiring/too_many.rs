@@ -24,12 +24,12 @@ pub(super) struct TooMany<'p> {
 impl<'f> Wires<'f, '_> {
     pub(super) fn too_many(
         &self,
-        told: TooMany<'_>,
+        found: TooMany<'_>,
         multiplicity: Multiplicity,
         severity: Severity,
         report: &mut Report<'_>,
     ) {
-        let TooMany { place: (member, name), places: (first, second), count, is_again } = told;
+        let TooMany { place: (member, name), places: (first, second), count, is_again } = found;
         let message = format!(
             "reference {} of component {} takes one target, and here are {count}",
             quoted(name),
@@ -87,7 +87,8 @@ impl<'f> Wires<'f, '_> {
         found.or_else(|| outer().find_map(|outer| self.group_at(*outer, at)))
     }
 
-    /// True if the second of two targets is that of the only wire of a reference, which could count in place of the first.
+    /// True if the second of two targets is that of the only wire of a reference, which could count in place of the
+    /// first.
     fn wire_instead(&self, place: ReferenceId<'_>, first: Location, second: Location) -> bool {
         let [wire] = self.wires_from(place) else { return false };
         let is_1_1 = self.fleet.members[place.0].composite.version.is_1_1();

@@ -9,8 +9,8 @@ use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::ReferenceDeclaration;
 
 impl Wires<'_, '_> {
-    /// Reports a required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of the
-    /// manual. True if it is an error, or a fault that is reported keeps its target from being known.
+    /// Reports a required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of
+    /// the manual. True if it is an error, or a fault that is reported keeps its target from being known.
     ///
     /// Where composites promote it, the outermost component is the one that lacks a target.
     pub(super) fn unwired(

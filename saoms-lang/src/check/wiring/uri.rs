@@ -29,7 +29,8 @@ pub(crate) struct Uri<'t> {
 }
 
 impl<'t> Uri<'t> {
-    /// Splits a URI of at most `most` parts that names a service or a reference of a component in this scope; another one is reported.
+    /// Splits a URI of at most `most` parts that names a service or a reference of a component in this scope; another
+    /// one is reported.
     pub(crate) fn of(
         text: &'t Text,
         (most, side): (usize, Side),
@@ -61,7 +62,7 @@ impl<'t> Uri<'t> {
                 inside(fleet.find(scope, component)?, behind, side, fleet).filter(|_| most < 3)
             });
             report.push(match promoted {
-                Some(promoted) => promoted.told(one, text),
+                Some(promoted) => promoted.add_to(one, text),
                 None if is_known && named.len() <= most => {
                     one.suggest(replacing(text, &meant), text.location, escaped(&meant))
                 }
@@ -116,7 +117,7 @@ impl<'t> Uri<'t> {
             }
             let message = format!("there is no component {}", quoted(self.component));
             if let Some(misread) = misread(text, scope, self.side, fleet) {
-                let one = misread.told(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text);
+                let one = misread.add_to(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text);
                 push(one, report);
                 return None;
             }
@@ -128,7 +129,7 @@ impl<'t> Uri<'t> {
             let known =
                 ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
             let one = match beyond(self.component, scope, fleet) {
-                Some(beyond) => beyond.told(self.component, own, at, message),
+                Some(beyond) => beyond.diagnostic(self.component, own, at, message),
                 None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known),
             };
             push(one, report);
@@ -137,7 +138,8 @@ impl<'t> Uri<'t> {
     }
 }
 
-/// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with its place.
+/// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with
+/// its place.
 pub(crate) fn spread<'t>(
     text: &'t Text,
     scope: usize,

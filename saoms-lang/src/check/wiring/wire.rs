@@ -102,8 +102,8 @@ fn backwards<'f>(
     is_backwards.then_some((member, reference))
 }
 
-/// The component and the reference that a wire starts from; an empty name where any reference may be meant. `source` is `written`, or one
-/// of the replicas that this stands for.
+/// The component and the reference that a wire starts from; an empty name where any reference may be meant. `source` is
+/// `written`, or one of the replicas that this stands for.
 fn source_of<'f>(
     source: &Text,
     written: &'f Text,

@@ -1,4 +1,5 @@
-//! Which composites the expressions of a unit see: what is included by a condition may declare what another one declares that is there in place of it.
+//! Which composites the expressions of a unit see: what is included by a condition may declare what another one
+//! declares that is there in place of it.
 
 use crate::check::unfolding::Unfolding;
 use crate::expression::{boolean, parse};
@@ -16,8 +17,8 @@ struct Included<'a> {
 }
 
 impl<'a> Unfolding<'a> {
-    /// The composites of a unit and of what it includes: those that are there, and in a unit that is kept away then also those that conditions
-    /// keep away, whose parts name their properties.
+    /// The composites of a unit and of what it includes: those that are there, and in a unit that is kept away then
+    /// also those that conditions keep away, whose parts name their properties.
     pub(super) fn included(&mut self, unit: usize, owner: Option<usize>) -> Vec<&'a Composite> {
         let contribution = self.fleet.contribution;
         let mut included = Included { contribution, all: Vec::new(), open: Vec::new() };

@@ -1,5 +1,6 @@
 //! Values of the properties of composites, as far as expressions ask for them before there are
-//! [`Parameters`](crate::check::values::parameters::Parameters), which report what is wrong with it. Each value is found once, whoever asks for it.
+//! [`Parameters`](crate::check::values::parameters::Parameters), which report what is wrong with it. Each value is
+//! found once, whoever asks for it.
 
 use std::cell::RefCell;
 use std::collections::HashMap;

@@ -11,7 +11,7 @@ use crate::check::fleet::Unit;
 use crate::check::report::Report;
 use crate::check::unfolding::expression_scope::Names;
 use crate::check::unfolding::replica::{Instance, all_complex_texts};
-use crate::check::unfolding::replica_plan::{condition, tell};
+use crate::check::unfolding::replica_plan::{condition, report_fault};
 use crate::check::unfolding::{MOST_MEMBERS, Unfolding};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::expression::{ExpressionFault, render};
@@ -130,7 +130,7 @@ impl<'a> Unfolding<'a> {
         for faults in faults.chunk_by(|(one, _), (other, _)| one.location == other.location) {
             let parts = report.parts(&faults[0].0);
             for (text, fault) in faults {
-                tell(text, &parts, fault, names, report);
+                report_fault(text, &parts, fault, names, report);
             }
         }
     }
@@ -152,7 +152,7 @@ impl<'a> Unfolding<'a> {
             has_faults = true;
             let parts = report.parts(&text);
             for fault in &faults {
-                tell(&text, &parts, fault, &instance.names, report);
+                report_fault(&text, &parts, fault, &instance.names, report);
             }
         }
         has_faults

@@ -8,7 +8,8 @@ use crate::model::Property;
 use crate::syntax::escaped;
 
 impl<'a> Parameters<'a> {
-    /// Finds out what components give properties that nobody took: it has to be right all the same, and there where it has to be.
+    /// Finds out what components give properties that nobody took: it has to be right all the same, and there where it
+    /// has to be.
     pub(super) fn follow_all(&mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
         for (place, unit) in fleet.units.iter().enumerate().filter(|(_, unit)| !unit.is_absent) {
             for property in unit.composites.iter().flat_map(|composite| &composite.properties) {

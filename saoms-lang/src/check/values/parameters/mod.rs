@@ -40,7 +40,8 @@ pub(crate) struct Parameters<'a> {
 /// Values that sources with several can lead to: each component that takes all of a list has each of its values.
 const MOST_VALUES: usize = 4_000_000;
 
-/// Names that a composite does not have which are looked at for one that it has: where a component is full of them they mean nothing by each.
+/// Names that a composite does not have which are looked at for one that it has: where a component is full of them they
+/// mean nothing by each.
 const MOST_MISSPELT: usize = 100;
 
 /// Bytes of text that sources can lead to: each component that takes a text has it.
@@ -198,7 +199,8 @@ impl<'a> Parameters<'a> {
         Ok((SharedValues::new(raw(property, &place.composite.document, place.instance, report)?), None))
     }
 
-    /// The values of a component's property as its class takes them: what is inside of an `element`. Faults are reported.
+    /// The values of a component's property as its class takes them: what is inside of an `element`. Faults are
+    /// reported.
     pub(crate) fn taken(
         &mut self,
         place: ValueSite<'a>,
@@ -247,8 +249,8 @@ impl<'a> Parameters<'a> {
         Some((name, self.units[unit].by_name.get(name)?))
     }
 
-    /// True if it is told why the composite property that a `source` names has no value: it is misspelt where it is given, or comes from a file, as
-    /// those of components can.
+    /// True if it is told why the composite property that a `source` names has no value: it is misspelt where it is
+    /// given, or comes from a file, as those of components can.
     pub(crate) fn is_told(&self, unit: usize, source: &str) -> bool {
         let declared = &self.units[unit];
         let Some((name, Parameter { composite, property, .. })) = self.named_by(unit, source) else {
@@ -382,7 +384,8 @@ fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
             all.has_nameless = true;
             continue;
         }
-        // What is not there may say otherwise what another composite says that is there in place of it, or be the same composite.
+        // What is not there may say otherwise what another composite says that is there in place of it, or be the same
+        // composite.
         let is_instead = |first: &Parameter<'_>| unit.is_absent && !std::ptr::eq(first.composite, composite);
         let first = all.by_name.get(property.name.as_str());
         if first.is_some_and(|first| std::ptr::eq(first.property, property)) {

@@ -16,7 +16,8 @@ impl<'a> Parameters<'a> {
         fleet.scopes.first().into_iter().flat_map(|scope| scope.units.iter().copied())
     }
 
-    /// Gives the properties of the outermost composites the values that settings say. What is wrong with settings is reported.
+    /// Gives the properties of the outermost composites the values that settings say. What is wrong with settings is
+    /// reported.
     pub(super) fn set(&mut self, fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) {
         let mut first: HashMap<&str, &Setting> = HashMap::new();
         for setting in &options.settings {

@@ -148,7 +148,7 @@ impl<'a> Parameters<'a> {
                 let (whole, _) = self.shared(outside, outer, report)?;
                 for piece in whole.raw().0.iter().filter(|_| !is_judged) {
                     if let Piece::Text(text) = piece
-                        && !report.has_told(&codes::COMPOSITE_VALUE_TYPE, text.location)
+                        && !report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, text.location)
                     {
                         typed.check(text, report);
                     }

@@ -1,0 +1,125 @@
+//! Composites inside composites: found by their names, neither in a circle nor too many.
+
+use std::collections::HashMap;
+
+use super::{MOST_DEEP, MOST_MEMBERS, Unfolding};
+use crate::check::fleet::composite_names;
+use crate::check::fleet::{Kind, Scope};
+use crate::check::report::Report;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{Composite, Contribution, Link, Naming};
+
+/// Composites of one circle that are named.
+const SHOWN: usize = 8;
+
+/// The number of components a composite comes to, known before they are made.
+fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut HashMap<usize, usize>) -> usize {
+    if let Some(size) = known.get(&place) {
+        return *size;
+    }
+    // What is in a circle, or too deep, is reported otherwise.
+    known.insert(place, 0);
+    let composite = &contribution.composites()[place];
+    let mut size = composite.components.len();
+    for naming in composite.namings() {
+        if let Some(Link::To(inner)) = contribution.link(naming.origin)
+            && deep <= MOST_DEEP
+        {
+            size = size.saturating_add(self::size(contribution, *inner, deep + 1, known));
+        }
+    }
+    known.insert(place, size);
+    size
+}
+
+impl<'a> Unfolding<'a> {
+    /// Opens the composite that implements a component.
+    pub(super) fn inner(
+        &mut self,
+        member: usize,
+        naming: Naming<'a>,
+        is_absent: bool,
+        report: &mut Report<'_>,
+    ) {
+        let Some((place, composite)) = self.find(naming, report) else {
+            let is_given = self.options.assume_classes
+                && !matches!(self.fleet.contribution.link(naming.origin), Some(Link::Faulty));
+            if is_given {
+                self.fleet.members[member].kind = Kind::Given;
+            }
+            return;
+        };
+        if self.is_circle(place, naming, report) || self.is_full(place, naming, report) {
+            return;
+        }
+        let scope = self.fleet.scopes.len();
+        self.fleet.scopes.push(Scope { owner: Some(member), ..Scope::default() });
+        self.fleet.members[member].kind = Kind::Composite(scope);
+        let unit = self.unit(scope);
+        self.fleet.units[unit].is_absent = is_absent;
+        self.open(place, composite, unit, Some(naming), report);
+    }
+
+    fn is_full(&mut self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
+        let is_too_deep = self.open.len() > MOST_DEEP;
+        let more = size(self.fleet.contribution, place, self.open.len(), &mut self.sizes);
+        if !is_too_deep && self.fleet.members.len().saturating_add(more) <= MOST_MEMBERS {
+            return false;
+        }
+        if !std::mem::replace(&mut self.is_full, true) {
+            let message = match is_too_deep {
+                true => format!("composites are inside each other more than {MOST_DEEP} deep"),
+                false => format!("inner composites come to more than {MOST_MEMBERS} components"),
+            };
+            let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, naming.name.location, message);
+            report.push(one.help("a composite inside a composite multiplies: is this what is meant?"));
+        }
+        true
+    }
+
+    /// The composite that a name leads to. A name that leads nowhere is reported.
+    pub(super) fn find(
+        &mut self,
+        naming: Naming<'a>,
+        report: &mut Report<'_>,
+    ) -> Option<(usize, &'a Composite)> {
+        let contribution = self.fleet.contribution;
+        let link = contribution.link(naming.origin)?;
+        let around = self.open.last()?.composite;
+        match link {
+            Link::To(place) => {
+                let composite = &contribution.composites()[*place];
+                if !composite_names::is_exact(naming, around, composite)
+                    && self.loose.insert(naming.name.location)
+                {
+                    report.push(composite_names::loose(naming, around, composite));
+                }
+                Some((*place, composite))
+            }
+            Link::Faulty => None,
+            Link::Missing(missing) => {
+                report.push(composite_names::not_found(naming, missing, around, self.options.assume_classes));
+                None
+            }
+        }
+    }
+
+    pub(super) fn is_circle(&self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
+        let Some(start) = self.open.iter().position(|open| open.place == place) else { return false };
+        let circle = &self.open[start..];
+        let mut names: Vec<String> =
+            circle.iter().take(SHOWN).map(|open| quoted(&open.composite.name)).collect();
+        if circle.len() > SHOWN {
+            names.push(format!("{} more", circle.len() - SHOWN));
+        }
+        names.push(names[0].clone());
+        let message = format!("composites hold each other in a circle: {}", names.join(" -> "));
+        let mut one = Diagnostic::new(&codes::COMPOSITE_CIRCLE, naming.name.location, message)
+            .help("a composite cannot be a part of itself: remove one of these");
+        for by in self.open[start + 1..].iter().filter_map(|open| open.by).take(8) {
+            one = one.label(by.name.location, "through this");
+        }
+        report.push(one);
+        true
+    }
+}

@@ -1,0 +1,115 @@
+//! Components of a fleet in the making, each with its name in its scope.
+
+use super::Unfolding;
+use super::conditions::Presence;
+use super::replica::Instance;
+use crate::check::fleet::Member;
+use crate::check::report::Report;
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::model::{ComponentElement, Naming};
+use crate::syntax::Element;
+
+impl<'a> Unfolding<'a> {
+    /// Adds a component as it is `written`, and what is inside it.
+    pub(crate) fn member(
+        &mut self,
+        written: &'a ComponentElement,
+        component: &'a ComponentElement,
+        instance: Option<&'a Instance>,
+        presence: Presence,
+        report: &mut Report<'_>,
+    ) {
+        let Some(open) = self.open.last() else { return };
+        let (composite, unit, autowire) = (open.composite, open.unit, open.autowire);
+        let is_seen = presence != Presence::Absent && !open.is_absent;
+        let scope = self.fleet.units[unit].scope;
+        let index = self.fleet.members.len();
+        let mut member = Member::new(composite, unit, scope, component);
+        let owner = self.fleet.scopes[scope].owner;
+        member.autowire = autowire;
+        member.instance = instance;
+        member.is_absent = !is_seen;
+        member.is_partial = presence == Presence::Unknown
+            || instance.is_some_and(|instance| instance.partial.is_some())
+            || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
+        let is_partial = member.is_partial;
+        member.is_copy = instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy);
+        let own = component.path().unwrap_or(&component.name);
+        match owner {
+            Some(owner) => member.set_path(format!("{}/{own}", self.fleet.members[owner].path())),
+            None if component.path().is_some() => member.set_path(own.to_string()),
+            None => {}
+        }
+        self.fleet.members.push(member);
+        let name = component.name.as_str();
+        if is_seen {
+            self.fleet.scopes[scope].members.push(index);
+        }
+        let by_name = &mut self.fleet.scopes[scope].by_name;
+        let first = by_name.get(name).copied();
+        if first.is_none() && is_seen && !name.is_empty() {
+            by_name.insert(component.name.value.clone(), index);
+        }
+        match first {
+            _ if name.is_empty() => {}
+            None if is_seen => {}
+            Some(_) if is_seen && is_partial => {}
+            Some(first) if is_seen && self.fleet.members[first].is_partial => {
+                self.fleet.scopes[scope].by_name.insert(component.name.value.clone(), index);
+            }
+            Some(first) if is_seen => {
+                self.fleet.members[index].is_repeated = true;
+                report.about(&self.fleet.members[index]);
+                self.repeated(component, first, report);
+                report.about_all();
+            }
+            _ => {
+                let condition = written.condition().map_or(component.name.location, |text| text.location);
+                self.fleet.absent.insert((scope, name), condition);
+            }
+        }
+        if let Some(naming) = Naming::of_component(component) {
+            self.inner(index, naming, !is_seen, report);
+        }
+    }
+
+    fn repeated(&self, component: &ComponentElement, first: usize, report: &mut Report<'_>) {
+        let first = &self.fleet.members[first];
+        let message = format!("there are two components {}", quoted(&component.name));
+        let mut one = Diagnostic::new(&codes::COMPONENT_REPEATED, component.name.location, message)
+            .label(first.component.name.location, "the first");
+        let by = self.open.last().and_then(|open| open.by.filter(|_| self.open.len() > 1));
+        if let Some(by) = by.filter(|_| first.composite.file() != component.origin.file()) {
+            one = one.label(by.name.location, "included here");
+        }
+        let here = self.open.last().map(|open| component.origin.element(&open.composite.document));
+        let there = first.component.origin.element(&first.composite.document);
+        report.push(match here {
+            Some(here) if !first.is_copy && is_same(here, there) => {
+                let at = here.span().in_file(component.origin.file());
+                one.suggest("remove the second: both are the same, word for word", at, "")
+            }
+            _ => one.help("give each its own name"),
+        });
+    }
+}
+
+/// True if two elements say the same in the same words, however they are laid out.
+fn is_same(one: Element<'_>, other: Element<'_>) -> bool {
+    let says = |element: Element<'_>| {
+        let attributes: Vec<_> = element
+            .written_attributes()
+            .map(|one| (one.name().to_owned(), one.value().into_owned()))
+            .collect();
+        let text = element.trimmed_text().map(|text| text.value);
+        (element.name().to_owned(), attributes, text, element.children().count())
+    };
+    let (mut mine, mut others) = (one.descendants(), other.descendants());
+    loop {
+        match (mine.next(), others.next()) {
+            (None, None) => return true,
+            (Some(one), Some(other)) if says(one) == says(other) => {}
+            _ => return false,
+        }
+    }
+}
