@@ -46,7 +46,7 @@ impl Recordable for ClassicBatteryDecision {
     fn record(&self) -> Record {
         match self {
             ClassicBatteryDecision::Charge => record!("goes under charge after its job"),
-            ClassicBatteryDecision::Sleep => record!("sleeps until it is woken or heals a robot"),
+            ClassicBatteryDecision::Sleep => record!("sleeps until it is awaked or heals a robot"),
         }
     }
 }

@@ -126,7 +126,7 @@ impl Loop for ClassicRobotState {
                 // This wakes a healer too, which stays a healer.
                 (variables.in_charge, variables.asleep, variables.busy) = (false, false, variables.healer);
                 knowledge.stands_in_for = (emulate != 0).then_some(emulate);
-                context.info(format_args!("is woken (battery {} %)", knowledge.battery));
+                context.info(format_args!("is awaked (battery {} %)", knowledge.battery));
             }
             ClassicRobotDecision::Charge => {
                 variables.ready_to_go_under_charge = true;

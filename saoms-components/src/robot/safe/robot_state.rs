@@ -71,8 +71,8 @@ pub enum SafeRobotDecision {
 impl Recordable for SafeRobotSymptom {
     fn record(&self) -> Record {
         match *self {
-            SafeRobotSymptom::Woken { emulate: 0 } => record!("is woken"),
-            SafeRobotSymptom::Woken { emulate } => record!("is woken in place of robot {emulate}", emulate),
+            SafeRobotSymptom::Woken { emulate: 0 } => record!("is awaked"),
+            SafeRobotSymptom::Woken { emulate } => record!("is awaked in place of robot {emulate}", emulate),
             SafeRobotSymptom::SentToSleep => record!("is sent to sleep"),
             SafeRobotSymptom::NobodyAwake { critical } => {
                 record!("robot {critical} needs help, and no robot that is awake can give it", critical)

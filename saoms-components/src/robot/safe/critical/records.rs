@@ -146,7 +146,7 @@ impl Recordable for SafeCriticalSymptom {
             }
             SafeCriticalSymptom::Gone => record!("another robot helps"),
             SafeCriticalSymptom::Woken { emulates } => {
-                record!("was woken in place of robot {emulates}", emulates)
+                record!("was awaked in place of robot {emulates}", emulates)
             }
             SafeCriticalSymptom::Charges { battery } => {
                 record!("has to charge (battery {battery} %), and others sleep", battery)
