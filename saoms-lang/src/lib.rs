@@ -1,4 +1,5 @@
-//! From the text of composites to an [`Assembly`](assembly::Assembly), or to the diagnostics that say why there is none.
+//! From the text of composites to an [`Assembly`](assembly::Assembly), or to the diagnostics that say why there is
+//! none.
 //!
 //! Nothing here knows a clock, a thread or a network.
 

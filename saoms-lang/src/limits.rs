@@ -1,4 +1,5 @@
-//! Limits: bounds on work and output, so that time and memory grow with a file and not with its square, however hostile it is.
+//! Limits: bounds on work and output, so that time and memory grow with a file and not with its square, however hostile
+//! it is.
 //!
 //! Bounds of the checker itself stand in `check`, beside what they count.
 

@@ -62,7 +62,7 @@ pub(crate) struct Pair<'a> {
 /// The fault of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Fault {
-    /// Where.
+    /// The bytes at fault.
     pub(crate) at: Range<usize>,
     /// The message.
     pub(crate) message: String,

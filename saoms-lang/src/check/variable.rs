@@ -16,8 +16,9 @@ pub struct Variable {
 }
 
 impl Variable {
-    /// The variables that the composite properties of a contribution name, as far as `get` has a value for them. Each becomes a source
-    /// text called `environment`, so that diagnostics can point into it. One that is no text in UTF-8 is reported where it is named.
+    /// The variables that the composite properties of a contribution name, as far as `get` has a value for them. Each
+    /// becomes a source text called `environment`, so that diagnostics can point into it. One that is no text in UTF-8
+    /// is reported where it is named.
     ///
     /// ```
     /// use saoms_lang::check::Variable;

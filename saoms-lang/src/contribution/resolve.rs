@@ -25,7 +25,7 @@ use crate::source::{Location, Sources, identity};
 /// that is not needed, and a large folder is given up after some ten thousand entries. Texts that were not read from
 /// files are not looked at, but for [`STANDARD_INPUT`].
 ///
-/// What is wrong with a file that is found, or that is called as one that is not, is reported; that one is not found is
+/// A fault of a file that is found, or that has the name of one that is not, is reported; that one is not found is
 /// for the checker to say. A [`Finder`] does it for several contributions that are in the same folders.
 pub fn load_named(
     contribution: &mut Contribution,

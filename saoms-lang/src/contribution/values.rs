@@ -15,7 +15,7 @@ use crate::source::{Sources, Span, Text};
 /// `max_size` bytes. A name is a URI (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the
 /// composite; files are read from disk alone.
 ///
-/// What the file holds, without white space at its ends, is the value; its place is in that file. XML with the root
+/// The content of the file, without white space at its ends, is the value; its place is in that file. XML with the root
 /// `values` of SCA holds values in elements (ASM50046). A file that cannot be read is reported where it is named. So
 /// are the tables that replicated components name with `overrides`.
 pub fn read_values(

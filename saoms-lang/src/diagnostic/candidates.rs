@@ -5,8 +5,8 @@ use crate::limits::CANDIDATES;
 /// Lists that are not longer are searched in any case.
 const FEW: usize = 100;
 
-/// Counts the right names that are looked at for wrong ones: where nearly all names are wrong every search goes through all right ones, and a check
-/// must take time that grows with its files, and not with their square.
+/// Counts the right names that are looked at for wrong ones: where nearly all names are wrong every search goes through
+/// all right ones, and a check must take time that grows with its files, and not with their square.
 #[derive(Debug)]
 pub(crate) struct Candidates {
     left: usize,

@@ -1,8 +1,8 @@
 //! The table of every kind of diagnostic.
 //!
-//! A code never changes its meaning and is never used again. `S0` is files and XML, `S1` the SCA vocabulary, `S2`
-//! names and wiring, `S3` classes and properties, `S4` tasks, topics and loops. `S5` is what rules of crates of components find
-//! (see [`FleetRule`](saoms_api::rule::FleetRule)); each of them declares its own code.
+//! A code never changes its meaning and is never used again. `S0` is files and XML, `S1` the SCA vocabulary, `S2` names
+//! and wiring, `S3` classes and properties, `S4` tasks, topics and loops. `S5` is what rules of crates of components
+//! find (see [`FleetRule`](saoms_api::rule::FleetRule)); each of them declares its own code.
 
 use saoms_api::rule::Severity::{Error, Note, Warning};
 
@@ -216,8 +216,8 @@ pub(crate) fn absence(code: &Code) -> Option<Absence> {
     }
 }
 
-/// True if errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of every rule of a crate of
-/// components.
+/// True if errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of
+/// every rule of a crate of components.
 pub fn is_judgement(code: &Code) -> bool {
     const JUDGEMENTS: &[&Code] = &[
         &UNKNOWN_ATTRIBUTE,

@@ -9,8 +9,8 @@ use crate::source::{FileId, Location};
 
 /// Collects diagnostics.
 ///
-/// At most 1,000 diagnostics of one code, and 2,000 in all, are kept for one file; all are counted, and [`Diagnostics::into_sorted`] says how
-/// many more there were.
+/// At most 1,000 diagnostics of one code, and 2,000 in all, are kept for one file; all are counted, and
+/// [`Diagnostics::into_sorted`] says how many more there were.
 #[derive(Debug, Default)]
 pub struct Diagnostics {
     items: Vec<Diagnostic>,
@@ -19,7 +19,8 @@ pub struct Diagnostics {
     kept: HashMap<FileId, u32>,
     errors: usize,
     warnings: usize,
-    /// Stretches of files, each with its end, in which something may be missing because of a fault of the text; none overlaps another.
+    /// Stretches of files, each with its end, in which something may be missing because of a fault of the text; none
+    /// overlaps another.
     damaged: BTreeMap<(FileId, u32), u32>,
     hidden: HiddenNames,
 }
@@ -52,8 +53,8 @@ impl Diagnostics {
         Self::default()
     }
 
-    /// Lets nobody conclude from what is missing in a stretch of a file, where a fault of the text is reported, nor from names of the hidden
-    /// kinds that are found nowhere.
+    /// Lets nobody conclude from what is missing in a stretch of a file, where a fault of the text is reported, nor
+    /// from names of the hidden kinds that are found nowhere.
     pub(crate) fn add_damage(&mut self, stretch: Location, hidden: HiddenNames) {
         self.damaged.insert((stretch.file, stretch.span.start), stretch.span.end);
         self.hidden.composites |= hidden.composites;

@@ -1,4 +1,5 @@
-//! Diagnostics that say the same of many places: for people one of them is told, with how many more there are and where.
+//! Diagnostics that say the same of many places: for people one of them is told, with how many more there are and
+//! where.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
@@ -11,8 +12,8 @@ const MANY: usize = 5;
 /// The number of their lines that are named.
 const NAMED: usize = 10;
 
-/// The diagnostics to show, each with how many more are like it and where. Alike are those of one code and severity in one file whose messages differ
-/// in numbers alone, as those of robots that are written out one by one do.
+/// The diagnostics to show, each with how many more are like it and where. Alike are those of one code and severity in
+/// one file whose messages differ in numbers alone, as those of robots that are written out one by one do.
 pub(super) fn grouped<'d>(
     diagnostics: Vec<&'d Diagnostic>,
     sources: &Sources,
@@ -38,7 +39,8 @@ pub(super) fn grouped<'d>(
     told.collect()
 }
 
-/// The key of diagnostics that are alike: code, severity, file, and the message but for its numbers, as a hash, since there may be very many.
+/// The key of diagnostics that are alike: code, severity, file, and the message but for its numbers, as a hash, since
+/// there may be very many.
 type Kind = (&'static str, Severity, FileId, u64);
 
 fn kind(one: &Diagnostic) -> Kind {

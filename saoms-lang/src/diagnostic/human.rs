@@ -42,7 +42,8 @@ impl fmt::Display for Human<'_> {
                 out.write_str("\n")?;
             }
             let rendered = render(one, others.as_deref(), self.sources, &self.renderer);
-            // Where a part of a line is shown, its place is told before it, and the picture has a place without a name besides.
+            // Where a part of a line is shown, its place is told before it, and the picture has a place without a name
+            // besides.
             let lines = rendered.lines().filter(|line| !is_nameless_place(line));
             // A blank line that only ends the picture would be two with ours.
             writeln!(out, "{}", lines.collect::<Vec<_>>().join("\n").trim_end())?;

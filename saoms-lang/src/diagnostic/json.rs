@@ -8,9 +8,10 @@ use crate::source::{Location, Sources};
 
 /// One object with all diagnostics, each with 1-based lines and columns in Unicode scalars, ends exclusive.
 ///
-/// `rule` is null when the diagnostic stems from no rule of the SCA specification. `help` holds what people are shown below
-/// the picture, the descriptions of suggestions included, a line each; it is null when there is nothing. Where the severity was set, `set` says
-/// to what, where and why; what is allowed is there with the severity that it would have.
+/// `rule` is null when the diagnostic stems from no rule of the SCA specification. `help` holds what people are shown
+/// below the picture, the descriptions of suggestions included, a line each; it is null when there is nothing. Where
+/// the severity was set, `set` says to what, where and why; what is allowed is there with the severity that it would
+/// have.
 pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
     json!({ "diagnostics": Json { diagnostics, sources } })
 }

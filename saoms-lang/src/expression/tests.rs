@@ -14,7 +14,7 @@ fn lookup(name: &str) -> Result<ExpressionValue, ExpressionError> {
     }
 }
 
-/// What an expression comes to, or its fault with the bytes that it is in.
+/// The value of an expression, or its fault with the bytes that it is in.
 fn of(text: &str) -> String {
     let value = parse(text).and_then(|one| match integer(&one, &mut lookup) {
         Err(fault) if fault.problem.message.contains("a whole number is expected") => {
@@ -142,7 +142,7 @@ fn depth_is_a_fault_and_no_crash() {
     thread.join().unwrap();
 }
 
-/// What expressions are made of, so that many of them can be read.
+/// Parts of expressions, so that many of them can be read.
 const PIECES: [&str; 12] =
     ["robots", "site", "nobody", "(", ")", " ", "not ", "-", " + ", " == ", " and ", "'north'"];
 

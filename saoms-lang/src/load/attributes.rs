@@ -237,7 +237,8 @@ impl Loader<'_> {
         name
     }
 
-    /// Warns of a name that XML does not allow as one (NCName, Namespaces in XML 1.0, 3): it does here what any other does.
+    /// Warns of a name that XML does not allow as one (NCName, Namespaces in XML 1.0, 3): it does here what any other
+    /// does.
     fn no_name(&mut self, name: &Text) {
         if self.diagnostics.skip(&codes::ATTRIBUTE_VALUE, Severity::Warning, name.location) {
             return;
@@ -334,7 +335,8 @@ impl Loader<'_> {
     }
 }
 
-/// The prefix of the namespace of SAOMS in the document of an element, and the edit that declares it where the root does not.
+/// The prefix of the namespace of SAOMS in the document of an element, and the edit that declares it where the root
+/// does not.
 pub(super) fn own_prefix(element: Element<'_>) -> (&str, Option<Edit>) {
     let root = element.document().root();
     let mut declared = root.namespace_declarations();
@@ -348,7 +350,7 @@ pub(super) fn own_prefix(element: Element<'_>) -> (&str, Option<Edit>) {
     }
 }
 
-/// What to do about an attribute of SAOMS without the prefix of its namespace.
+/// Help for an attribute of SAOMS without the prefix of its namespace.
 fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Element<'_>) -> Diagnostic {
     let (prefix, declaration) = own_prefix(element);
     let whole = format!("{prefix}:{}", attribute.name());
@@ -359,7 +361,7 @@ fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Elemen
         .suggest_edits(format!("replace {} with {}", quoted(attribute.name()), quoted(&whole)), edits)
 }
 
-/// What to do about an attribute that may be meant as a property of a component.
+/// Help for an attribute that may be meant as a property of a component.
 fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) -> Diagnostic {
     let (text, file) = (element.document().text(), element.document().file());
     let (start, end) = match element.local_name() {
@@ -386,12 +388,12 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
     one.suggest_edits(format!("write it as a property: {}", quoted(&written)), edits)
 }
 
-/// Whether a name can start with this.
+/// True if a name can start with this.
 pub(super) fn is_first(letter: char) -> bool {
     letter.is_alphabetic() || letter == '_' || !letter.is_ascii()
 }
 
-/// What to do about an attribute that seems to be meant for one that the element has.
+/// Help for an attribute that seems to be meant for one that the element has.
 fn given_already(name: &str) -> String {
     format!("{} is given already: remove one of the two", quoted(name))
 }
@@ -406,8 +408,8 @@ fn without_expressions(text: &str) -> Cow<'_, str> {
     plain
 }
 
-/// Whether an element is written in place of an attribute of the one around it, as far as that can be told from what stands in it: it is
-/// reported as an element that does not exist.
+/// True if an element is written in place of an attribute of the one around it, as far as that can be told from what
+/// stands in it: it is reported as an element that does not exist.
 pub(super) fn is_attribute_as_element(element: Element<'_>) -> bool {
     let Some(around) = element.parent() else { return false };
     // What is in a property may be its value.
@@ -420,7 +422,7 @@ pub(super) fn is_attribute_as_element(element: Element<'_>) -> bool {
         && around.attribute(element.local_name()).is_none()
 }
 
-/// Whether an attribute of the element could be a misspelt `name`.
+/// True if an attribute of the element could be a misspelt `name`.
 fn has_near_miss(element: Element<'_>, name: &str) -> bool {
     let mut own = element.attributes().filter(|attribute| attribute.namespace().is_empty());
     own.any(|attribute| {
@@ -430,7 +432,8 @@ fn has_near_miss(element: Element<'_>, name: &str) -> bool {
     })
 }
 
-/// Whether an attribute of a property without a name has the name that the property is to have: `<property period="100"/>`.
+/// True if an attribute of a property without a name has the name that the property is to have: `<property
+/// period="100"/>`.
 fn is_named_so(element: Element<'_>, attribute: Attribute<'_>) -> bool {
     let is_free = |one: &Attribute<'_>| {
         let known = &vocabulary::COMPONENT_PROPERTY;
@@ -443,7 +446,8 @@ fn is_named_so(element: Element<'_>, attribute: Attribute<'_>) -> bool {
         && free.next().is_none()
 }
 
-/// Whether others call an attribute of such an element by this name: their files name a class or another file in their own words.
+/// True if others call an attribute of such an element by this name: their files name a class or another file in their
+/// own words.
 fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
     match (element.local_name(), known) {
         ("include" | "implementation.composite", "name") => {

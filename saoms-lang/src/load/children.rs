@@ -74,8 +74,8 @@ impl Loader<'_> {
         Family::Sca
     }
 
-    /// Reads the children of an element of this kind: `read` takes those that it knows, each by its vocabulary and its name, and gives true
-    /// for them. The others are judged here; a misspelt one is read as the one that is meant.
+    /// Reads the children of an element of this kind: `read` takes those that it knows, each by its vocabulary and its
+    /// name, and gives true for them. The others are judged here; a misspelt one is read as the one that is meant.
     #[inline]
     pub(super) fn children(
         &mut self,
@@ -106,8 +106,8 @@ impl Loader<'_> {
         }
     }
 
-    /// Reports an element of SCA, or of SAOMS, that cannot be where it is. Gives the name that is meant where it is misspelt, to be read on as
-    /// what has that.
+    /// Reports an element of SCA, or of SAOMS, that cannot be where it is. Gives the name that is meant where it is
+    /// misspelt, to be read on as what has that.
     pub(super) fn unexpected(
         &mut self,
         element: Element<'_>,
@@ -348,7 +348,7 @@ fn as_attribute(one: Diagnostic, element: Element<'_>) -> Diagnostic {
     one.suggest_edits(format!("write it as an attribute: {}", quoted(&written)), edits)
 }
 
-/// What text between elements is meant to be: a comment, as other languages write them.
+/// The comment that text between elements is meant to be, in the syntax of another language.
 fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
     let text = &element.document().text()[span.start as usize..span.end as usize];
     let remark = ["#", "//", ";"].iter().find_map(|mark| text.strip_prefix(mark)).map(str::trim);
@@ -361,7 +361,7 @@ fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
     }
 }
 
-/// What other languages call an element, or a general name of several.
+/// Names of elements in other languages, and general names of several.
 fn word(name: &str) -> Option<&'static str> {
     Some(match name {
         "implementation" => "implementation.java",
@@ -375,7 +375,7 @@ fn word(name: &str) -> Option<&'static str> {
     })
 }
 
-/// Whether an element of this name is of SAOMS, and none of SCA could be meant.
+/// True if an element of this name is of SAOMS, and none of SCA could be meant.
 fn is_own_alone(name: &str) -> bool {
     OWN_ELEMENTS.contains(&name) && !name.contains('.')
 }
@@ -403,8 +403,8 @@ const TYPES: [(&str, &str); 9] = [
     ("EJBSessionBeanBinding", "binding.ejb"),
 ];
 
-/// The local name of an element; of a general `interface`, `implementation` or `binding` that of what its `xsi:type` makes of it, as modelling
-/// tools write them.
+/// The local name of an element; of a general `interface`, `implementation` or `binding` that of what its `xsi:type`
+/// makes of it, as modelling tools write them.
 pub(super) fn meant_name(element: Element<'_>) -> &str {
     let name = element.local_name();
     match name {
@@ -422,12 +422,12 @@ fn by_type(element: Element<'_>) -> Option<&'static str> {
     (meant.split('.').next() == Some(element.local_name())).then_some(meant)
 }
 
-/// What follows `prefix` in the local name of an element.
+/// The text behind `prefix` in the local name of an element.
 pub(super) fn variant(element: Element<'_>, prefix: &str) -> SmolStr {
     meant_name(element).strip_prefix(prefix).unwrap_or_default().into()
 }
 
-/// Whether SCA defines this variant of an implementation, an interface or a binding.
+/// True if SCA defines this variant of an implementation, an interface or a binding.
 pub(super) fn is_defined(element: Element<'_>) -> bool {
     let name = meant_name(element);
     vocabulary::VARIANTS.iter().any(|(_, variants)| variants.contains(&name))

@@ -81,7 +81,7 @@ impl Loader<'_> {
         component
     }
 
-    /// What a component says about its replicas.
+    /// Replicas of a component.
     fn replicas(&mut self, element: Element<'_>) -> Option<Replicas> {
         let replicas = Replicas {
             count: self.own(element, "count"),
@@ -167,7 +167,8 @@ impl Loader<'_> {
     }
 }
 
-/// Whether a name is one of replicas: it uses the index, or anything else where SAOMS is spoken of at all. Templates of others have such names, too.
+/// True if a name is one of replicas: it uses the index, or anything else where SAOMS is spoken of at all. Templates of
+/// others have such names, too.
 fn is_of_replicas(name: &str, element: Element<'_>) -> bool {
     let is_of_saoms = || element.document().namespaces().any(|one| one == SAOMS_NAMESPACE);
     has_expression(name) && (is_of_saoms() || expression::names(name).iter().any(|name| name == INDEX))

@@ -11,8 +11,8 @@ use crate::model::{ComponentType, Origin, Version};
 use crate::source::{FileId, Sources};
 use crate::syntax::{self, Parse};
 
-/// Makes the model of a component type that was read before. `None` when its root is no `componentType` of SCA, or when the text is no
-/// well-formed XML: what can be read is judged, and what is missing may be there.
+/// Makes the model of a component type that was read before. `None` when its root is no `componentType` of SCA, or when
+/// the text is no well-formed XML: what can be read is judged, and what is missing may be there.
 pub fn load_component_type(
     file: FileId,
     sources: &Sources,

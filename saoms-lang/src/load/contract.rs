@@ -58,7 +58,7 @@ impl Loader<'_> {
         })
     }
 
-    /// What a composite's reference promotes. The schema lets the list be empty.
+    /// The references that a composite's reference promotes. The schema lets the list be empty.
     fn promoted(&mut self, element: Element<'_>) -> Vec<Text> {
         let list = self.list(element, "promote");
         if !list.is_empty() {

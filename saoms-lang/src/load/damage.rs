@@ -20,7 +20,8 @@ pub(super) fn add(document: &Document, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// True if a name that others refer to may be missing: of a property of the composite its own, of a component those in it.
+/// True if a name that others refer to may be missing: of a property of the composite its own, of a component those in
+/// it.
 fn has_names(element: Element<'_>) -> bool {
     match element.local_name() {
         "property" => {
@@ -31,7 +32,8 @@ fn has_names(element: Element<'_>) -> bool {
     }
 }
 
-/// True if a child of the root with something damaged inside may be, or hold, a component of which nobody knows the name.
+/// True if a child of the root with something damaged inside may be, or hold, a component of which nobody knows the
+/// name.
 fn may_hide_component(part: Element<'_>) -> bool {
     let is_known = match part.local_name() {
         "component" => has_readable_name(part),
@@ -42,7 +44,8 @@ fn may_hide_component(part: Element<'_>) -> bool {
     !is_known || part.is_unnamed() || part.descendants().skip(1).any(is_component)
 }
 
-/// True if the name of a component is read as it was meant, whatever else is wrong with the tag: it is given once, and ends with its quote.
+/// True if the name of a component is read as it was meant, whatever else is wrong with the tag: it is given once, and
+/// ends with its quote.
 fn has_readable_name(component: Element<'_>) -> bool {
     let mut names = component.written_attributes().filter(|one| one.name() == "name");
     let (Some(name), None) = (names.next(), names.next()) else { return false };

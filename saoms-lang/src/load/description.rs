@@ -12,20 +12,20 @@ use crate::model::Version;
 use crate::source::{FileId, Location, Sources, Text};
 use crate::syntax::{self, Element, Parse};
 
-/// Where the description of a contribution is in its folder: what its author wrote, or else what a tool made.
+/// The places of the description of a contribution in its folder: the author's, or else a tool's.
 pub(crate) const DESCRIPTIONS: [&str; 3] =
     ["META-INF/sca-contribution.xml", "sca-contribution.xml", GENERATED];
-/// What a tool says of a contribution, beside what its author does (SCA Assembly 1.1, 10.2.2).
+/// The description of a contribution by a tool, beside the author's (SCA Assembly 1.1, 10.2.2).
 pub(crate) const GENERATED: &str = "META-INF/sca-contribution-generated.xml";
 /// The kinds of imports and exports that are known beside those of namespaces.
 const ENDINGS: [&str; 4] = ["java", "resource", "c", "cpp"];
 
-/// What is imported and exported.
+/// Imports and exports.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Kind {
     /// Definitions of a namespace, as composites.
     Namespace,
-    /// What belongs to classes of a package.
+    /// Elements about classes of a package.
     Java,
 }
 
@@ -33,11 +33,11 @@ pub(crate) enum Kind {
 pub(crate) struct Entry {
     kind: Kind,
     what: String,
-    /// Where it is written.
+    /// The place.
     pub(crate) at: Location,
     /// The folder of the other contribution, where it is said.
     pub(crate) location: Option<PathBuf>,
-    /// Whether nothing else is said of it.
+    /// True if nothing else is said of it.
     is_bare: bool,
 }
 
@@ -48,7 +48,7 @@ pub(crate) struct Deployable {
     pub(crate) namespace: Option<String>,
 }
 
-/// What the description of a contribution says.
+/// The description of a contribution.
 #[derive(Default)]
 pub(crate) struct Description {
     pub(crate) path: PathBuf,
@@ -83,8 +83,8 @@ impl Deployable {
 }
 
 impl Description {
-    /// What is said of the contribution in a folder: by its author, and by the tools that made it. `None` where nobody says anything; what is wrong
-    /// is reported.
+    /// The descriptions of the contribution in a folder: by its author, and by the tools that made it. `None` where
+    /// nobody says anything; what is wrong is reported.
     pub(crate) fn of(root: &Path, context: &mut ReadContext<'_>) -> Option<Self> {
         let mut made = Self::read(path_in(root)?, context);
         let generated = root.join(GENERATED);
@@ -103,7 +103,7 @@ impl Description {
         Some(made)
     }
 
-    /// Whether composites of a namespace are given to other contributions.
+    /// True if composites of a namespace are given to other contributions.
     pub(crate) fn exports(&self, namespace: &str) -> bool {
         self.exports.iter().any(|entry| entry.is(Kind::Namespace, namespace))
     }
@@ -240,7 +240,8 @@ impl Description {
         }
     }
 
-    /// Warns of a deployable that is named twice, or without the namespace that it is in: what is found by its name alone is run.
+    /// Warns of a deployable that is named twice, or without the namespace that it is in: what is found by its name
+    /// alone is run.
     fn judge(&self, what: &Text, namespace: Option<&str>, child: Element<'_>, loader: &mut Loader<'_>) {
         let local = what.split_once(':').map_or(what.as_str(), |(_, local)| local);
         let is_same = |one: &&Deployable| one.local() == local && one.namespace.as_deref() == namespace;
@@ -264,8 +265,8 @@ impl Description {
     }
 }
 
-/// The namespace of a name. One without a prefix is of the default namespace; where that is one of SCA, in which nobody's composites are, any may be
-/// meant, and so with a prefix that is bound to none.
+/// The namespace of a name. One without a prefix is of the default namespace; where that is one of SCA, in which
+/// nobody's composites are, any may be meant, and so with a prefix that is bound to none.
 fn namespace(name: &str, at: Element<'_>) -> Option<String> {
     let prefix = name.split_once(':').map_or("", |(prefix, _)| prefix);
     let namespace = at.resolve_prefix(prefix)?.into_owned();

@@ -1,4 +1,4 @@
-//! What bytes that are no UTF-8 probably are.
+//! The probable encoding of bytes that are no UTF-8.
 
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::source::{FileId, Span};
@@ -27,7 +27,8 @@ pub(super) fn declared(bytes: &[u8]) -> Option<String> {
     (is_name && !name.is_empty()).then(|| name.to_owned())
 }
 
-/// The warning that a file says to be in an encoding that it cannot be in: one of two or four bytes for each letter. Other programs refuse it.
+/// The warning that a file says to be in an encoding that it cannot be in: one of two or four bytes for each letter.
+/// Other programs refuse it.
 pub(super) fn contradiction(file: FileId, text: &str) -> Option<Diagnostic> {
     const WIDE: [&str; 4] = ["UTF-16", "UTF-32", "UCS-2", "UCS-4"];
     let name = declared(text.as_bytes())?;
@@ -40,7 +41,7 @@ pub(super) fn contradiction(file: FileId, text: &str) -> Option<Diagnostic> {
     Some(one.suggest(format!("replace {} with `UTF-8`", quoted(&name)), place, "UTF-8"))
 }
 
-/// What a file is whose first bytes are known to be of something else than text.
+/// The kind of a file whose first bytes are known to be no text.
 pub(super) fn of_another_kind(bytes: &[u8]) -> Option<&'static str> {
     const KINDS: [(&[u8], &str); 8] = [
         (b"PK\x03\x04", "a ZIP or JAR archive"),

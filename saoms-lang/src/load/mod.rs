@@ -1,8 +1,8 @@
 //! From text to the model, with everything that is wrong in it.
 //!
-//! [`read`] reads a file and [`load_file`] makes a [`Composite`] of its text. All faults of the file are reported in one run,
-//! faults of the XML and of the model side by side. Nothing beyond the one file is looked at: [`contribution`](crate::contribution)
-//! finds what it names.
+//! [`read`] reads a file and [`load_file`] makes a [`Composite`] of its text. All faults of the file are reported in
+//! one run, faults of the XML and of the model side by side. Nothing beyond the one file is looked at:
+//! [`contribution`](crate::contribution) finds what it names.
 
 mod attributes;
 mod children;
@@ -37,8 +37,8 @@ use crate::model::{Composite, SeverityRule, Version};
 use crate::source::{FileId, Sources};
 use crate::syntax::{self, ElementId, Parse};
 
-/// Makes the model of a text that was read before: of all that can be understood, also when the text is no well-formed XML, or has other
-/// errors. `None` when its root is no `composite`.
+/// Makes the model of a text that was read before: of all that can be understood, also when the text is no well-formed
+/// XML, or has other errors. `None` when its root is no `composite`.
 ///
 /// ```
 /// use saoms_lang::{diagnostic::Diagnostics, load::load_file, source::Sources};
@@ -81,7 +81,8 @@ fn push_faults(faults: Vec<Diagnostic>, sources: &Sources, diagnostics: &mut Dia
     }
 }
 
-/// True if a fault is that an end tag does not fit a start tag, and the name of the start tag is reported, with that of the end tag as the right one.
+/// True if a fault is that an end tag does not fit a start tag, and the name of the start tag is reported, with that of
+/// the end tag as the right one.
 fn contradicts(fault: &Diagnostic, sources: &Sources, diagnostics: &Diagnostics) -> bool {
     if fault.code != &codes::XML_TAG_MISMATCH {
         return false;
@@ -96,19 +97,19 @@ fn contradicts(fault: &Diagnostic, sources: &Sources, diagnostics: &Diagnostics)
     })
 }
 
-/// What the parts of the loader share.
+/// The state that the parts of the loader share.
 struct Loader<'d> {
     version: Version,
     /// The namespace that counts as that of SCA: that of the version, but for a root in an unknown one.
     namespace: String,
     diagnostics: &'d mut Diagnostics,
-    /// Whether the component at hand is replicated, so that its texts can hold expressions.
+    /// True if the component at hand is replicated, so that its texts can hold expressions.
     is_replicated: bool,
     /// The attributes of SCA 1.1 in a file of 1.0 that were told.
     newer: Vec<&'static str>,
     /// The misspelt attributes that were told: their elements, the names that are meant, and those that are written.
     meant: Vec<(ElementId, &'static str, String)>,
-    /// What is said about severities.
+    /// The severity settings.
     severities: Vec<SeverityRule>,
 }
 

@@ -99,7 +99,7 @@ impl Loader<'_> {
         None
     }
 
-    /// Whether an element of SCA in a property is a mistake. Any other is a value of the user's own, since a default
+    /// True if an element of SCA in a property is a mistake. Any other is a value of the user's own, since a default
     /// namespace makes those elements of SCA too.
     fn is_slip(&self, name: &str) -> bool {
         let structural = [&COMPOSITE, &COMPONENT].into_iter().flat_map(|kind| kind.children);

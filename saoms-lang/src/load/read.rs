@@ -10,7 +10,7 @@ use crate::limits::ADDRESSABLE_BYTES;
 pub use crate::limits::MAX_SIZE;
 use crate::source::{FileId, Location, OpenTexts, Sources, Span};
 
-/// What a text that comes from standard input is called. Its folder is the current one.
+/// The name of a text from standard input. Its folder is the current one.
 pub const STANDARD_INPUT: &str = "<stdin>";
 
 /// The texts and diagnostics of a check, to which reading files adds.
@@ -93,7 +93,7 @@ fn add(
 /// Reads the text of a file of at most `max_size` bytes that is named at a place.
 ///
 /// # Errors
-/// What to say there when there is no such file or it is no text in UTF-8.
+/// The message for a file that does not exist or is no text in UTF-8.
 pub(crate) fn value(
     path: &Path,
     max_size: u64,
@@ -141,11 +141,11 @@ fn start_of(file: FileId) -> Location {
     Span::empty(0).in_file(file)
 }
 
-/// What a file is to be.
+/// The expected kind of a file.
 struct Expected {
     kind: &'static str,
     help: &'static str,
-    /// How the names of such files end, if they have that in common.
+    /// The extension of such files, if they have one in common.
     ending: Option<&'static str>,
 }
 
@@ -154,7 +154,7 @@ const COMPOSITE: Expected =
 const VALUE: Expected =
     Expected { kind: "text", help: "the value of a property is a text in UTF-8", ending: None };
 
-/// Why there are no bytes.
+/// The reason why there are no bytes.
 enum Failure {
     Directory,
     /// A pipe, a device or a socket.
@@ -237,7 +237,8 @@ fn bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failur
     limited(file, Vec::with_capacity(about.len() as usize + 1), max_size)
 }
 
-/// The bytes of a file that another one names. Nobody writes to it for this one reader, as to a pipe on the command line: it has to be a regular file.
+/// The bytes of a file that another one names. Nobody writes to it for this one reader, as to a pipe on the command
+/// line: it has to be a regular file.
 fn named_bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failure> {
     let about = fs::metadata(path);
     let is_irregular = about.is_ok_and(|about| !about.is_file() && !about.is_dir());
@@ -259,9 +260,9 @@ fn limited(input: impl Read, mut bytes: Vec<u8>, max_size: u64) -> Result<Vec<u8
 /// Bytes that are no text.
 struct Wrong {
     code: &'static crate::diagnostic::Code,
-    /// What can be shown of the file.
+    /// The part of the file that can be shown.
     shown: String,
-    /// Where in it the fault is.
+    /// The place of the fault in it.
     at: u32,
     len: u32,
     message: String,

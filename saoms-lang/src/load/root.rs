@@ -90,7 +90,7 @@ pub(super) fn meant(namespace: &str) -> Option<Version> {
     near.and_then(Version::from_namespace)
 }
 
-/// Where the namespace of the root is written.
+/// The place of the namespace of the root.
 fn declaration(root: Element<'_>) -> Option<Location> {
     let wanted = root.prefix();
     let found = root.namespace_declarations().find(|one| match one.prefix() {
@@ -105,7 +105,8 @@ fn namespaces() -> String {
     format!("{}, {} or {}", all[0], all[1], all[2])
 }
 
-/// Reports a file whose root is not the element of SCA that it has to be, with what such a file is for; of a text that is no XML its faults.
+/// Reports a file whose root is not the element of SCA that it has to be, with what such a file is for; of a text that
+/// is no XML its faults.
 pub(super) fn of_another_kind(
     root: Element<'_>,
     expected: &str,

@@ -22,7 +22,8 @@ impl Loader<'_> {
         self.severities.push(SeverityRule { origin, code, level, reason, is_wrong, within });
     }
 
-    /// Remembers what a `severity` that lacks its prefix, or stands where it cannot, would be about: that is not told beside it.
+    /// Remembers what a `severity` that lacks its prefix, or stands where it cannot, would be about: that is not told
+    /// beside it.
     pub(super) fn meant_severity(&mut self, element: Element<'_>) {
         let (Some(parent), Some(code)) = (element.parent(), element.attribute("code")) else { return };
         let code = code.trimmed();
@@ -54,7 +55,7 @@ impl Loader<'_> {
     }
 }
 
-/// What a severity in an element is about; `None` for the whole composite.
+/// The subject of a severity in an element; `None` for the whole composite.
 fn within(parent: Element<'_>) -> Option<Location> {
     parent.parent().is_some().then(|| parent.span().in_file(parent.document().file()))
 }

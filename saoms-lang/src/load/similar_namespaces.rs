@@ -8,7 +8,8 @@ use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::syntax::{Attribute, Document};
 
 impl Loader<'_> {
-    /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged with it.
+    /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged
+    /// with it.
     pub(super) fn similar_namespaces(&mut self, document: &Document) {
         let near =
             document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
@@ -55,7 +56,7 @@ fn meant(written: &str) -> Option<&'static str> {
     of_sca.or_else(|| is_slip(written, SAOMS_NAMESPACE).then_some(SAOMS_NAMESPACE))
 }
 
-/// Whether two texts differ in their case, in one character, or in two that stand together.
+/// True if two texts differ in their case, in one character, or in two that stand together.
 fn is_slip(written: &str, meant: &str) -> bool {
     let (written, meant) = (written.trim().trim_end_matches('/').to_lowercase(), meant.to_lowercase());
     let (one, other) = (written.as_bytes(), meant.as_bytes());

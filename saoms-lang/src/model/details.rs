@@ -1,7 +1,7 @@
 //! Fields that few elements have, in a box of their own.
 
-/// Makes the struct of such fields, and the methods of the element that give them: `optional` ones by reference, `copied` ones by value,
-/// a `list` as a slice, and `hidden` ones by no method.
+/// Makes the struct of such fields, and the methods of the element that give them: `optional` ones by reference,
+/// `copied` ones by value, a `list` as a slice, and `hidden` ones by no method.
 macro_rules! details {
     ($(#[$meta:meta])* $Details:ident of $Owner:ident {
         $($(#[$doc:meta])* $how:ident $field:ident: $Type:ty,)*

@@ -44,8 +44,8 @@ details! {
         optional file: Text,
         /// `env`, in the namespace of SAOMS, of a composite's property: an environment variable that holds the value.
         optional env: Text,
-        /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
-        /// read.
+        /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it
+        /// cannot be read.
         optional from_file: Text,
         /// The same, where it is XML that is more than a text.
         optional document: ValueDocument,

@@ -18,7 +18,8 @@ pub struct LineRange {
     pub end: LineColumn,
 }
 
-/// Bytes between two places whose scalars are counted beforehand, so that a place far into an endless line costs no more than another.
+/// Bytes between two places whose scalars are counted beforehand, so that a place far into an endless line costs no
+/// more than another.
 const BLOCK: usize = 1024;
 
 /// Starts of the lines of a text. A line ends with LF, CR LF, or a CR alone, as in XML.
@@ -98,8 +99,8 @@ impl LineIndex {
     }
 }
 
-/// The length of the byte order mark that a text starts with. It is no character of the first line: editors do not show it. Elsewhere it is a
-/// character like others.
+/// The length of the byte order mark that a text starts with. It is no character of the first line: editors do not show
+/// it. Elsewhere it is a character like others.
 fn mark(text: &str) -> usize {
     if text.starts_with('\u{feff}') { 3 } else { 0 }
 }

@@ -16,8 +16,8 @@ pub struct Located<T> {
     pub location: Location,
 }
 
-/// A text as the user means it (entities resolved, white space normalised) and the place where it is written. Texts up to
-/// 23 bytes, as most names and values are, are stored in place; longer ones are shared by their clones.
+/// A text as the user means it (entities resolved, white space normalised) and the place where it is written. Texts up
+/// to 23 bytes, as most names and values are, are stored in place; longer ones are shared by their clones.
 pub type Text = Located<SmolStr>;
 
 impl<T> Located<T> {

@@ -152,7 +152,8 @@ impl Sources {
         &self.open
     }
 
-    /// Adds a text under the name that users know it by. One that is read anew for another fleet, and is still the same, takes no memory again.
+    /// Adds a text under the name that users know it by. One that is read anew for another fleet, and is still the
+    /// same, takes no memory again.
     ///
     /// # Panics
     /// When `text` has 4 GiB or more (a span could not name its bytes), or after 2^32 files.

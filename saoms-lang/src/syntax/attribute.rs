@@ -119,7 +119,7 @@ impl<'a> Attribute<'a> {
         self.raw.flags & (NO_VALUE | UNSURE | DUPLICATE | BAD_NAME) == 0
     }
 
-    /// Where the whole attribute is.
+    /// The place of the whole attribute.
     pub fn location(self) -> Location {
         self.span().in_file(self.document.file)
     }

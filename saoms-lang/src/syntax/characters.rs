@@ -12,8 +12,8 @@ const ROW: usize = 64;
 /// Upper bounds of what a text holds, and whether it holds what XML forbids.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Survey {
-    /// The place of the first character that XML 1.0 does not allow: controls but tab, line feed and carriage return, and U+FFFE and U+FFFF.
-    /// Surrogates cannot be in a Rust text.
+    /// The place of the first character that XML 1.0 does not allow: controls but tab, line feed and carriage return,
+    /// and U+FFFE and U+FFFF. Surrogates cannot be in a Rust text.
     pub(super) forbidden: Option<usize>,
     pub(super) starts: usize,
     pub(super) tokens: usize,

@@ -56,8 +56,8 @@ pub struct Document {
 /// Attributes beyond which the declarations among them are found by their prefixes.
 pub(super) const MANY_ATTRIBUTES: usize = 32;
 
-/// The places of declarations of namespaces among the attributes, by element and prefix: of elements with many attributes, once somebody
-/// asks.
+/// The places of declarations of namespaces among the attributes, by element and prefix: of elements with many
+/// attributes, once somebody asks.
 #[derive(Debug, Default)]
 pub(super) struct Declared(OnceLock<HashMap<ElementId, HashMap<Box<str>, usize>>>);
 
@@ -136,7 +136,8 @@ impl Document {
         all.get(&element)?.get(prefix).copied()
     }
 
-    /// The innermost element that byte `at` is in, its tags included; right behind an element without an end is in it, too.
+    /// The innermost element that byte `at` is in, its tags included; right behind an element without an end is in it,
+    /// too.
     pub fn innermost(&self, at: u32) -> Option<Element<'_>> {
         let started = self.elements.partition_point(|one| self.tokens[one.token as usize].start < at);
         let mut here = Some(self.element(ElementId(started.checked_sub(1)? as u32)));

@@ -99,7 +99,7 @@ impl<'a> Element<'a> {
         Span::new(name, name + name_len)
     }
 
-    /// Where the name in the start tag is.
+    /// The place of the name in the start tag.
     #[inline]
     pub fn name_location(self) -> Location {
         self.name_span().in_file(self.document.file)
@@ -127,8 +127,8 @@ impl<'a> Element<'a> {
         !self.has(BROKEN_OFF)
     }
 
-    /// True if attributes, or what is directly inside, may be missing because of a fault of the text, or may be meant otherwise. That
-    /// something is missing here says nothing.
+    /// True if attributes, or what is directly inside, may be missing because of a fault of the text, or may be meant
+    /// otherwise. That something is missing here says nothing.
     #[inline]
     pub fn is_damaged(self) -> bool {
         self.has(DAMAGED_TAG | DAMAGED_CONTENT | UNSURE_TEXT)
@@ -187,7 +187,8 @@ impl<'a> Element<'a> {
         self.raw_attributes().iter().map(move |raw| Attribute { document: self.document, raw })
     }
 
-    /// Its attributes in order, without declarations of namespaces and without those of which name or value are unknown.
+    /// Its attributes in order, without declarations of namespaces and without those of which name or value are
+    /// unknown.
     pub fn attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
         self.written_attributes().filter(|one| one.raw.namespace != XMLNS && one.is_sure())
     }
@@ -237,7 +238,8 @@ impl<'a> Element<'a> {
         None
     }
 
-    /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the attributes.
+    /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the
+    /// attributes.
     pub(super) fn declared_prefixes(self) -> impl Iterator<Item = (&'a str, usize)> {
         let all = self
             .written_attributes()
@@ -269,7 +271,7 @@ pub(super) fn slice(document: &Document, span: Span) -> &str {
     &document.text[span.start as usize..span.end as usize]
 }
 
-/// Where in `whole` its part `part` starts.
+/// The start of `part` in `whole`.
 pub(super) fn offset(whole: &str, part: &str) -> u32 {
     (part.as_ptr() as usize - whole.as_ptr() as usize) as u32
 }

@@ -88,7 +88,8 @@ impl<'a> Element<'a> {
         Some(Span::new(first.start, pieces.last().unwrap_or(first).end))
     }
 
-    /// The text directly inside without white space at its ends, and where it is; `None` when there is none, or it is unknown.
+    /// The text directly inside without white space at its ends, and where it is; `None` when there is none, or it is
+    /// unknown.
     #[inline]
     pub fn trimmed_text(self) -> Option<Text> {
         if !self.has_text() || self.has(UNSURE_TEXT) {

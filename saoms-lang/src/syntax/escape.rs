@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 
-/// A text as it can stand everywhere in XML: inside an element, and in an attribute within quotation marks of either kind.
+/// A text as it can stand everywhere in XML: inside an element, and in an attribute within quotation marks of either
+/// kind.
 ///
-/// What reading would change is written by its number: tabs and line ends, of which attributes would keep blanks alone (XML 1.0, 3.3.3), and
-/// returns (2.11). A character that XML has no way to write (2.2) becomes U+FFFD.
+/// Characters that reading would change are written by their numbers: tabs and line ends, of which attributes would
+/// keep blanks alone (XML 1.0, 3.3.3), and returns (2.11). A character that XML has no way to write (2.2) becomes
+/// U+FFFD.
 ///
 /// ```
 /// assert_eq!(saoms_lang::syntax::escaped("a\"b]]> & 'c'\n"), "a&quot;b]]&gt; &amp; &apos;c&apos;&#10;");

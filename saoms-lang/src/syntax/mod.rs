@@ -1,11 +1,12 @@
 //! Composites as trees: XML 1.0 with namespaces, read by a parser that never fails.
 //!
-//! [`parse`] gives a lossless tree of any text and the list of its faults. The tokens of a text tile it, so every byte is kept. Nothing
-//! is recursive, so depth costs no stack. Names and values stay in the text: the tree holds spans.
+//! [`parse`] gives a lossless tree of any text and the list of its faults. The tokens of a text tile it, so every byte
+//! is kept. Nothing is recursive, so depth costs no stack. Names and values stay in the text: the tree holds spans.
 //!
-//! The steps, each with a file: `lexer` cuts the text into tokens (quick-xml finds the ends of markup), `start_tag` reads attributes, `nest`
-//! finds which end tag belongs to which start tag, `resolve` binds prefixes to namespaces. What cannot be relied on behind a fault is marked
-//! in the tree ([`Element::is_damaged`]), so that nobody reports the same mistake a second time.
+//! The steps, each with a file: `lexer` cuts the text into tokens (quick-xml finds the ends of markup), `start_tag`
+//! reads attributes, `nest` finds which end tag belongs to which start tag, `resolve` binds prefixes to namespaces.
+//! What cannot be relied on behind a fault is marked in the tree ([`Element::is_damaged`]), so that nobody reports the
+//! same mistake a second time.
 
 mod attribute;
 mod characters;

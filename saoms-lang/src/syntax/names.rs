@@ -25,9 +25,9 @@ const CLASS: [u8; 256] = {
 /// Bytes that look like a name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Name {
-    /// How many there are.
+    /// The number of names.
     pub(super) len: u32,
-    /// Whether they certainly are a name without a colon; most are.
+    /// True if they certainly are a name without a colon; most are.
     pub(super) is_plain: bool,
 }
 
@@ -46,18 +46,18 @@ pub(super) fn scan(bytes: &[u8]) -> Name {
     Name { len, is_plain: seen == 0 && len > 0 }
 }
 
-/// How many bytes at the start of `bytes` look like a name.
+/// The number of bytes at the start of `bytes` that look like a name.
 pub(super) fn name_length(bytes: &[u8]) -> usize {
     scan(bytes).len as usize
 }
 
-/// Whether it is a Name without a colon (NCName of Namespaces in XML 1.0).
+/// True if it is a Name without a colon (NCName of Namespaces in XML 1.0).
 pub(crate) fn is_local_name(name: &str) -> bool {
     let mut characters = name.chars();
     characters.next().is_some_and(starts_name) && characters.all(continues_name)
 }
 
-/// Whether it is a Name with at most one colon, both sides a name of their own (QName).
+/// True if it is a Name with at most one colon, both sides a name of their own (QName).
 pub(super) fn is_qualified_name(name: &str) -> bool {
     match name.split_once(':') {
         Some((prefix, local)) => is_local_name(prefix) && is_local_name(local),

@@ -11,10 +11,10 @@ use super::{XML_NAMESPACE, XMLNS_NAMESPACE};
 pub(super) struct Namespaces<'a> {
     names: Vec<Box<str>>,
     numbers: HashMap<Box<str>, u32>,
-    /// What an element without a prefix is in.
+    /// The namespace of elements without a prefix.
     default: u32,
     bound: HashMap<&'a str, u32>,
-    /// What each declaration in scope replaced, to be put back.
+    /// The declarations that each one in scope replaced, to be put back.
     replaced: Vec<Replaced<'a>>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Namespaces<'a> {
         }
     }
 
-    /// How many declarations are in scope, for [`Namespaces::leave`].
+    /// The number of declarations in scope, for [`Namespaces::leave`].
     #[inline]
     pub(super) fn depth(&self) -> u32 {
         self.replaced.len() as u32

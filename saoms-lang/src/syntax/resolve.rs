@@ -32,7 +32,8 @@ struct Resolver<'a> {
     namespaces: Namespaces<'a>,
     /// The prefixes that are reported as unbound.
     unbound: HashSet<&'a str>,
-    /// The elements with declarations that are open: each with the number behind it, and how many declarations are around it.
+    /// The elements with declarations that are open: each with the number behind it, and how many declarations are
+    /// around it.
     scopes: Vec<(u32, u32)>,
 }
 
@@ -133,7 +134,8 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// The namespace of a prefix that is written at `start`; of an unbound one, which is reported once, the namespace that is meant.
+    /// The namespace of a prefix that is written at `start`; of an unbound one, which is reported once, the namespace
+    /// that is meant.
     fn prefix(&mut self, lexer: &mut Lexer<'a>, prefix: &'a str, start: u32, root_end: u32) -> Option<u32> {
         if let Some(number) = self.namespaces.get(prefix) {
             return Some(number);

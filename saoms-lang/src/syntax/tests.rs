@@ -405,8 +405,8 @@ fn what_looks_odd_and_is_fine() {
     }
 }
 
-/// The elements of a text, indented by depth, with what can be relied on: attributes, `?` behind a doubtful one, text, and `!` where an element
-/// is damaged.
+/// The elements of a text, indented by depth, with what can be relied on: attributes, `?` behind a doubtful one, text,
+/// and `!` where an element is damaged.
 fn shown(text: &str) -> String {
     let mut out = String::new();
     let document = parse(FileId(0), &Arc::new(text.into())).document;

@@ -71,12 +71,12 @@ fn data_characters(stretch: &str, mut each: impl FnMut(char, Range<usize>)) {
     }
 }
 
-/// Which bytes the parts of a value are written with.
+/// The bytes of the parts of a value in the text.
 pub(crate) struct SourceMap(Option<Characters>);
 
 impl SourceMap {
-    /// `written` is the stretch, or the attribute, that the value was read from, and may have white space at its ends that the value has
-    /// not; `None` when it is another one.
+    /// `written` is the stretch, or the attribute, that the value was read from, and may have white space at its ends
+    /// that the value has not; `None` when it is another one.
     pub(crate) fn of(written: &str, value: &str) -> Option<Self> {
         if written == value {
             return Some(Self(None));
@@ -95,10 +95,10 @@ impl SourceMap {
     }
 }
 
-/// Where each character of a value is, in the value and as it is written.
+/// The places of the characters of a value, in the value and in the text.
 struct Characters {
     all: Vec<(u32, Range<u32>)>,
-    /// How long the value is.
+    /// The length of the value.
     length: usize,
 }
 
@@ -174,7 +174,8 @@ fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, bool)> {
     })
 }
 
-/// The character that the reference at the start of `text` stands for, and its length in bytes. A `&` by itself stands for itself.
+/// The character that the reference at the start of `text` stands for, and its length in bytes. A `&` by itself stands
+/// for itself.
 fn reference(text: &str) -> (char, usize) {
     let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || b"#_-.:".contains(byte);
     let length = text.bytes().skip(1).take_while(is_part).count();

@@ -17,8 +17,8 @@ const GIVEN: Settings = |project| project.assume_classes(true).wiring(true).set_
 
 /// Checks a fleet as the command does, and draws it.
 ///
-/// The same is found when the files are formatted. What the fleet comes to is written out, and comes to the same. What is
-/// suggested mends what is wrong.
+/// The same is found when the files are formatted. What the fleet comes to is written out, and comes to the same. What
+/// is suggested mends what is wrong.
 pub(crate) fn holds(input: &Input, registry: &Registry) {
     let fleet = examined(input, KNOWN, registry);
     assert_eq!(fleet.output.is_none(), fleet.has_errors(), "{}", fleet.text());

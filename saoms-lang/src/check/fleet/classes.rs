@@ -1,4 +1,4 @@
-//! Which class each component is of.
+//! The class of each component.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -72,7 +72,7 @@ impl<'r> ClassIndex<'r> {
         all
     }
 
-    /// Which of its services have an interface.
+    /// The services with an interface.
     pub(crate) fn fitting(&self, interface: &InterfaceDeclaration) -> Fitting {
         let all = self.services.iter().enumerate();
         let mut all = all.filter(|(_, service)| service.interface == *interface).map(|(place, _)| place);

@@ -1,4 +1,4 @@
-//! Which loops each component has: those of its class, changed by what the composite says.
+//! Loops of each component: those of its class, with the changes of the composite.
 
 mod list;
 mod order;

@@ -41,7 +41,7 @@ struct Teller<'t, 'a> {
 }
 
 impl Teller<'_, '_> {
-    /// Where the composite says which loop it is: at the class where it gives one, else at the name.
+    /// The place of the loop in the composite: the class where it gives one, else the name.
     fn place(&self, at: usize) -> Option<Location> {
         let element = self.loops[at].element?;
         Some(element.class.as_ref().map_or(element.name.location, |class| class.location))

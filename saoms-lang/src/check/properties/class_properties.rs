@@ -45,7 +45,7 @@ struct PropertyCheck<'c, 'm, 'a> {
     table: &'c PropertyTable<'a>,
     parameters: &'c mut Parameters<'a>,
     conversion: &'c mut Conversion,
-    /// What there is of each property of the table.
+    /// The values of each property of the table.
     slots: Vec<Slot<'a>>,
     /// The places of properties whose values are not known, since a fault of theirs is reported.
     unsure: Vec<usize>,
@@ -53,7 +53,7 @@ struct PropertyCheck<'c, 'm, 'a> {
     unknown: Vec<&'a str>,
 }
 
-/// What there is of a property.
+/// The values of a property.
 #[derive(Default)]
 struct Slot<'a> {
     /// The first element that gives it.
@@ -182,7 +182,8 @@ impl<'a> PropertyCheck<'_, '_, 'a> {
         PropertyValues::of(self.table, given, self.unsure, is_sound)
     }
 
-    /// The places of the properties that an unknown name may stand for: those that are spelt most alike, or else any number that is not given.
+    /// The places of the properties that an unknown name may stand for: those that are spelt most alike, or else any
+    /// number that is not given.
     fn meant(&self, name: &str) -> Vec<usize> {
         let near = nearest_equal(name, self.table.names());
         if !near.is_empty() {

@@ -177,7 +177,8 @@ impl Conversion {
         is_sound.then_some(PropertyValue::Complex(values.into()))
     }
 
-    /// The elements of each part of a complex property. Those that are of none, and second ones of a single part, are reported and left out.
+    /// The elements of each part of a complex property. Those that are of none, and second ones of a single part, are
+    /// reported and left out.
     fn parts<'e>(
         &mut self,
         elements: &[Element<'e>],

@@ -14,12 +14,14 @@ use std::collections::HashSet;
 #[derive(Clone, Copy)]
 pub(crate) struct ForeignType<'a> {
     pub(crate) described: &'a ComponentType,
-    /// True if that is all there is to know. A script or a bundle has what its file says; a class has what it says itself besides.
+    /// True if that is all there is to know. A script or a bundle has what its file says; a class has what it says
+    /// itself besides.
     is_whole: bool,
 }
 
 impl<'a> Fleet<'a> {
-    /// The component type of a component that is taken as given; `None` where there is none, and for all other components.
+    /// The component type of a component that is taken as given; `None` where there is none, and for all other
+    /// components.
     pub(crate) fn known(&self, member: usize) -> Option<ForeignType<'a>> {
         if self.members[member].kind != Kind::Given || !self.contribution.describes_any() {
             return None;
@@ -46,8 +48,8 @@ impl<'a> Fleet<'a> {
         names
     }
 
-    /// Reports the name of a service or reference that such a component does not have, as far as anybody knows. Where nobody does, one that is
-    /// nearly a name that the component itself has is probably that one.
+    /// Reports the name of a service or reference that such a component does not have, as far as anybody knows. Where
+    /// nobody does, one that is nearly a name that the component itself has is probably that one.
     pub(crate) fn unknown_name(
         &self,
         member: usize,
@@ -90,7 +92,8 @@ impl<'a> Fleet<'a> {
     }
 }
 
-/// True if a name that is like another one may be meant for it: not where only their numbers differ, or one adds a word to the other.
+/// True if a name that is like another one may be meant for it: not where only their numbers differ, or one adds a word
+/// to the other.
 fn is_slip(name: &str, meant: &str) -> bool {
     let without = |name: &str| name.replace(|c: char| c.is_ascii_digit(), "");
     name.len().abs_diff(meant.len()) <= 2 && without(name) != without(meant)
@@ -106,8 +109,8 @@ impl<'a> ForeignType<'a> {
         services.chain(references.iter().map(|one| &one.name)).map(|name| name.as_str())
     }
 
-    /// Reports a name that is not among those that the file has: where the class may have it all the same as a warning. A file that has nothing
-    /// of the kind says nothing about a class.
+    /// Reports a name that is not among those that the file has: where the class may have it all the same as a warning.
+    /// A file that has nothing of the kind says nothing about a class.
     fn lacks(
         &self,
         (code, rule): (&'static Code, Option<&'static str>),
@@ -174,7 +177,8 @@ pub(crate) fn properties<'a>(
     }
 }
 
-/// Makes warnings of files of values that are not there: those of components that are taken as given may come with the implementation.
+/// Makes warnings of files of values that are not there: those of components that are taken as given may come with the
+/// implementation.
 pub(crate) fn lower_missing_files(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let given = fleet.members.iter().filter(|member| member.kind == Kind::Given);
     let properties = given.flat_map(|member| &member.component.properties);

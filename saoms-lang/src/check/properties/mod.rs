@@ -22,7 +22,7 @@ use crate::syntax::Document;
 pub(crate) use class_properties::check;
 pub(crate) use composite_properties::one_value;
 
-/// Who gives values to properties: a component, or what it says about one of its loops.
+/// A giver of property values: a component, or one of its loops.
 pub(crate) struct Giver<'m, 'a> {
     pub(crate) what: &'static str,
     pub(crate) name: &'a Text,

@@ -281,7 +281,7 @@ impl<'a> Report<'a> {
     }
 
     /// True if there are so many diagnostics of this code at this place's file that one more is counted and not shown.
-    /// What is said of replicas is told together, and always wanted.
+    /// Diagnostics of replicas are reported together, and always wanted.
     pub(crate) fn skip(&mut self, code: &'static Code, severity: Severity, at: Location) -> bool {
         self.copy.is_none() && self.diagnostics.skip(code, severity, at)
     }

@@ -17,7 +17,7 @@ pub struct SeveritySetting {
     pub code: Text,
     /// Its level.
     pub level: Located<SeverityLevel>,
-    /// Why.
+    /// The reason.
     pub reason: Option<Text>,
 }
 

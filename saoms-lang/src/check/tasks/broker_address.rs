@@ -6,11 +6,11 @@ use std::ops::Range;
 /// The fault of an address.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Fault {
-    /// Where.
+    /// The bytes at fault.
     pub(crate) at: Range<usize>,
     /// The message.
     pub(crate) message: String,
-    /// What the bytes at `at` should be, where that is plain.
+    /// The right text for the bytes at `at`, where that is plain.
     pub(crate) instead: Option<String>,
 }
 

@@ -49,7 +49,8 @@ impl<'a> Task<'_, 'a> {
         self.text("topicRename").map_or_else(Vec::new, |text| renames::renamed(&text, report))
     }
 
-    /// Checks all values, each alone and those that have to go together: the topics that it gives new names, and the properties where they are sound.
+    /// Checks all values, each alone and those that have to go together: the topics that it gives new names, and the
+    /// properties where they are sound.
     fn check(&self, report: &mut Report<'_>) -> (Vec<Listed<'a>>, Option<TaskProperties>) {
         if let Some(url) = self.text("url") {
             check_url(&url, report);

@@ -12,7 +12,7 @@ use crate::source::Location;
 pub(crate) struct Listed<'a> {
     pub(crate) name: String,
     pub(crate) at: Location,
-    /// What is said where the class of the component does not use it.
+    /// The message where the class of the component does not use it.
     pub(crate) unused: Option<Unused<'a>>,
 }
 

@@ -81,7 +81,7 @@ pub(crate) fn unfold<'a>(
     fleet
 }
 
-/// Which of the composites that were asked for another one of them includes, directly or not.
+/// The composites that another one of those asked for includes, directly or not.
 fn included(contribution: &Contribution) -> Vec<bool> {
     let all = contribution.composites();
     let asked_for = contribution.asked_for().len();

@@ -205,7 +205,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// What the first column should be called, where all lines are about replicas by what it does not say.
+    /// The right name of the first column, where its values show that it is wrong.
     fn other_key(&self, table: &Table, by_name: Option<&HashMap<String, i64>>) -> Option<&'static str> {
         let mut keys = table.rows.iter().map(|row| row.key.as_str()).peekable();
         keys.peek()?;

@@ -179,7 +179,7 @@ impl<'p> Test<'p> {
         Some(Self { name, predicate })
     }
 
-    /// Why it, at these bytes, leads to none of these, of which some have its name.
+    /// The reason why the step at these bytes leads to none of these elements, of which some have its name.
     pub(crate) fn fault(&self, at: Range<usize>, all: &[Element<'_>], named: &[Element<'_>]) -> Fault {
         if named.is_empty() {
             let mut known: Vec<&str> = Vec::new();
@@ -218,7 +218,7 @@ impl<'p> Test<'p> {
 }
 
 impl Test<'_> {
-    /// What is said of a path into `<value>` elements: a variable is the values, not what they are in.
+    /// The message for a path into `<value>` elements: a variable is the values, not the elements around them.
     pub(crate) fn of_values(&self) -> &'static str {
         if self.name == Some("value") {
             "; the values of a property are `$name` itself, the second is `$name[2]`"
@@ -227,7 +227,7 @@ impl Test<'_> {
         }
     }
 
-    /// Why no element of these is at a place: it counts within each of the elements that they are in.
+    /// The reason why none of these elements is at a position: positions count within each parent.
     fn no_place(&self, named: &[Element<'_>]) -> String {
         let parent = |one: &Element<'_>| one.parent().map(Element::id);
         let groups: Vec<usize> =

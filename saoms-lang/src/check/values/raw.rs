@@ -121,7 +121,8 @@ pub(crate) fn unreported<'a>(
     }
 }
 
-/// The values of each way in which a property gives some, and where that begins; `Err` where it names a file that was not read.
+/// The values of each way in which a property gives some, and where that begins; `Err` where it names a file that was
+/// not read.
 fn ways<'a>(
     property: &'a Property,
     document: &'a Document,
@@ -157,8 +158,8 @@ fn ways<'a>(
     Ok(ways)
 }
 
-/// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's property has no value of its own, it
-/// is what counts until somebody gives one from outside.
+/// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's
+/// property has no value of its own, it is what counts until somebody gives one from outside.
 pub(crate) fn beside_source(
     property: &Property,
     source: &Text,

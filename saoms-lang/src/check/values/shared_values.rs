@@ -15,7 +15,7 @@ pub(crate) struct SharedValues<'a> {
     raw: Raw<'a>,
     /// The same with a value for each element, where it is a property that takes several of one.
     split: Option<Raw<'a>>,
-    /// What is in all of them, or in the one of a place, once a path led into it.
+    /// The content of all of them, or of the one at a place, once a path led into it.
     levels: RefCell<HashMap<Option<usize>, Rc<PathIndex<'a>>>>,
 }
 

@@ -9,7 +9,7 @@ use crate::expression::pattern;
 use crate::source::Text;
 use crate::syntax::escaped;
 
-/// What a URI means, as far as that is known, and why it does not say so.
+/// The meaning of a URI, as far as it is known, and the reason why the URI does not say it.
 pub(crate) struct Misread {
     meant: Option<String>,
     help: String,
@@ -30,7 +30,7 @@ impl Misread {
     }
 }
 
-/// What a URI means that is written in another way: with the index of a replica where there is none, or as other
+/// The meaning of a URI that is written in another way: with the index of a replica where there is none, or as other
 /// languages write it, with commas between several, or something else than `/` before the name of a service.
 pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -> Option<Misread> {
     const LISTED: [char; 3] = [',', ';', '|'];
@@ -62,7 +62,7 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
     Some(promoted.unwrap_or_else(plain))
 }
 
-/// What is meant by a URI that leads into the composite of a component, by the name of a component there and perhaps of
+/// The target of a URI that leads into the composite of a component, by the name of a component there and perhaps of
 /// its service or reference: what of it the composite promotes.
 pub(crate) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'_>) -> Option<Misread> {
     let inner = fleet.inner(member)?;

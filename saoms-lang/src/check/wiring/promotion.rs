@@ -17,7 +17,7 @@ use crate::source::Text;
 /// A reference of a component, by its name.
 pub(crate) type ReferenceId<'f> = (usize, &'f str);
 
-/// Which references are promoted.
+/// The references that are promoted.
 #[derive(Default)]
 pub(crate) struct Promoted<'f> {
     /// By composites that run by themselves, with the targets that these give them: nothing else around them can.

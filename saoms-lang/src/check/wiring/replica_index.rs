@@ -10,7 +10,7 @@ use crate::syntax::escaped;
 pub(crate) struct Beyond<'f> {
     /// The replica whose number is the nearest.
     meant: &'f str,
-    /// Which replicas there are.
+    /// The replicas.
     help: String,
 }
 

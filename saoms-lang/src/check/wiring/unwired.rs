@@ -12,7 +12,7 @@ impl Wires<'_, '_> {
     /// Reports a required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of
     /// the manual. True if it is an error, or a fault that is reported keeps its target from being known.
     ///
-    /// Where composites promote it, the outermost component is the one that lacks a target.
+    /// If composites promote it, the outermost component lacks the target.
     pub(super) fn unwired(
         &self,
         place: ReferenceId<'_>,

@@ -1,4 +1,4 @@
-//! What is large, or deep, or wrong a million times.
+//! Files that are large, or deep, or wrong a million times.
 
 use super::*;
 

@@ -32,7 +32,7 @@ const LINES: &[(&str, &str)] = &[
     ("</composite>", ""),
 ];
 
-/// What is told of the composite with the slips of these lines, each without its column.
+/// The diagnostics of the composite with the slips of these lines, each without its column.
 fn told(lines: &[usize]) -> Vec<String> {
     let written = |(place, (right, wrong)): (usize, &(&str, &str))| match lines.contains(&place) {
         true => (*wrong).to_owned(),

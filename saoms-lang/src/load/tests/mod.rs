@@ -35,7 +35,7 @@ fn shown(sources: &Sources, diagnostics: Diagnostics) -> String {
     out
 }
 
-/// What is wrong with components and the like of a composite of SCA 1.0; they start in line 2.
+/// The diagnostics of components and the like of a composite of SCA 1.0; they start in line 2.
 #[track_caller]
 fn faults_1_0(content: &str, expected: &str) {
     let text = format!("<composite xmlns='{}' name='c' targetNamespace='u'>\n{content}\n</composite>", OSOA);
@@ -49,7 +49,7 @@ fn faults_1_1(content: &str, expected: &str) {
     assert_eq!(loaded(&text).1.trim_end(), expected.trim(), "{content}");
 }
 
-/// What is wrong with a whole file.
+/// The diagnostics of a whole file.
 #[track_caller]
 fn faults(text: &str, expected: &str) {
     assert_eq!(loaded(text).1.trim_end(), expected.trim(), "{text}");

@@ -6,7 +6,7 @@ use crate::diagnostic::Diagnostics;
 use crate::load::{MAX_SIZE, read};
 use crate::source::Sources;
 
-/// What `read` says of a file of these bytes.
+/// The diagnostics of `read` for a file of these bytes.
 fn reading(bytes: &[u8], max_size: u64) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("f.composite");

@@ -95,7 +95,7 @@ impl<'a> Input<'a> {
         self.fault(code, start, end, message).label(behind, "the file ends here")
     }
 
-    /// Where the character at byte `at` ends.
+    /// The end of the character at byte `at`.
     pub(super) fn character_end(self, at: u32) -> u32 {
         self.text.ceil_char_boundary(at as usize + 1) as u32
     }

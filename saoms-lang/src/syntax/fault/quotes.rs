@@ -27,7 +27,8 @@ pub(in crate::syntax) fn around(input: Input<'_>, at: u32) -> Option<(Diagnostic
     Some((one.suggest(format!("replace it with {}", quoted(&straight)), place, straight), value, end))
 }
 
-/// The fault of a value that starts with a straight quote and is closed by one of a word processor before `end`; also where that is.
+/// The fault of a value that starts with a straight quote and is closed by one of a word processor before `end`; also
+/// where that is.
 pub(in crate::syntax) fn closing(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, Span)> {
     let value = input.slice(quote_at + 1, end);
     let (length, found) = value.char_indices().find(|(_, c)| CURLY.contains(c))?;

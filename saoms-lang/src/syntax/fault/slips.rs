@@ -148,7 +148,8 @@ pub(in crate::syntax) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32)
     (fault.suggest("put it in quotes", place, format!("\"{word}\"")), length)
 }
 
-/// The fault of a value that is open at a `<`: its quote is missing before the end of the tag, or the character is meant.
+/// The fault of a value that is open at a `<`: its quote is missing before the end of the tag, or the character is
+/// meant.
 pub(in crate::syntax) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -> Diagnostic {
     let name = quoted(name);
     let (quote, value) = (input.slice(quote_at, quote_at + 1), input.slice(quote_at + 1, at));
@@ -177,7 +178,7 @@ pub(in crate::syntax) fn open_value(input: Input<'_>, name: &str, quote_at: u32,
     one.help("close the value before, or write `&lt;` for the character itself")
 }
 
-/// Where a value with a `<` at `at` is closed, if that surely is its quote.
+/// The end of a value with a `<` at `at`, if that surely is its quote.
 pub(in crate::syntax) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32) -> Option<u32> {
     if input.slice(quote_at, at).contains('>') {
         return None;
@@ -198,7 +199,7 @@ fn ends_with_attribute_name(text: &str) -> bool {
     !name.is_empty() && name_length(name.as_bytes()) == name.len()
 }
 
-/// Where a value without a closing quote ends, where its tag goes on, and whether it surely ends there.
+/// The end of a value without a closing quote, the place where its tag goes on, and true if it surely ends there.
 pub(in crate::syntax) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
     let start = quote_at + 1;
     let rest = &input.text[start as usize..];
@@ -223,8 +224,8 @@ pub(in crate::syntax) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32
     (start_of(value), start_of(line), found == Some(b'>'))
 }
 
-/// The fault of a value that is closed by the quote at `end`, with which the next attribute starts: `a="b c="d"`. Also where the value
-/// should end.
+/// The fault of a value that is closed by the quote at `end`, with which the next attribute starts: `a="b c="d"`. Also
+/// where the value should end.
 pub(in crate::syntax) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, u32)> {
     let value = input.slice(quote_at + 1, end);
     let next = value.strip_suffix('=')?;

@@ -13,8 +13,8 @@ const USUAL: [(&str, &str); 5] = [
     ("tuscany", "http://tuscany.apache.org/xmlns/sca/1.1"),
 ];
 
-/// The fault of a prefix that is none of `bound`, written at byte `start`; `root_end` is behind the name of the root element. Also the
-/// namespace that is meant, or the prefix.
+/// The fault of a prefix that is none of `bound`, written at byte `start`; `root_end` is behind the name of the root
+/// element. Also the namespace that is meant, or the prefix.
 pub(in crate::syntax) fn prefix<'a>(
     input: Input<'_>,
     prefix: &str,

@@ -63,7 +63,7 @@ impl<'a> Counts<'a> {
         self.get(name).open > 0
     }
 
-    /// How many end tags are missing.
+    /// The number of missing end tags.
     pub(super) fn missing_ends(&self, name: &str) -> u32 {
         let Count { open, starts, ends } = self.get(name);
         (open + starts).saturating_sub(ends)

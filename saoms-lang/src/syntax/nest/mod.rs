@@ -1,8 +1,8 @@
 //! Nesting: which end tag belongs to which start tag.
 //!
-//! Where all tags fit, one pass over the tokens is enough. Where they do not, a second pass knows from the numbers of tags which names lack
-//! end tags, and from the vocabulary of composites which elements cannot stand in which; so an element that is never closed ends where it
-//! should have, and what follows it is read as what it is.
+//! If all tags fit, one pass over the tokens is enough. If they do not, a second pass knows from the numbers of tags
+//! which names lack end tags, and from the vocabulary of composites which elements cannot stand in which; so an element
+//! that is never closed ends where it should have, and what follows it is read as what it is.
 
 mod counts;
 mod repair;
@@ -45,7 +45,7 @@ struct Nest<'l, 'a> {
     /// The tags that are still to come, in the second pass.
     counts: Option<Counts<'a>>,
     open: Vec<u32>,
-    /// How many elements there are so far.
+    /// The number of elements so far.
     count: u32,
     has_second_root: bool,
     /// True if an element beside the root is called as the root is: it is another one.

@@ -9,8 +9,8 @@ use crate::syntax::document::Node;
 use crate::syntax::token::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, HAS_TEXT, TokenKind};
 
 impl<'a> Nest<'_, 'a> {
-    /// Closes elements that lack end tags, and that the next element, `named`, cannot stand in. Gives whether its start tag was meant as
-    /// an end tag, so that there is no such element.
+    /// Closes elements that lack end tags, and that the next element, `named`, cannot stand in. Gives whether its start
+    /// tag was meant as an end tag, so that there is no such element.
     pub(super) fn makes_room(&mut self, at: u32, named: Named<'a>, is_bare: bool) -> bool {
         let Some(holders) = holders(local(named.name)) else { return false };
         let is_holder = |one: &&u32| tags::is_one_of(local(self.name(self.node(**one))), holders);

@@ -185,8 +185,9 @@ impl Tag<'_, '_> {
         }
     }
 
-    /// True if what is at `at`, and behind `before` without blanks, is the text of the element, because the `>` of the tag
-    /// is missing: there is no quote up to the end tag. One word behind a blank may be an attribute that is being typed.
+    /// True if what is at `at`, and behind `before` without blanks, is the text of the element, because the `>` of the
+    /// tag is missing: there is no quote up to the end tag. One word behind a blank may be an attribute that is being
+    /// typed.
     fn is_text(&mut self, before: u32, at: u32) -> bool {
         let (input, limit) = (self.input, self.limit);
         let name = input.slice(self.name.start, self.name.end);
@@ -262,7 +263,7 @@ impl Tag<'_, '_> {
     }
 }
 
-/// Where the name is behind `<` and white space, if an element probably begins there.
+/// The place of the name behind `<` and white space, if an element probably begins there.
 fn name_behind_blank(input: Input<'_>, start: u32) -> Option<u32> {
     let name = input.skip_space(start + 1);
     let length = name_length(&input.bytes()[name as usize..]) as u32;
@@ -275,7 +276,7 @@ fn name_behind_blank(input: Input<'_>, start: u32) -> Option<u32> {
     is_tag.then_some(name)
 }
 
-/// Where the value starts of an attribute, if at `at` there is a name, a `=` and a quote.
+/// The start of the value of an attribute, if at `at` there is a name, a `=` and a quote.
 fn starts_attribute(input: Input<'_>, at: u32) -> Option<u32> {
     let length = name_length(&input.bytes()[at as usize..]) as u32;
     let equals = input.skip_space(at + length);

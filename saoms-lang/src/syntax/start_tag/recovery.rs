@@ -1,4 +1,4 @@
-//! What goes on behind a fault in a start tag.
+//! Recovery: the continuation behind a fault in a start tag.
 
 use super::{Tag, starts_attribute};
 use crate::diagnostic::{codes, quoted};
@@ -40,7 +40,8 @@ impl Tag<'_, '_> {
         });
     }
 
-    /// Something stands at `at`, directly behind an attribute, where a blank is missing. Gives whether an attribute is to be read there.
+    /// Something stands at `at`, directly behind an attribute, where a blank is missing. Gives whether an attribute is
+    /// to be read there.
     pub(super) fn missing_blank(&mut self, at: u32) -> bool {
         if self.lexer.attributes.len() == self.first {
             return true;
@@ -62,7 +63,8 @@ impl Tag<'_, '_> {
         is_attribute
     }
 
-    /// Finds out whether the value that ends before `at` should have ended before: what follows may be the rest of the next attribute.
+    /// Finds out whether the value that ends before `at` should have ended before: what follows may be the rest of the
+    /// next attribute.
     fn mend_last(&mut self, at: u32) -> bool {
         let input = self.input;
         let Some(last) = self.lexer.attributes[self.first..].last().copied() else { return false };
