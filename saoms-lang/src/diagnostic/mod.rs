@@ -11,6 +11,7 @@ mod grouping;
 mod human;
 mod json;
 mod level;
+mod meant_boolean;
 mod quoted;
 mod sarif;
 #[cfg(test)]
@@ -24,6 +25,7 @@ pub(crate) use collector::HiddenNames;
 pub use human::{Human, human};
 pub use json::{Json, json};
 pub use level::{SetBy, SeverityLevel};
+pub(crate) use meant_boolean::meant_boolean;
 pub use quoted::quoted;
 pub use saoms_api::host::{nearest_equal, nearest_few};
 pub use saoms_api::rule::{Severity, nearest};

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::Loader;
 use super::vocabulary::{self, Kind, Known};
-use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
 use crate::limits::LIST_WORDS;
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
 use crate::source::{Located, Span, Text};
@@ -264,14 +264,9 @@ impl Loader<'_> {
             "true" | "1" => true,
             "false" | "0" => false,
             other => {
-                let meant = match other.to_ascii_lowercase().as_str() {
-                    "yes" | "on" | "y" | "t" => Some("true"),
-                    "no" | "off" | "n" | "f" => Some("false"),
-                    _ => nearest(other, ["true", "false"]),
-                };
                 let message =
                     format!("{} is {} and has to be `true` or `false`", quoted(name), quoted(other));
-                self.value_fault(attribute, message, meant);
+                self.value_fault(attribute, message, meant_boolean(other));
                 return None;
             }
         };

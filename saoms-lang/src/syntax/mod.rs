@@ -34,7 +34,7 @@ pub use attribute::Attribute;
 pub use document::{Document, ElementId};
 pub use element::Element;
 pub use escape::escaped;
-pub(crate) use names::is_local_name;
+pub(crate) use names::{is_local_name, is_qualified_name};
 pub use parse::{Parse, parse};
 pub use token::TokenKind;
 pub(crate) use value::SourceMap;

@@ -58,7 +58,7 @@ pub(crate) fn is_local_name(name: &str) -> bool {
 }
 
 /// True if it is a Name with at most one colon, both sides a name of their own (QName).
-pub(super) fn is_qualified_name(name: &str) -> bool {
+pub(crate) fn is_qualified_name(name: &str) -> bool {
     match name.split_once(':') {
         Some((prefix, local)) => is_local_name(prefix) && is_local_name(local),
         None => is_local_name(name),

@@ -6,7 +6,7 @@ use super::conversion::Target;
 use crate::check::report::replacing;
 use crate::check::unfolding::replica::COUNTERS;
 use crate::check::unfolding::replica_plan::as_index;
-use crate::diagnostic::{Code, Diagnostic, codes, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, codes, meant_boolean, nearest, quoted};
 use crate::expression::{INDEX, has_expression, is_name};
 use crate::registry::PropertyDeclaration;
 use crate::source::Text;
@@ -78,9 +78,7 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
     }
     let lower = text.to_ascii_lowercase();
     let said = match (declaration.kind, lower.as_str()) {
-        (PropertyKind::Boolean, "yes" | "on" | "y" | "t") => "true".to_owned(),
-        (PropertyKind::Boolean, "no" | "off" | "n" | "f") => "false".to_owned(),
-        (PropertyKind::Boolean, _) => nearest(text, ["true", "false"]).unwrap_or_default().to_owned(),
+        (PropertyKind::Boolean, _) => meant_boolean(text).unwrap_or_default().to_owned(),
         (PropertyKind::Integer | PropertyKind::Float, _) => {
             let unit = declaration.unit.as_deref().unwrap_or_default();
             let text = text.strip_suffix(unit).unwrap_or(text).trim();

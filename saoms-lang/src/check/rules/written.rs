@@ -4,16 +4,14 @@ use super::{bindings, service_binding_uri, type_and_element, wired_by_implementa
 use crate::check::fleet::Fleet;
 use crate::check::properties;
 use crate::check::report::Report;
+use crate::check::values::type_name;
 use crate::check::values::value_type::Typed;
-use crate::check::values::{global_element, type_name};
-use crate::diagnostic::codes;
 
 /// Checks the properties, services and references of every composite and component.
 pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for composite in fleet.units.iter().flat_map(|unit| &unit.composites) {
         for property in &composite.properties {
             type_and_element::check(property, "ASM60040", report);
-            global_element::check(property, &composite.document, &codes::COMPOSITE_VALUE_TYPE, report);
             type_name::named(property, &composite.document, report);
             let typed = Typed { property, document: &composite.document };
             property.simple_values().for_each(|value| typed.check(value, report));
@@ -31,7 +29,6 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         // Types and elements are among the details of a property, and few have any.
         for property in component.properties.iter().filter(|property| property.details.is_some()) {
             type_and_element::check(property, "ASM50035", report);
-            global_element::check(property, &member.composite.document, &codes::VALUE_TYPE, report);
             type_name::named(property, &member.composite.document, report);
         }
         for one in &component.services {

@@ -5,6 +5,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use crate::check::report::{Report, list};
 use crate::check::values::parameters::is_misspelt;
+use crate::check::values::simple_type::SimpleType;
 use crate::check::values::{type_name, value_type};
 use crate::diagnostic::{codes, nearest, quoted};
 use crate::expression::{ExpressionError, ExpressionValue, INDEX};
@@ -163,7 +164,7 @@ fn value(property: &Property, supplied: &Supplied) -> Result<ExpressionValue, Ex
         }
     };
     let of = property.r#type().filter(|of| !type_name::is_misspelt(of));
-    let of = of.map(|of| of.rsplit(':').next().unwrap_or(of)).unwrap_or_default();
+    let of = of.map_or("", |of| type_name::local(of));
     let boolean = match text.as_str() {
         "true" => Some(true),
         "false" => Some(false),
@@ -181,8 +182,7 @@ fn value(property: &Property, supplied: &Supplied) -> Result<ExpressionValue, Ex
         "boolean" => {
             boolean.map_or_else(|| wrong("`true` or `false`"), |value| Ok(ExpressionValue::Boolean(value)))
         }
-        "int" | "integer" | "long" | "short" | "byte" | "nonNegativeInteger" | "positiveInteger"
-        | "unsignedInt" | "unsignedLong" | "unsignedShort" | "unsignedByte" => text.parse().map_or_else(
+        _ if SimpleType::find(of).is_some_and(SimpleType::is_whole) => text.parse().map_or_else(
             |_| wrong("a whole number of at most 64 bits"),
             |value| Ok(ExpressionValue::Integer(value)),
         ),

@@ -178,7 +178,6 @@ pub(crate) const MORE_MESSAGES: &[(&str, &str)] = &[
     ("LocalAttibuteMissmatch", "S2034"),
     ("MultipleBindingsForReference", "S2040"),
     ("NoComponentReferenceTarget", "S2018"),
-    ("PropertXSDElementsDontMatch", "S3007"),
     ("PropertXSDTypesDontMatch", "S3007"),
     ("PropertyFileValueInvalid", "S0001"),
     ("PropertyHasManyValues", "S3011"),
