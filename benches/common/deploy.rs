@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 // The crate has to be linked for its classes to be registered.
 use saoms_components as _;
 use saoms_core::report::{RunReport, RunStatus};
-use saoms_core::schedule::{Fleet, Settings};
+use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::{Human, Severity};
 use saoms_lang::project::Project;
@@ -40,12 +40,12 @@ pub(crate) fn checked(text: String) -> Outcome<Checked> {
 }
 
 /// Starts the fleet of a composite, without an observer.
-pub(crate) fn start(assembly: Assembly, settings: Settings) -> Outcome<Fleet> {
-    Ok(Fleet::start(assembly, settings, Vec::new())?)
+pub(crate) fn start(assembly: Assembly, settings: Settings) -> Outcome<RunningFleet> {
+    Ok(RunningFleet::start(assembly, settings, Vec::new())?)
 }
 
 /// Runs a fleet to its end, without a failure, and returns its report.
-pub(crate) fn finish(fleet: Fleet) -> Outcome<RunReport> {
+pub(crate) fn finish(fleet: RunningFleet) -> Outcome<RunReport> {
     let report = fleet.run_to_end();
     match report.outcome.status {
         RunStatus::Failed => {

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use saoms_api::{Class, Component, Context, Failure, Properties};
-use saoms_core::schedule::{Fleet, Settings};
+use saoms_core::schedule::{RunningFleet, Settings};
 
 use crate::common::composite::{Composite, Task};
 use crate::common::{Outcome, deploy};
@@ -67,7 +67,7 @@ pub(crate) fn run(plan: &Plan, settings: Settings) -> Outcome<()> {
 }
 
 /// The least disturbed of some comparisons of the run's time with the machine's clock.
-fn start_of(fleet: &Fleet) -> Instant {
+fn start_of(fleet: &RunningFleet) -> Instant {
     let handle = fleet.handle();
     let compare = |_| {
         let before = Instant::now();

@@ -14,7 +14,7 @@ use saoms_api::{
     Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
     Publisher, Record, Subscription, Time, Topic, record,
 };
-use saoms_core::schedule::{Fleet, Settings};
+use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties};
 use saoms_lang::registry::Registry;
 
@@ -220,7 +220,7 @@ fn best<const COUNT: usize>(shapes: [&Shape; COUNT]) -> Result<[f64; COUNT], Box
     Ok(best)
 }
 
-fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
+fn start(shape: &Shape) -> Result<RunningFleet, Box<dyn std::error::Error>> {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Robot>())?;
     let class = registry.get("load").ok_or("the class is registered")?;
@@ -248,7 +248,7 @@ fn start(shape: &Shape) -> Result<Fleet, Box<dyn std::error::Error>> {
             loops: std::sync::Arc::default(),
         });
     }
-    Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
+    Ok(RunningFleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
 }
 
 /// The memory of this process, in bytes.

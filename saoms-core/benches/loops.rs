@@ -13,7 +13,7 @@ use saoms_api::{
     Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties,
     Record, Time, record,
 };
-use saoms_core::schedule::{Fleet, Settings};
+use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskProperties};
 use saoms_lang::registry::Registry;
 
@@ -198,7 +198,7 @@ fn best(changes: Option<&str>) -> Result<f64, Box<dyn std::error::Error>> {
     Ok(best)
 }
 
-fn start(changes: Option<&str>) -> Result<Fleet, Box<dyn std::error::Error>> {
+fn start(changes: Option<&str>) -> Result<RunningFleet, Box<dyn std::error::Error>> {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Robot>())?;
     let class = registry.get("load.Robot").ok_or("the class is registered")?;
@@ -218,5 +218,5 @@ fn start(changes: Option<&str>) -> Result<Fleet, Box<dyn std::error::Error>> {
         references: Vec::new(),
         loops: changes.map(of).into_iter().collect(),
     }];
-    Ok(Fleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
+    Ok(RunningFleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
 }

@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use saoms_core::report::RunStatus;
-use saoms_core::schedule::{Fleet, Settings, StartError};
+use saoms_core::schedule::{RunningFleet, Settings, StartError};
 use saoms_lang::assembly::Assembly;
 
 #[test]
 fn realtime_works_or_says_what_to_grant() {
     let settings = Settings { realtime: true, limit: Some(Duration::from_millis(20)), ..Settings::default() };
-    match Fleet::start(Assembly::default(), settings, Vec::new()) {
+    match RunningFleet::start(Assembly::default(), settings, Vec::new()) {
         Ok(fleet) => assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed),
         Err(error @ StartError::Realtime(_)) => {
             let text = error.to_string();

@@ -155,7 +155,7 @@ impl Fleet {
         let mut found = self.compiled();
         let Some(assembly) = found.output.take() else { panic!("{}", found.text()) };
         let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
-        match saoms_core::schedule::Fleet::start(assembly, settings, vec![observer]) {
+        match saoms_core::schedule::RunningFleet::start(assembly, settings, vec![observer]) {
             Ok(fleet) => fleet.run_to_end(),
             Err(error) => panic!("{error}"),
         }

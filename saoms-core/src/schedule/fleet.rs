@@ -31,21 +31,21 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 ///
 /// use saoms_lang::assembly::Assembly;
 /// use saoms_core::report::RunStatus;
-/// use saoms_core::schedule::{Fleet, Settings};
+/// use saoms_core::schedule::{RunningFleet, Settings};
 ///
 /// let settings = Settings { limit: Some(Duration::from_secs(3600)), ..Settings::simulated(7) };
-/// let fleet = Fleet::start(Assembly::default(), settings, Vec::new())?;
+/// let fleet = RunningFleet::start(Assembly::default(), settings, Vec::new())?;
 /// let report = fleet.run_to_end();
 /// assert_eq!(report.outcome.status, RunStatus::Elapsed);
 /// assert_eq!(report.time_s, 3600.0);
 /// # Ok::<(), saoms_core::schedule::StartError>(())
 /// ```
 ///
-/// In real time the fleet runs from [`start`](Fleet::start) on. In virtual time it advances only while a caller waits
-/// in [`run_to_end`](Fleet::run_to_end) or [`run_until`](Fleet::run_until), so that a program can act at exact times.
+/// In real time the fleet runs from [`start`](RunningFleet::start) on. In virtual time it advances only while a caller waits
+/// in [`run_to_end`](RunningFleet::run_to_end) or [`run_until`](RunningFleet::run_until), so that a program can act at exact times.
 /// Dropping a fleet ends it.
 #[derive(Debug)]
-pub struct Fleet {
+pub struct RunningFleet {
     handle: Handle,
     /// Under `realtime`, the open file that keeps the processors awake.
     _awake: Option<File>,
@@ -84,7 +84,7 @@ impl fmt::Display for UnknownComponent {
 
 impl std::error::Error for UnknownComponent {}
 
-impl Fleet {
+impl RunningFleet {
     /// Starts a fleet: constructs and initializes every component that runs from the start and every passive one,
     /// providers before those that call them, and then lets time begin.
     ///
@@ -95,7 +95,7 @@ impl Fleet {
         assembly: Assembly,
         settings: Settings,
         observers: Vec<Arc<dyn Observer>>,
-    ) -> Result<Fleet, StartError> {
+    ) -> Result<RunningFleet, StartError> {
         contain::install_hook();
         let settings = settings.checked();
         let simulated = settings.clock == ClockKind::Virtual;
@@ -123,8 +123,12 @@ impl Fleet {
             );
             handle.shared.note(Level::Warning, text);
         }
-        let mut fleet =
-            Fleet { handle, _awake: awake.unwrap_or_default(), deliverer: Some(deliverer), journal: None };
+        let mut fleet = RunningFleet {
+            handle,
+            _awake: awake.unwrap_or_default(),
+            deliverer: Some(deliverer),
+            journal: None,
+        };
         fleet.journal = spawn_journal(&fleet.handle.shared).map_err(StartError::Thread)?;
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
@@ -221,7 +225,7 @@ fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDel
     thread::Builder::new().name("saoms-journal".to_owned()).spawn(deliver).map(Some)
 }
 
-impl Drop for Fleet {
+impl Drop for RunningFleet {
     fn drop(&mut self) {
         if self.deliverer.is_none() {
             return;

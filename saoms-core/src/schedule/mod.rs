@@ -7,7 +7,7 @@
 //! on a thread of its own from then on. In virtual time the same engine runs on one thread alone, and time jumps from
 //! one due execution to the next.
 //!
-//! The entry point is [`Fleet`]. A component sees only its [`Context`](saoms_api::Context).
+//! The entry point is [`RunningFleet`]. A component sees only its [`Context`](saoms_api::Context).
 
 mod change;
 mod component;
@@ -23,7 +23,7 @@ mod shared;
 mod tests;
 
 pub use change::{ChangeError, Changed, StartError, Takeover};
-pub use fleet::{Fleet, Handle, Hold, UnknownComponent};
+pub use fleet::{Handle, Hold, RunningFleet, UnknownComponent};
 pub use inject::{InjectError, InjectedContent, Injection};
 pub use os::realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};

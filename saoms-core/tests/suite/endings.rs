@@ -195,7 +195,7 @@ fn a_program_that_listens_slowly_does_not_make_a_component_look_stuck() {
     };
     let assembly = crate::fleet::assembly("A actor period=1 each=[log a]");
     let slow = std::sync::Arc::new(Slow(std::sync::atomic::AtomicUsize::new(0)));
-    let fleet = saoms_core::schedule::Fleet::start(assembly, settings, vec![slow.clone()]).unwrap();
+    let fleet = saoms_core::schedule::RunningFleet::start(assembly, settings, vec![slow.clone()]).unwrap();
     assert_eq!(outcome(&fleet.run_to_end()), "Elapsed after 70 s");
     assert_eq!(slow.0.load(std::sync::atomic::Ordering::Relaxed), 70_002);
 }

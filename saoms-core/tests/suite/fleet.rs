@@ -10,7 +10,7 @@ use saoms_api::Properties;
 use saoms_api::host::{PropertyValue, Registration, parse_duration};
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use saoms_core::report::{ComponentReport, RunReport};
-use saoms_core::schedule::{Fleet, Settings, StartError};
+use saoms_core::schedule::{RunningFleet, Settings, StartError};
 use saoms_lang::assembly::{
     Assembly, ComponentSpec, Loss, Overrun, Restart, TaskProperties, Wire, WireTarget,
 };
@@ -165,9 +165,9 @@ pub(crate) fn real(milliseconds: u64) -> Settings {
 }
 
 /// Starts the fleet of a text.
-pub(crate) fn start(text: &str, settings: Settings) -> (Result<Fleet, StartError>, Arc<Diary>) {
+pub(crate) fn start(text: &str, settings: Settings) -> (Result<RunningFleet, StartError>, Arc<Diary>) {
     let diary = Arc::new(Diary::default());
-    (Fleet::start(assembly(text), settings, vec![diary.clone()]), diary)
+    (RunningFleet::start(assembly(text), settings, vec![diary.clone()]), diary)
 }
 
 /// Runs the fleet of a text to its end.

@@ -6,7 +6,7 @@ use saoms_api::Time;
 use saoms_api::host::cdr;
 use saoms_core::observe::{Observer, SentMessage};
 use saoms_core::report::RunStatus;
-use saoms_core::schedule::{Fleet, Handle, InjectError, InjectedContent, Injection, Settings};
+use saoms_core::schedule::{Handle, InjectError, InjectedContent, Injection, RunningFleet, Settings};
 use serde_json::{Value, json};
 
 use crate::actor::Words;
@@ -110,7 +110,7 @@ impl Observer for Reader {
 #[test]
 fn messages_from_outside_are_observed_and_in_the_journal() {
     let reader = Arc::new(Reader::default());
-    let fleet = Fleet::start(assembly(FLEET), simulated(10), vec![reader.clone()]).unwrap();
+    let fleet = RunningFleet::start(assembly(FLEET), simulated(10), vec![reader.clone()]).unwrap();
     say(&fleet.handle(), "TALK", json!({ "text": "a" }), Some(5)).unwrap();
     let report = fleet.run_to_end();
     assert_eq!(*reader.0.lock().unwrap(), ["(outside) on TALK"]);

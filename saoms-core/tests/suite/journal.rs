@@ -8,19 +8,19 @@ use std::sync::Arc;
 use saoms_core::journal::{Journal, LoopCounts, read};
 use saoms_core::observe::JournalFile;
 use saoms_core::report::{RunReport, RunStatus};
-use saoms_core::schedule::{Fleet, Settings};
+use saoms_core::schedule::{RunningFleet, Settings};
 
 use crate::fleet::{simulated, unindent};
 
 use actors::fleet;
 
 fn run(text: &str, settings: Settings) -> RunReport {
-    Fleet::start(fleet(text), settings, Vec::new()).unwrap().run_to_end()
+    RunningFleet::start(fleet(text), settings, Vec::new()).unwrap().run_to_end()
 }
 
 /// The same with a file of the journal.
 fn run_to_file(text: &str, settings: Settings, path: &Path) -> RunReport {
-    Fleet::start(fleet(text), settings, vec![Arc::new(JournalFile::new(path))]).unwrap().run_to_end()
+    RunningFleet::start(fleet(text), settings, vec![Arc::new(JournalFile::new(path))]).unwrap().run_to_end()
 }
 
 /// The records of a run in virtual time: number, cause, and the record itself.
@@ -214,7 +214,7 @@ fn the_file_is_whole_in_real_time_too() {
 #[test]
 fn a_file_that_takes_nothing_fails_the_run_and_says_why() {
     let full = Arc::new(JournalFile::new("/dev/full"));
-    let error = Fleet::start(fleet(PAIR), simulated(1000), vec![full]).unwrap_err();
+    let error = RunningFleet::start(fleet(PAIR), simulated(1000), vec![full]).unwrap_err();
     assert_eq!(error.to_string(), "the journal cannot be written: No space left on device (os error 28)");
 }
 

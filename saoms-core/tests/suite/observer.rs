@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use saoms_api::Message;
 use saoms_api::host::TopicDeclaration;
 use saoms_core::observe::{Observer, Occurrence, RunEvent, SentMessage};
-use saoms_core::schedule::{Fleet, Settings};
+use saoms_core::schedule::{RunningFleet, Settings};
 
 use crate::actor::Words;
 use crate::fleet::{assembly, run, simulated, unindent};
@@ -45,7 +45,7 @@ impl Observer for Reader {
 
 fn read(topic: &'static str, fleet: &str, settings: Settings) -> (String, Option<String>) {
     let reader = Arc::new(Reader { topic, told: Mutex::default() });
-    let report = Fleet::start(assembly(fleet), settings, vec![reader.clone()]).unwrap().run_to_end();
+    let report = RunningFleet::start(assembly(fleet), settings, vec![reader.clone()]).unwrap().run_to_end();
     let told = reader.told.lock().unwrap();
     (told.clone(), report.trace_hash)
 }

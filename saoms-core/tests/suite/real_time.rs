@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use saoms_core::observe::Occurrence;
 use saoms_core::report::RunStatus;
-use saoms_core::schedule::{Fleet, Settings};
+use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
 
 use crate::fleet::{Diary, of, outcome, real, run, start};
@@ -307,7 +307,8 @@ fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
     }
     let assembly = crate::fleet::assembly("A actor period=5 each=[log a]");
     let fleet =
-        saoms_core::schedule::Fleet::start(assembly, real(60), vec![std::sync::Arc::new(Clumsy)]).unwrap();
+        saoms_core::schedule::RunningFleet::start(assembly, real(60), vec![std::sync::Arc::new(Clumsy)])
+            .unwrap();
     assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed);
 }
 
@@ -316,7 +317,7 @@ fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
 fn a_fleet_without_tasks_ends_when_its_time_is_over() {
     for _ in 0..50 {
         let settings = Settings { limit: Some(Duration::from_millis(1)), ..Settings::default() };
-        let fleet = Fleet::start(Assembly::default(), settings, Vec::new()).unwrap();
+        let fleet = RunningFleet::start(Assembly::default(), settings, Vec::new()).unwrap();
         assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed);
     }
 }

@@ -1,4 +1,4 @@
-use saoms_core::schedule::{Fleet, StartError};
+use saoms_core::schedule::{RunningFleet, StartError};
 
 use crate::fleet::{assembly, check, of, outcome, run, simulated, start, unindent};
 
@@ -137,7 +137,7 @@ fn components_that_do_not_run_on_startup_wait() {
 fn a_fleet_of_thousands_starts_and_ends() {
     let fleet: String =
         (0..3000).map(|n| format!("A{n} actor period=10 publishes=OWN subscribes=TALK\n")).collect();
-    let fleet = Fleet::start(assembly(&fleet), simulated(20), Vec::new()).unwrap();
+    let fleet = RunningFleet::start(assembly(&fleet), simulated(20), Vec::new()).unwrap();
     let report = fleet.run_to_end();
     assert_eq!(report.periods, 6000);
     assert!(report.components.iter().all(|component| component.executions == 2));

@@ -12,7 +12,7 @@ use crate::registry::PropertyDeclaration;
 
 /// The task properties of a component: how it runs. All others take them from here.
 ///
-/// The original required all but the last four; here `ID` and `period` are required and the rest have defaults.
+/// `ID` and `period` are required, the rest have defaults.
 #[derive(Clone, Debug, PartialEq, Properties, WriteProperties)]
 pub struct TaskProperties {
     /// The name of the task, for people.

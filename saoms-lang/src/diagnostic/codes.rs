@@ -241,10 +241,11 @@ pub fn is_judgement(code: &Code) -> bool {
     JUDGEMENTS.contains(&code) || !ALL.contains(&code)
 }
 
-/// True if what a code is about is found again in the composite that is left when all is resolved.
+/// True if `saoms expand` leaves a fault of this code in what it writes, so that a severity set for it is written, too.
 pub(crate) fn outlives_expansion(code: &Code) -> bool {
     [&MISSING_TARGET_NAMESPACE, &UNWIRED, &CALL_CYCLE, &NOT_UNIQUE].contains(&code)
-        || [&TASK_ID_SHARED, &RENAME_UNUSED, &CREDENTIALS, &DEADLINE, &RESTART_UNUSED].contains(&code)
+        || [&TASK_ID_SHARED, &RENAME_UNUSED, &CREDENTIALS, &DEADLINE, &RESTART_UNUSED, &NOT_SUPPORTED_YET]
+            .contains(&code)
         || !ALL.contains(&code)
 }
 

@@ -35,7 +35,7 @@ pub struct LoopDeclaration {
     pub effects: Vec<String>,
     /// The entries that it adds to the knowledge.
     #[serde(default)]
-    pub entries: Vec<KnowledgeEntry>,
+    pub entries: Vec<DeclaredEntry>,
     /// The topics it publishes.
     #[serde(default)]
     pub publishes: Vec<ClassTopic>,
@@ -64,12 +64,12 @@ pub struct KnowledgeDeclaration {
     pub doc: String,
     /// Its entries in order.
     #[serde(default)]
-    pub entries: Vec<KnowledgeEntry>,
+    pub entries: Vec<DeclaredEntry>,
 }
 
 /// An entry of a knowledge.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct KnowledgeEntry {
+pub struct DeclaredEntry {
     /// Its name.
     pub name: String,
     /// Its type, as in the schema of a message.

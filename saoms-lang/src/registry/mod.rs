@@ -30,7 +30,7 @@ pub use declaration::{
 };
 pub use error::{Holder, RegistryError};
 pub use looping::{
-    DefaultLoops, KnowledgeDeclaration, KnowledgeEntry, LoopDeclaration, LoopProvider, RegisteredLoop,
+    DeclaredEntry, DefaultLoops, KnowledgeDeclaration, LoopDeclaration, LoopProvider, RegisteredLoop,
 };
 pub use rule::{RegisteredRule, RuleProvider};
 pub use team::{Team, TeamFault};

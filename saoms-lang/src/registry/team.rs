@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::{ClassDeclaration, KnowledgeEntry, LoopDeclaration};
+use super::{ClassDeclaration, DeclaredEntry, LoopDeclaration};
 
 /// The loops of a component, in their order, beside the class that they are to work in.
 pub struct Team<'a> {
     class: &'a ClassDeclaration,
     loops: Vec<&'a LoopDeclaration>,
-    entries: HashMap<&'a str, (&'a KnowledgeEntry, Option<usize>)>,
+    entries: HashMap<&'a str, (&'a DeclaredEntry, Option<usize>)>,
 }
 
 /// The reason why a loop cannot work in a team. Loops are named by their places.
@@ -89,7 +89,7 @@ impl<'a> Team<'a> {
     /// These loops in a component of the class.
     pub fn of(class: &'a ClassDeclaration, loops: Vec<&'a LoopDeclaration>) -> Self {
         let known = class.knowledge.iter().flat_map(|knowledge| &knowledge.entries);
-        let mut entries: HashMap<&str, (&KnowledgeEntry, Option<usize>)> =
+        let mut entries: HashMap<&str, (&DeclaredEntry, Option<usize>)> =
             known.map(|entry| (entry.name.as_str(), (entry, None))).collect();
         for (at, one) in loops.iter().enumerate() {
             for entry in &one.entries {

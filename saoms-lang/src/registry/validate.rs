@@ -6,7 +6,7 @@ use std::collections::HashSet;
 
 use saoms_api::host::declaration::PropertyKind;
 
-use super::{ClassDeclaration, KnowledgeEntry, LoopDeclaration, PropertyDeclaration, simple};
+use super::{ClassDeclaration, DeclaredEntry, LoopDeclaration, PropertyDeclaration, simple};
 
 /// The first contradiction.
 pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
@@ -68,7 +68,7 @@ pub(super) fn looping(one: &LoopDeclaration) -> Result<(), String> {
     unique("entry under `effects`", one.effects.iter().map(String::as_str))
 }
 
-fn entries(all: &[KnowledgeEntry]) -> Result<(), String> {
+fn entries(all: &[DeclaredEntry]) -> Result<(), String> {
     unique("entry", all.iter().map(|entry| entry.name.as_str()))
 }
 

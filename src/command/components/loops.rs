@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use saoms_lang::registry::{ClassDeclaration, KnowledgeEntry, RegisteredLoop};
+use saoms_lang::registry::{ClassDeclaration, DeclaredEntry, RegisteredLoop};
 
 use super::{first_sentence, interface_lines, property_lines, section, topic_line, type_name, wrapped};
 
@@ -58,7 +58,7 @@ pub(super) fn of_class(class: &ClassDeclaration, text: &mut String) {
     }
 }
 
-fn entry_lines(entry: &KnowledgeEntry) -> String {
+fn entry_lines(entry: &DeclaredEntry) -> String {
     let mut facts = vec![type_name(&entry.of)];
     facts.extend(entry.unit.as_ref().map(|unit| format!("in {unit}")));
     if entry.effector {

@@ -18,7 +18,7 @@ use clap::{Args, ValueEnum};
 use saoms_api::extension::PictureRegistration;
 use saoms_core::observe::{JournalFile, Observer};
 use saoms_core::report::RunStatus;
-use saoms_core::schedule::{ClockKind, Fleet, Handle, Settings};
+use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::INPUT;
@@ -161,7 +161,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
     let signals = Signals::new([SIGINT, SIGTERM]);
     let watched = arguments.reload.then(|| Watched::of(&assembly));
-    let fleet = match Fleet::start(assembly, settings(arguments), observers) {
+    let fleet = match RunningFleet::start(assembly, settings(arguments), observers) {
         Ok(fleet) => fleet,
         Err(error) => {
             eprint(&format!("error: {error}\n\nthe fleet did not start: nothing runs\n"));

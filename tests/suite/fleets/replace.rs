@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use saoms_api::Time;
 use saoms_components as _;
-use saoms_core::schedule::{ChangeError, Fleet, Settings, Takeover};
+use saoms_core::schedule::{ChangeError, RunningFleet, Settings, Takeover};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
@@ -26,7 +26,7 @@ fn robots_without_a_job_go_on_in_their_successors_and_no_luggage_is_lost() {
     assert_eq!(robots.len(), 10);
     for seed in 0..3 {
         let settings = Settings { limit: Some(Duration::from_secs(3600)), ..Settings::simulated(seed) };
-        let fleet = Fleet::start(assembly.clone(), settings, Vec::new()).unwrap();
+        let fleet = RunningFleet::start(assembly.clone(), settings, Vec::new()).unwrap();
         let (mut replaced, mut busy) = (0, 0);
         for step in 1..40_u64 {
             fleet.run_until(Time::from_nanos(step * 7_300_000_000));

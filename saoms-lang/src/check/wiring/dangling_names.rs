@@ -40,6 +40,11 @@ impl<'f> DanglingNames<'f> {
         }
     }
 
+    /// True if one of them names a component that does not exist in this scope.
+    pub(super) fn names_unknown_component(&self, scope: usize) -> bool {
+        self.lost.contains_key(&scope)
+    }
+
     /// True if one of them is probably meant to be this reference.
     pub(crate) fn means(&self, (member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
         let scope = fleet.members[member].scope;

@@ -50,16 +50,20 @@ impl Wires<'_, '_> {
             let element = reference.origin.element(&fleet.members[member].composite.document);
             reference.targets.is_empty() && element.has_text()
         });
+        let dangling = [&self.dangling, &self.promoted.dangling];
         if is_text
             || fleet.lacks_include(fleet.members[member].scope)
             || fleet.members[member].is_repeated
-            || [&self.dangling, &self.promoted.dangling].iter().any(|one| one.means(place, fleet))
+            || dangling.iter().any(|one| one.means(place, fleet))
             || dangling_names::is_misspelt(place, fleet)
         {
             return true;
         }
+        // A wire or a promotion of a component that does not exist may be meant for this one.
+        let is_unknown = fleet.is_misread
+            || dangling.iter().any(|one| one.names_unknown_component(fleet.members[member].scope));
         if !is_required {
-            return fleet.is_misread;
+            return is_unknown;
         }
         let (interface, component) = (&declared.interface.name, &fleet.members[member].component.name);
         let place = reference.map(|reference| reference.name.location);
@@ -86,6 +90,6 @@ impl Wires<'_, '_> {
             (false, false) => one.rule("ASM50040"),
         };
         report.push(if is_1_1 { one } else { one.help("calls through it fail") });
-        is_1_1 || fleet.is_misread
+        is_1_1 || is_unknown
     }
 }

@@ -232,3 +232,28 @@ proptest! {
         settled(&texts);
     }
 }
+
+/// A severity that a composite sets is kept by its expansion where the fault is still there.
+#[test]
+fn severities_of_the_examples_outlive_their_expansion() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/check/examples");
+    let compile = |text: &str| Project::new().in_memory().text("fleet.composite", text).compile(&registry());
+    let (mut expanded, mut lost) = (Vec::new(), Vec::new());
+    for code in saoms_lang::diagnostic::codes::ALL {
+        let Ok(text) = std::fs::read_to_string(folder.join(format!("{}.composite", code.id))) else {
+            continue;
+        };
+        let Some(start) = text.find("<composite") else { continue };
+        let Some(end) = text[start..].find('>') else { continue };
+        let (head, rest) = text.split_at(start + end + 1);
+        let severity =
+            format!(r#"<s:severity xmlns:s="urn:saoms:1" code="{}" level="allow" reason="known"/>"#, code.id);
+        let Some(text) = compile(&format!("{head}{severity}{rest}")).expanded() else { continue };
+        expanded.push(code.id);
+        if compile(&text).diagnostics.iter().any(|one| one.code == *code && !one.is_allowed()) {
+            lost.push(code.id);
+        }
+    }
+    assert!(lost.is_empty(), "missing in `outlives_expansion`: {lost:?}");
+    assert!(expanded.contains(&"S4007"), "{expanded:?}");
+}
