@@ -5,7 +5,9 @@ use crate::check::report::{Report, replacing};
 use crate::check::values::parameters::{Parameters, ValueSite};
 use crate::check::wiring::offer::Side;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
-use crate::model::{ComponentElement, ComponentType, ImplementationKind, Part, ReferenceElement};
+use crate::model::{
+    ComponentElement, ComponentType, ImplementationKind, Part, ReferenceElement, ServiceElement,
+};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
 use std::collections::HashSet;
@@ -36,12 +38,7 @@ impl<'a> Fleet<'a> {
     pub(crate) fn written_names(&self, member: usize, side: Side) -> Vec<&'a str> {
         let component = self.members[member].component;
         let described = self.known(member).into_iter().flat_map(|known| known.names(side));
-        let (services, references) = match side {
-            Side::Service => (&component.services[..], &[][..]),
-            Side::Reference => (&[][..], &component.references[..]),
-        };
-        let own = services.iter().map(|one| one.name.as_str());
-        let own = own.chain(references.iter().map(|one: &ReferenceElement| one.name.as_str()));
+        let own = names(side, &component.services, &component.references).map(Text::as_str);
         let mut names: Vec<&str> = own.chain(described).filter(|name| !name.is_empty()).collect();
         names.sort_unstable();
         names.dedup();
@@ -60,27 +57,25 @@ impl<'a> Fleet<'a> {
     ) {
         let component = self.members[member].component;
         // Those that the component has itself are held against the file where they are written.
-        let is_own = match side {
-            Side::Service => component.service(name).is_some(),
-            Side::Reference => component.reference(name).is_some(),
-        };
-        if is_own || self.members[member].kind != Kind::Given {
+        let mut own = names(side, &component.services, &component.references);
+        if own.any(|own| own == name) || self.members[member].kind != Kind::Given {
             return;
         }
         let known = self.known(member).map(|known| (known, known.names(side).collect::<Vec<_>>()));
         if let Some((known, names)) = known.filter(|(known, names)| known.is_whole || !names.is_empty()) {
             return known.lacks((code, rule), side.name(), (&component.name, name, at), &names, report);
         }
-        let own = self.written_names(member, side);
-        let Some(meant) = nearest(name, own).filter(|meant| is_slip(name, meant)) else { return };
+        let Some(meant) =
+            nearest(name, self.written_names(member, side)).filter(|meant| is_slip(name, meant))
+        else {
+            return;
+        };
         let what = side.name();
         let message = format!("component {} declares no {what} {}", quoted(&component.name), quoted(name));
         let mut one = Diagnostic::new(code, at, message).severity(Severity::Warning);
-        let declared = match side {
-            Side::Service => component.service(meant).map(|one| &one.name),
-            Side::Reference => component.reference(meant).map(|one| &one.name),
-        };
-        if let Some(declared) = declared {
+        if let Some(declared) =
+            names(side, &component.services, &component.references).find(|own| *own == meant)
+        {
             one = one.label(declared.location, "what it declares");
         }
         one = one.suggest(replacing(name, meant), at, escaped(meant));
@@ -99,14 +94,20 @@ fn is_slip(name: &str, meant: &str) -> bool {
     name.len().abs_diff(meant.len()) <= 2 && without(name) != without(meant)
 }
 
+/// The names of the services, or of the references.
+fn names<'a>(
+    side: Side,
+    services: &'a [ServiceElement],
+    references: &'a [ReferenceElement],
+) -> impl Iterator<Item = &'a Text> + use<'a> {
+    let services = services.iter().filter(move |_| side == Side::Service).map(|one| &one.name);
+    let references = references.iter().filter(move |_| side == Side::Reference).map(|one| &one.name);
+    services.chain(references)
+}
+
 impl<'a> ForeignType<'a> {
     fn names(&self, side: Side) -> impl Iterator<Item = &'a str> + use<'a> {
-        let (services, references) = match side {
-            Side::Service => (&self.described.services[..], &[][..]),
-            Side::Reference => (&[][..], &self.described.references[..]),
-        };
-        let services = services.iter().map(|one| &one.name);
-        services.chain(references.iter().map(|one| &one.name)).map(|name| name.as_str())
+        names(side, &self.described.services, &self.described.references).map(Text::as_str)
     }
 
     /// Reports a name that is not among those that the file has: where the class may have it all the same as a warning.
@@ -141,16 +142,14 @@ impl<'a> ForeignType<'a> {
 
 /// Checks the services and references that a component writes against what is known of it.
 pub(crate) fn contracts(component: &ComponentElement, known: ForeignType<'_>, report: &mut Report<'_>) {
-    let names: Vec<&str> = known.names(Side::Service).collect();
-    for name in component.services.iter().map(|one| &one.name) {
-        let wrong = (&component.name, name.as_str(), name.location);
-        known.lacks((&codes::UNKNOWN_SERVICE, None), "service", wrong, &names, report);
-    }
-    let names: Vec<&str> = known.names(Side::Reference).collect();
-    for reference in &component.references {
-        let name = &reference.name;
-        let wrong = (&component.name, name.as_str(), name.location);
-        known.lacks((&codes::UNKNOWN_REFERENCE, None), "reference", wrong, &names, report);
+    for (side, code) in
+        [(Side::Service, &codes::UNKNOWN_SERVICE), (Side::Reference, &codes::UNKNOWN_REFERENCE)]
+    {
+        let described: Vec<&str> = known.names(side).collect();
+        for name in names(side, &component.services, &component.references) {
+            let wrong = (&component.name, name.as_str(), name.location);
+            known.lacks((code, None), side.name(), wrong, &described, report);
+        }
     }
 }
 

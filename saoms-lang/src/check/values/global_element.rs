@@ -1,5 +1,5 @@
-//! Properties that are typed by a global element: their values are such elements, not what is inside. Whether they are
-//! what the schema of that element says is for those to judge who have it.
+//! Properties that are typed by a global element: their values are such elements, not what is inside. Only those who
+//! have the schema of that element can judge them.
 
 use super::raw::{Piece, Raw};
 use super::type_name::local;

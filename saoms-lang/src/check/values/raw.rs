@@ -85,49 +85,50 @@ pub(crate) fn raw<'a>(
     instance: Option<&'a Instance>,
     report: &mut Report<'_>,
 ) -> Result<Raw<'a>, ()> {
-    let Ok(ways) = ways(property, document, instance) else {
-        // As a rule it was reported by who tried to read it.
-        if let Some(file) = property.file().filter(|_| !report.has_errors()) {
-            let message = "the file was not read";
-            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, message));
+    only_way(property, document, instance).map_err(|fault| match fault {
+        WaysFault::Two(first, second) => {
+            let message = format!("the property {} is given a value in two ways", quoted(&property.name));
+            report.push(
+                Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other one").help(
+                    "write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
+                ),
+            );
         }
-        return Err(());
-    };
-    let mut ways = ways.into_iter();
-    let Some((first, raw)) = ways.next() else { return Ok(Raw(Vec::new())) };
-    if let Some((second, _)) = ways.next() {
-        let message = format!("the property {} is given a value in two ways", quoted(&property.name));
-        report.push(
-            Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other one").help(
-                "write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
-            ),
-        );
-        return Err(());
-    }
-    Ok(raw)
+        // As a rule it was reported by who tried to read it.
+        WaysFault::Unread(file) if !report.has_errors() => {
+            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file, "the file was not read"));
+        }
+        WaysFault::Unread(_) => {}
+    })
+}
+
+/// The fault of the ways in which a property gives its values.
+pub(crate) enum WaysFault {
+    /// The file that it names here was not read.
+    Unread(Location),
+    /// There are two, at these places.
+    Two(Location, Location),
 }
 
 /// The same, where faults are reported by whoever takes the values.
-pub(crate) fn unreported<'a>(
+pub(crate) fn only_way<'a>(
     property: &'a Property,
     document: &'a Document,
     instance: Option<&'a Instance>,
-) -> Result<Raw<'a>, ()> {
+) -> Result<Raw<'a>, WaysFault> {
     let mut ways = ways(property, document, instance)?.into_iter();
     match (ways.next(), ways.next()) {
-        (None, _) => Ok(Raw(Vec::new())),
-        (Some((_, raw)), None) => Ok(raw),
-        _ => Err(()),
+        (Some((first, _)), Some((second, _))) => Err(WaysFault::Two(first, second)),
+        (only, _) => Ok(only.map_or_else(|| Raw(Vec::new()), |(_, raw)| raw)),
     }
 }
 
-/// The values of each way in which a property gives some, and where that begins; `Err` where it names a file that was
-/// not read.
+/// The values of each way in which a property gives some, and where that begins.
 fn ways<'a>(
     property: &'a Property,
     document: &'a Document,
     instance: Option<&'a Instance>,
-) -> Result<Vec<(Location, Raw<'a>)>, ()> {
+) -> Result<Vec<(Location, Raw<'a>)>, WaysFault> {
     let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
     if let Some(value) = property.value() {
         ways.push((value.location, Raw::one(value)));
@@ -153,7 +154,7 @@ fn ways<'a>(
     {
         ways.push((file.location, document_value(from, property, instance)));
     } else if let Some(file) = property.file() {
-        ways.push((file.location, Raw::one(property.from_file().ok_or(())?)));
+        ways.push((file.location, Raw::one(property.from_file().ok_or(WaysFault::Unread(file.location))?)));
     }
     Ok(ways)
 }

@@ -61,8 +61,19 @@ impl<'a> SharedValues<'a> {
         Rc::try_unwrap(self).map_or_else(|shared| shared.raw.clone(), |own| own.raw)
     }
 
+    /// The values that a path leads to from these, of a property of this declaration, as components take them.
+    pub(crate) fn led_to(self: Rc<Self>, path: &str, property: &Property) -> Result<Rc<Self>, Fault> {
+        if self.raw.0.is_empty() {
+            // What has no value has no parts either.
+            return Ok(self);
+        }
+        let part = Self::new(self.part(path)?);
+        // Without more steps it is the value itself.
+        Ok(if steps(path).nth(1).is_none() { part.inside_elements_of(property) } else { part })
+    }
+
     /// The values that a path leads to: the part of a `source` behind the name.
-    pub(crate) fn part(&self, path: &str) -> Result<Raw<'a>, Fault> {
+    fn part(&self, path: &str) -> Result<Raw<'a>, Fault> {
         let values = &self.split().0;
         let place = one_of(values.len(), path)?;
         let one = || place.map_or_else(|| self.split().clone(), |place| Raw(vec![values[place].clone()]));

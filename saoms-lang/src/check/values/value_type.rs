@@ -29,16 +29,10 @@ impl<'a> Typed<'a> {
         namespace.is_none_or(|namespace| namespace == XML_SCHEMA).then_some((of, found))
     }
 
-    /// True if a value is of its type.
-    pub(crate) fn accepts(&self, value: &str) -> bool {
-        self.simple_type().is_none_or(|(_, of)| is_written(self.property, of, value))
-    }
-
     /// Reports a value that is not of its type.
-    pub(crate) fn check(&self, value: &Text, report: &mut Report<'_>) {
-        if let Some((named, of)) = self.simple_type() {
-            holds(self.property, (named, of), value, report);
-        }
+    pub(crate) fn check(&self, value: &Text, report: &mut Report<'_>) -> Result<(), ()> {
+        let is_right = self.simple_type().is_none_or(|of| holds(self.property, of, value, report));
+        is_right.then_some(()).ok_or(())
     }
 }
 
@@ -49,19 +43,15 @@ pub(crate) fn holds_by_name(property: &Property, value: &Text, report: &mut Repo
     of.is_none_or(|of| holds(property, of, value, report))
 }
 
-fn is_written(property: &Property, of: &SimpleType, value: &str) -> bool {
-    // Many values may be written as a list, as in files of SCA 1.0.
-    let is_list = property.many().is_some_and(|many| many.value) && !value.trim().is_empty();
-    of.accepts(value) || is_list && value.split_whitespace().all(|one| of.accepts(one))
-}
-
 fn holds(
     property: &Property,
     (named, of): (&Text, &SimpleType),
     value: &Text,
     report: &mut Report<'_>,
 ) -> bool {
-    if is_written(property, of, value) {
+    // Many values may be written as a list, as in files of SCA 1.0.
+    let is_list = property.many().is_some_and(|many| many.value) && !value.trim().is_empty();
+    if of.accepts(value) || is_list && value.split_whitespace().all(|one| of.accepts(one)) {
         return true;
     }
     // In a text of its own an empty value can be seen.

@@ -8,8 +8,8 @@ use std::rc::Rc;
 
 use crate::check::unfolding::Unfolding;
 use crate::check::unfolding::expression_scope::Supplied;
-use crate::check::values::path::{expression, steps};
-use crate::check::values::raw::{Piece, Raw, unreported};
+use crate::check::values::path::expression;
+use crate::check::values::raw::{Piece, Raw, only_way};
 use crate::check::values::shared_values::SharedValues;
 use crate::model::{Composite, Property};
 use crate::source::Text;
@@ -75,7 +75,7 @@ impl<'a> Unfolding<'a> {
                 return Ok(whole);
             }
         }
-        unreported(given, document, member.instance).map(SharedValues::new)
+        only_way(given, document, member.instance).map(SharedValues::new).map_err(|_| ())
     }
 
     /// The whole value of a property of a unit; `Err` also where there is none of this name.
@@ -111,9 +111,10 @@ impl<'a> Unfolding<'a> {
         }
         match property.env().and_then(|variable| self.options.variable(variable)) {
             Some(variable) => Ok(SharedValues::of(Raw::one(variable), property)),
-            None => {
-                unreported(property, &composite.document, None).map(|raw| SharedValues::of(raw, property))
-            }
+            None => match only_way(property, &composite.document, None) {
+                Ok(raw) => Ok(SharedValues::of(raw, property)),
+                Err(_) => Err(()),
+            },
         }
     }
 
@@ -148,16 +149,7 @@ impl<'a> Unfolding<'a> {
     /// The values that a path leads to.
     fn by_path(&self, unit: usize, name: &str, path: &str) -> Answer<'a> {
         let whole = self.whole(unit, name)?;
-        if whole.raw().0.is_empty() {
-            return Ok(whole);
-        }
         let &(_, property) = self.known(unit)?.properties.get(name).ok_or(())?;
-        match whole.part(path) {
-            Ok(raw) if steps(path).nth(1).is_none() => {
-                Ok(SharedValues::new(raw).inside_elements_of(property))
-            }
-            Ok(raw) => Ok(SharedValues::new(raw)),
-            Err(_) => Err(()),
-        }
+        whole.led_to(path, property).map_err(|_| ())
     }
 }

@@ -10,8 +10,6 @@ use std::rc::Rc;
 
 use missing::{from_outside, is_asked_for};
 
-use crate::check::Setting;
-use crate::check::Variable;
 use crate::check::fleet::{Fleet, Member, Unit};
 use crate::check::options::Options;
 use crate::check::report::Report;
@@ -65,8 +63,8 @@ struct Parameter<'a> {
     composite: &'a Composite,
     property: &'a Property,
     given: Option<Given<'a>>,
-    /// The variable that counts where nobody else gives a value.
-    variable: Option<&'a Variable>,
+    /// The variable of the environment that counts where nobody else gives a value.
+    variable: Option<&'a Text>,
     /// True if it has to be given a value, and what the component says that the composite implements comes to none.
     is_unset: bool,
     is_used: bool,
@@ -79,10 +77,8 @@ struct Parameter<'a> {
 /// The value that counts in place of the value that a composite gives its property itself.
 #[derive(Clone, Copy)]
 enum Given<'a> {
-    /// A setting from outside.
-    Setting(&'a Setting),
-    /// A variable of the environment.
-    Variable(&'a Variable),
+    /// A setting, or a variable of the environment.
+    Outside(&'a Text),
     /// The property of the component that the composite implements.
     Component(ValueSite<'a>, &'a Property),
 }
@@ -135,10 +131,8 @@ impl<'a> Parameters<'a> {
         parameters.set(fleet, options, report);
         let declared = parameters.units.iter_mut().flat_map(|unit| unit.by_name.values_mut());
         for parameter in declared {
-            let named = parameter.property.env();
-            parameter.variable =
-                named.and_then(|named| options.variables.iter().find(|one| one.name == named.as_str()));
-            parameter.given = parameter.given.or(parameter.variable.map(Given::Variable));
+            parameter.variable = parameter.property.env().and_then(|named| options.variable(named));
+            parameter.given = parameter.given.or(parameter.variable.map(Given::Outside));
         }
         parameters.judge_outside(fleet, report);
         parameters.take_for_expressions(fleet, report);
@@ -146,19 +140,12 @@ impl<'a> Parameters<'a> {
     }
 
     /// Holds what comes from the command line and the environment to the types of the properties.
-    fn judge_outside(&self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
-        for (unit, declared) in fleet.units.iter().zip(&self.units) {
-            let all = unit.composites.iter();
-            let all = all.flat_map(|one| one.properties.iter().map(|property| (property, &*one.document)));
-            for (property, document) in all {
-                let parameter = declared.by_name.get(property.name.as_str());
-                let value = match parameter.and_then(|parameter| parameter.given) {
-                    Some(Given::Setting(setting)) => &setting.value,
-                    Some(Given::Variable(variable)) => &variable.value,
-                    _ => continue,
-                };
-                if parameter.is_some_and(|parameter| std::ptr::eq(parameter.property, property)) {
-                    Typed { property, document }.check(value, report);
+    fn judge_outside(&mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
+        for (place, unit) in fleet.units.iter().enumerate() {
+            for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
+                let parameter = self.units[place].by_name.get(property.name.as_str());
+                if parameter.is_some_and(|parameter| matches!(parameter.given, Some(Given::Outside(_)))) {
+                    let _ = self.whole(place, &property.name, report);
                 }
             }
         }

@@ -33,7 +33,7 @@ impl<'a> Parameters<'a> {
             let mut is_known = false;
             for unit in Self::outermost(fleet) {
                 if let Some(parameter) = self.units[unit].by_name.get_mut(setting.name.as_str()) {
-                    parameter.given = Some(Given::Setting(setting));
+                    parameter.given = Some(Given::Outside(&setting.value));
                     is_known = true;
                 }
             }

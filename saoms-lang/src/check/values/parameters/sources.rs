@@ -3,11 +3,9 @@
 use std::rc::Rc;
 
 use super::{Given, Parameters};
-use crate::check::Setting;
-use crate::check::Variable;
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
-use crate::check::values::path::{FORMS, Fault, expression, steps};
+use crate::check::values::path::{FORMS, Fault, expression};
 use crate::check::values::raw::{Piece, Raw, raw};
 use crate::check::values::shared_values::SharedValues;
 use crate::check::values::value_type::Typed;
@@ -80,21 +78,7 @@ impl<'a> Parameters<'a> {
             };
             return Ok(whole.inside_elements_of(typed));
         };
-        if whole.raw().0.is_empty() {
-            // What has no value has no parts either.
-            return Ok(whole);
-        }
-        match whole.part(path) {
-            // Without more steps it is the value itself.
-            Ok(raw) if steps(path).nth(1).is_none() => {
-                Ok(SharedValues::new(raw).inside_elements_of(property))
-            }
-            Ok(raw) => Ok(SharedValues::new(raw)),
-            Err(fault) => {
-                self.malformed(source, name.len() + 1, fault, report);
-                Err(())
-            }
-        }
+        whole.led_to(path, property).map_err(|fault| self.malformed(source, name.len() + 1, fault, report))
     }
 
     /// Finds the property that a `source` names, and notes that it is used. One that is not there is reported.
@@ -137,11 +121,8 @@ impl<'a> Parameters<'a> {
         let is_judged = std::mem::replace(&mut parameter.is_judged, true);
         let typed = Typed { property, document: &composite.document };
         let mut whole = match given {
-            // One that is not of its type is reported.
-            Some(Given::Setting(Setting { value, .. }) | Given::Variable(Variable { value, .. })) => {
-                if !typed.accepts(value) {
-                    return Err(());
-                }
+            Some(Given::Outside(value)) => {
+                typed.check(value, report)?;
                 SharedValues::new(Raw::one(value))
             }
             Some(Given::Component(outside, outer)) => {
@@ -150,7 +131,7 @@ impl<'a> Parameters<'a> {
                     if let Piece::Text(text) = piece
                         && !report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, text.location)
                     {
-                        typed.check(text, report);
+                        let _ = typed.check(text, report);
                     }
                 }
                 whole
@@ -159,11 +140,8 @@ impl<'a> Parameters<'a> {
         };
         if whole.raw().0.is_empty() {
             whole = SharedValues::new(match variable {
-                Some(Variable { value, .. }) => {
-                    if !typed.accepts(value) {
-                        typed.check(value, report);
-                        return Err(());
-                    }
+                Some(value) => {
+                    typed.check(value, report)?;
                     Raw::one(value)
                 }
                 None => raw(property, &composite.document, None, report)?,
