@@ -178,7 +178,7 @@ impl<W: Write> Server<W> {
             Err(Refusal(code, text)) => (None, Some(json!({ "code": code as i32, "message": text }))),
         };
         rpc::write(&mut self.output, &Reply { jsonrpc: "2.0", id: request.id, result, error })?;
-        self.tell_problems()
+        self.log_plugin_faults()
     }
 
     fn notified(&mut self, notification: Notification) -> io::Result<()> {
@@ -274,7 +274,7 @@ impl<W: Write> Server<W> {
                 self.shown.insert(path, PublishedDiagnostics { uri, version, all });
             }
         }
-        self.tell_problems()
+        self.log_plugin_faults()
     }
 
     fn show(&mut self, uri: &str, version: Option<i32>, all: &[Reported]) -> io::Result<()> {
@@ -284,7 +284,7 @@ impl<W: Write> Server<W> {
     }
 
     /// Says what is wrong with plugins, once.
-    fn tell_problems(&mut self) -> io::Result<()> {
+    fn log_plugin_faults(&mut self) -> io::Result<()> {
         for problem in self.registries.new_problems() {
             let typ = if problem.is_error { MessageType::ERROR } else { MessageType::WARNING };
             let message = format!("saoms: {}", problem.text);

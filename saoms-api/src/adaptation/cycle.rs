@@ -161,7 +161,7 @@ impl<L: LoopClass> DynLoop for L {
         let Some(decision) = self.plan(symptom, subject::<L>(knowledge)?, context)? else { return Ok(()) };
         context.journal(Phase::Decision, &decision.record());
         let result = self.execute(decision, subject::<L>(knowledge)?, context);
-        result.and(snapshot.tell(knowledge, context))
+        result.and(snapshot.record(knowledge, context))
     }
 
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {

@@ -9,13 +9,13 @@ pub struct Snapshot {
     before: Vec<Value>,
     after: Vec<Value>,
     writable: Writable,
-    blind: bool,
+    is_disabled: bool,
 }
 
 impl Snapshot {
     /// A snapshot that stays empty, for the loops of a plugin: the host compares the entries.
-    pub(crate) fn blind() -> Snapshot {
-        Snapshot { blind: true, ..Snapshot::default() }
+    pub(crate) fn disabled() -> Snapshot {
+        Snapshot { is_disabled: true, ..Snapshot::default() }
     }
 
     /// Sets the entries that the next loop may change.
@@ -26,7 +26,7 @@ impl Snapshot {
     /// Takes the entries as they are.
     pub fn take(&mut self, knowledge: &dyn Knowledge) {
         self.before.clear();
-        if !self.blind {
+        if !self.is_disabled {
             knowledge.values(&mut self.before);
         }
     }
@@ -35,8 +35,8 @@ impl Snapshot {
     ///
     /// # Errors
     /// An entry is an effector that the loop does not declare to change.
-    pub fn tell(&mut self, knowledge: &dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        if self.blind {
+    pub fn record(&mut self, knowledge: &dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        if self.is_disabled {
             return Ok(());
         }
         let mut after = mem::take(&mut self.after);

@@ -62,7 +62,7 @@ static TABLE: LoopTable = LoopTable {
 
 impl ExportedLoop {
     fn into_pointer(instance: Box<dyn DynLoop>) -> *mut c_void {
-        let snapshot = Snapshot::blind();
+        let snapshot = Snapshot::disabled();
         let exported = ExportedLoop { instance, state: ContextState::default(), knowledge: None, snapshot };
         Box::into_raw(Box::new(exported)).cast()
     }

@@ -108,7 +108,7 @@ impl DynLoop for ImportedLoop {
         // A decision of the loop is not seen from here, so the entries are compared in any case.
         snapshot.take(knowledge);
         let result = self.step(self.table.adapt, knowledge, context);
-        result.and(snapshot.tell(knowledge, context))
+        result.and(snapshot.record(knowledge, context))
     }
 
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {

@@ -26,21 +26,21 @@ pub(super) fn check(
     }
     let team = Team::of(class.class.declaration(), declarations);
     let faults = team.faults();
-    let teller = Teller { member, class, loops, entries: team.entries() };
+    let diagnostics = TeamDiagnostics { member, class, loops, entries: team.entries() };
     for fault in &faults {
-        report.push(teller.diagnostic(fault));
+        report.push(diagnostics.diagnostic(fault));
     }
     faults.is_empty()
 }
 
-struct Teller<'t, 'a> {
+struct TeamDiagnostics<'t, 'a> {
     member: &'t Member<'a>,
     class: &'t ClassIndex<'a>,
     loops: &'t [Planned<'a>],
     entries: Vec<&'t str>,
 }
 
-impl Teller<'_, '_> {
+impl TeamDiagnostics<'_, '_> {
     /// The place of the loop in the composite: the class where it gives one, else the name.
     fn place(&self, at: usize) -> Option<Location> {
         let element = self.loops[at].element?;
