@@ -3,7 +3,7 @@ use std::fmt;
 use saoms_api::{Message, Topic};
 
 use crate::grid::{Block, Map};
-use crate::validation::{LONGEST, MessageValidator, Problem, Validate, of_robot};
+use crate::validation::{LONGEST_PERIOD, MessageValidator, Problem, Validate, of_robot};
 
 /// State of each robot, the newest message of each.
 pub const ROBOT_LIST: Topic<RobotList> = Topic::state("RLMSTOPIC");
@@ -67,7 +67,7 @@ impl Validate for RobotList {
         if !(0.0..=100.0).contains(&self.battery) {
             return Err(Problem::Battery { percent: self.battery });
         }
-        if self.period > LONGEST {
+        if self.period > LONGEST_PERIOD {
             return Err(Problem::Period { micros: self.period });
         }
         Problem::of_block(self.charger, area)?;

@@ -15,7 +15,7 @@ use saoms_api::{Context, Header, Level};
 use crate::grid::Map;
 
 pub(crate) use problem::Problem;
-pub(crate) use validate::{LONGEST, Validate, of_robot};
+pub(crate) use validate::{LONGEST_PERIOD, Validate, of_robot};
 
 /// Validator of the messages that one component receives.
 ///

@@ -3,7 +3,7 @@ use crate::grid::Map;
 use crate::hardware::Area;
 
 /// Maximum period of a component, a day, in microseconds.
-pub(crate) const LONGEST: u64 = 24 * 60 * 60 * 1_000_000;
+pub(crate) const LONGEST_PERIOD: u64 = 24 * 60 * 60 * 1_000_000;
 
 /// A message that can be wrong.
 ///
