@@ -58,7 +58,6 @@ pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
         "g" | "gb" => Some(1_000_000_000),
         _ => None,
     };
-    let size =
-        digits.trim().parse::<u64>().ok().zip(scale).and_then(|(number, scale)| number.checked_mul(scale));
+    let size = digits.trim().parse::<u64>().ok().zip(scale).and_then(|(number, scale)| number.checked_mul(scale));
     size.ok_or_else(|| "expected a number of bytes, or a number with one of the units kB, MB, GB".to_owned())
 }

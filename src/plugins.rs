@@ -67,12 +67,10 @@ pub(crate) fn usable(problems: &[PluginFault]) -> Result<(), Exit> {
 /// The places where plugins are looked for.
 pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     let path = env::var_os(SEARCH_PATH).unwrap_or_default();
-    let mut folders: Vec<PathBuf> =
-        env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
+    let mut folders: Vec<PathBuf> = env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
     for file in files {
-        let beside = file
-            .parent()
-            .map(|parent| if parent.as_os_str().is_empty() { ".".into() } else { parent.to_owned() });
+        let beside =
+            file.parent().map(|parent| if parent.as_os_str().is_empty() { ".".into() } else { parent.to_owned() });
         folders.extend(beside.into_iter().flat_map(|beside| [beside.join("plugins"), beside]));
     }
     folders.push("plugins".into());

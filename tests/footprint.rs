@@ -34,8 +34,7 @@ fn peak(arguments: &[&str], text: &str) -> usize {
     usize::try_from(usage.ru_maxrss).unwrap() * 1024
 }
 
-const HEAD: &str =
-    "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='u'>";
+const HEAD: &str = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='u'>";
 
 fn composite(parts: impl Iterator<Item = String>) -> String {
     format!("{HEAD}{}</composite>", parts.collect::<String>())

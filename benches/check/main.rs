@@ -1,9 +1,6 @@
 //! Processor time and memory of `saoms check` for large composites. See `benches/README.md`.
 
-#![expect(
-    clippy::print_stderr,
-    reason = "the progress of a long measurement is for the person who waits for it"
-)]
+#![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 
 #[allow(dead_code, unused_imports, reason = "each benchmark uses a part")]
 #[path = "../common/mod.rs"]
@@ -98,8 +95,7 @@ fn main() -> Outcome<()> {
     for Case { name, text, assumes, goal } in &cases {
         eprintln!("{name}");
         fs::write(&path, text)?;
-        let rounds: Vec<Measured> =
-            (0..arguments.rounds).map(|_| checked(&path, *assumes)).collect::<Outcome<_>>()?;
+        let rounds: Vec<Measured> = (0..arguments.rounds).map(|_| checked(&path, *assumes)).collect::<Outcome<_>>()?;
         fs::remove_file(&path)?;
         let middle = |figure: fn(&Measured) -> f64| median(rounds.iter().map(figure)).unwrap_or(f64::NAN);
         let (seconds, system) = (middle(|one| one.seconds), middle(|one| one.system));

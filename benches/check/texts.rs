@@ -55,11 +55,7 @@ pub(crate) fn unknown(size: usize) -> String {
 /// The components of the composites of SCA 1.0 in a folder, with the comments before them, repeated with different
 /// names. Composites are left out if they use more than components, or prefixes, which would need the rest of their
 /// files, or if they have errors of their own.
-pub(crate) fn real(
-    folder: &Path,
-    size: usize,
-    mut is_right: impl FnMut(&str) -> Outcome<bool>,
-) -> Outcome<String> {
+pub(crate) fn real(folder: &Path, size: usize, mut is_right: impl FnMut(&str) -> Outcome<bool>) -> Outcome<String> {
     let mut bodies = Vec::new();
     for text in texts(folder)? {
         let components = components(&text);
@@ -84,8 +80,7 @@ pub(crate) fn real(
         for name in names {
             // As the name of a component, as a target, and as the component of a target.
             for (before, after) in [("\"", "\""), ("\"", "/"), (" ", "/"), (" ", " "), (">", "<")] {
-                body = body
-                    .replace(&format!("{before}{name}{after}"), &format!("{before}{name}_{round}{after}"));
+                body = body.replace(&format!("{before}{name}{after}"), &format!("{before}{name}_{round}{after}"));
             }
         }
         text += &body;

@@ -45,10 +45,7 @@ impl Composite {
             ("useJMS", "true"),
         ];
         // Writing to a string cannot fail.
-        let _ = writeln!(
-            self.text,
-            "  <component name=\"{name}\">\n    <implementation.java class=\"{class}\"/>"
-        );
+        let _ = writeln!(self.text, "  <component name=\"{name}\">\n    <implementation.java class=\"{class}\"/>");
         for (property, value) in common.iter().chain(properties) {
             let _ = writeln!(self.text, "    <property name=\"{property}\">{value}</property>");
         }
@@ -86,8 +83,7 @@ pub(crate) fn airport(robots: u32, period: Duration, phases: Phases, lasting: Du
     let side = (columns * SPACING + 1).to_string();
     let place = |robot: u32| (robot % columns * SPACING, robot / columns * SPACING);
     let mut composite = Composite::new();
-    let task =
-        |class, name: &str, period| Task { class, name: name.to_owned(), period, delay: Duration::ZERO };
+    let task = |class, name: &str, period| Task { class, name: name.to_owned(), period, delay: Duration::ZERO };
     composite.add(&task("saoms.World", "World", period), &[("width", &side), ("height", &side)]);
     let half = period / 2;
     composite.add(&task("unibg.saoms.MasterEnvironmentManagingSystem", "MasterEnvironment", half), &[]);

@@ -16,8 +16,7 @@ pub(crate) fn description() -> String {
     let kernel = fs::read_to_string("/proc/sys/kernel/osrelease").unwrap_or_default();
     let idle = fs::read_to_string("/sys/devices/system/cpu/cpuidle/current_driver").unwrap_or_default();
     let date = Command::new("date").args(["-u", "+%Y-%m-%d %H:%M UTC"]).output();
-    let date =
-        date.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default();
+    let date = date.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default();
     format!("{model}, {cores} cores, Linux {}, idle driver {}, {date}", kernel.trim(), idle.trim())
 }
 
@@ -33,8 +32,7 @@ impl Busy {
     pub(crate) fn now() -> io::Result<Self> {
         let text = fs::read_to_string("/proc/stat")?;
         let line = text.lines().next().unwrap_or_default();
-        let ticks: Vec<u64> =
-            line.split_whitespace().skip(1).map(|field| field.parse().unwrap_or(0)).collect();
+        let ticks: Vec<u64> = line.split_whitespace().skip(1).map(|field| field.parse().unwrap_or(0)).collect();
         let tick = |index: usize| Duration::from_millis(10 * ticks.get(index).copied().unwrap_or(0));
         // user, nice, system, irq, softirq; idle and iowait (3 and 4) are no work, steal (7) is the host's.
         Ok(Self { used: tick(0) + tick(1) + tick(2) + tick(5) + tick(6), stolen: tick(7) })

@@ -1,9 +1,6 @@
 //! Cost of the delivery of a message inside the process. See `benches/README.md`.
 
-#![expect(
-    clippy::print_stderr,
-    reason = "the progress of a long measurement is for the person who waits for it"
-)]
+#![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 
 mod components;
 
@@ -80,8 +77,7 @@ fn main() -> Outcome<()> {
         eprintln!("{} to {}, {} messages", case.senders, case.receivers, case.messages);
         let limit = Some(Duration::from_secs(arguments.seconds));
         let middle = |settings: &Settings| {
-            let rounds =
-                (0..arguments.rounds).map(|_| case.measure(settings)).collect::<Outcome<Vec<f64>>>()?;
+            let rounds = (0..arguments.rounds).map(|_| case.measure(settings)).collect::<Outcome<Vec<f64>>>()?;
             median(rounds.into_iter()).ok_or("no rounds".into())
         };
         let real = middle(&Settings { limit, ..Settings::default() });

@@ -70,9 +70,7 @@ impl Case {
                 let lasting = PERIOD * (ROBOT_EXECUTIONS / robots);
                 (airport(robots, PERIOD, Phases::Spread, lasting), Settings::simulated(1), lasting)
             }
-            Case::Empty { tasks } => {
-                (empty(tasks), Settings::simulated(1), PERIOD * (EMPTY_EXECUTIONS / tasks))
-            }
+            Case::Empty { tasks } => (empty(tasks), Settings::simulated(1), PERIOD * (EMPTY_EXECUTIONS / tasks)),
         };
         let assembly = deploy::checked(text)?.assembly;
         let fleet = deploy::start(assembly, Settings { limit: Some(lasting), ..settings })?;
@@ -94,8 +92,7 @@ fn empty(tasks: u32) -> String {
 
 impl Measured {
     fn of(report: &RunReport, cpu_s: f64, peak_kb: u64) -> Self {
-        let subjects =
-            || report.components.iter().filter(|one| matches!(one.class.as_str(), ROBOT | "bench.Empty"));
+        let subjects = || report.components.iter().filter(|one| matches!(one.class.as_str(), ROBOT | "bench.Empty"));
         let executions: u64 = subjects().map(|one| one.executions).sum();
         Self {
             executions: executions as f64,

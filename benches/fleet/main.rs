@@ -1,9 +1,6 @@
 //! Cost of a robot of the airport fleet in real time, and speed of a fleet in virtual time. See `benches/README.md`.
 
-#![expect(
-    clippy::print_stderr,
-    reason = "the progress of a long measurement is for the person who waits for it"
-)]
+#![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 
 mod case;
 mod original;
@@ -115,10 +112,7 @@ fn in_real_time(page: &mut String, arguments: &Arguments) -> Outcome<Vec<Rounds>
 
 fn in_virtual_time(page: &mut String, arguments: &Arguments) -> Outcome<Vec<Rounds>> {
     writeln!(page, "\n### In virtual time\n")?;
-    writeln!(
-        page,
-        "| fleet | executions per CPU second | | us each | messages received each | delivered | MB |"
-    )?;
+    writeln!(page, "| fleet | executions per CPU second | | us each | messages received each | delivered | MB |")?;
     writeln!(page, "| --- | --- | --- | --- | --- | --- | --- |")?;
     let mut all = Vec::new();
     let fleets = arguments.robots.iter().map(|robots| Case::Robots { robots: *robots });

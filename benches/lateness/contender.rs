@@ -87,12 +87,7 @@ pub(crate) const ALL: &[Contender] = &[
         kind: Kind::Java { mode: "per-task" },
         usual: true,
     },
-    Contender {
-        name: "java-pool",
-        title: "Java, one pool of 2",
-        kind: Kind::Java { mode: "pool" },
-        usual: true,
-    },
+    Contender { name: "java-pool", title: "Java, one pool of 2", kind: Kind::Java { mode: "pool" }, usual: true },
 ];
 
 impl Contender {

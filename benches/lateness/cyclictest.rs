@@ -38,8 +38,7 @@ pub(crate) fn run(plan: &Plan, fifo: bool, tuned: bool) -> Outcome<Run> {
     unsafe { command.pre_exec(small_stacks) };
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let mut child = command.spawn()?;
-    let outcome =
-        limited(&mut child, plan.total() * 3 + Duration::from_secs(30), |child| sample(child, plan));
+    let outcome = limited(&mut child, plan.total() * 3 + Duration::from_secs(30), |child| sample(child, plan));
     let status = child.wait()?;
     let mut run = outcome?;
     if !status.success() {

@@ -43,14 +43,7 @@ const GOALS: &[Goal] = &[
         reference: "java-per-task",
         limit: 0.3,
     },
-    Goal {
-        sizes: &["100x10ms"],
-        figure: p99,
-        what: "p99",
-        subject: "saoms",
-        reference: "java-per-task",
-        limit: 0.7,
-    },
+    Goal { sizes: &["100x10ms"], figure: p99, what: "p99", subject: "saoms", reference: "java-per-task", limit: 0.7 },
     Goal {
         sizes: &["10x100ms", "100x10ms", "1000x10ms", "1000x100ms", "10000x100ms"],
         figure: cpu,
@@ -81,15 +74,12 @@ fn judged(measured: &Measured) -> Vec<Judged> {
 }
 
 fn ratios(at: &AtSize, goal: &Goal) -> Vec<f64> {
-    let rounds =
-        |name| at.results.iter().find(|result| result.contender.name == name).map(|found| &found.rounds);
+    let rounds = |name| at.results.iter().find(|result| result.contender.name == name).map(|found| &found.rounds);
     let (Some(subject), Some(reference)) = (rounds(goal.subject), rounds(goal.reference)) else {
         return Vec::new();
     };
     let pairs = subject.iter().zip(reference);
-    pairs
-        .filter_map(|(left, right)| Some((goal.figure)(left.as_ref()?) / (goal.figure)(right.as_ref()?)))
-        .collect()
+    pairs.filter_map(|(left, right)| Some((goal.figure)(left.as_ref()?) / (goal.figure)(right.as_ref()?))).collect()
 }
 
 /// Appends the table of goals to the page.

@@ -1,9 +1,6 @@
 //! Lateness of a periodic start, beside cyclictest, tokio and Java's executors. See `benches/README.md`.
 
-#![expect(
-    clippy::print_stderr,
-    reason = "the progress of a long measurement is for the person who waits for it"
-)]
+#![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 
 mod contender;
 mod cyclictest;
@@ -76,11 +73,7 @@ fn main() -> Outcome<()> {
 }
 
 fn plan(size: Size, arguments: &Arguments) -> Plan {
-    Plan {
-        size,
-        warm_up: size.whole_periods(arguments.warm_up),
-        measured: size.whole_periods(arguments.seconds),
-    }
+    Plan { size, warm_up: size.whole_periods(arguments.warm_up), measured: size.whole_periods(arguments.seconds) }
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {

@@ -76,10 +76,5 @@ fn at_size(plan: &Plan, contenders: &[&'static Contender], rounds: u32) -> AtSiz
 
 fn line(run: &Run) -> String {
     let late = |quantile| run.latenesses.quantile_us(quantile);
-    format!(
-        "p50 {:.0} us, p99 {:.0} us, others used {:.0} % of a core",
-        late(0.5),
-        late(0.99),
-        run.others * 100.0
-    )
+    format!("p50 {:.0} us, p99 {:.0} us, others used {:.0} % of a core", late(0.5), late(0.99), run.others * 100.0)
 }

@@ -54,8 +54,7 @@ impl Run {
 pub(crate) fn run(mut command: Command, plan: &Plan) -> Outcome<Run> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn()?;
-    let outcome =
-        limited(&mut child, plan.total() * 3 + Duration::from_secs(30), |child| measure(child, plan));
+    let outcome = limited(&mut child, plan.total() * 3 + Duration::from_secs(30), |child| measure(child, plan));
     let status = child.wait()?;
     let run = outcome?;
     if !status.success() {

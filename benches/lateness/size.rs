@@ -44,8 +44,7 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong =
-            || format!("`{text}` is not a size: expected TASKSxPERIOD with ms or us, such as 100x10ms");
+        let wrong = || format!("`{text}` is not a size: expected TASKSxPERIOD with ms or us, such as 100x10ms");
         let (tasks, period) = text.split_once('x').ok_or_else(wrong)?;
         let (number, unit) = match period.strip_suffix("ms") {
             Some(number) => (number, 1000),

@@ -1,10 +1,7 @@
 //! Time of a composite from its text to the first execution of all its components, and its memory. See
 //! `benches/README.md`.
 
-#![expect(
-    clippy::print_stderr,
-    reason = "the progress of a long measurement is for the person who waits for it"
-)]
+#![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 
 #[allow(dead_code, unused_imports, reason = "each benchmark uses a part")]
 #[path = "../common/mod.rs"]
@@ -105,12 +102,8 @@ fn main() -> Outcome<()> {
     if let Some(case) = &arguments.inside {
         return child::tell(&serde_json::from_str::<Case>(case)?.measure()?);
     }
-    let mut page =
-        format!("From the text of a composite to its first executions. {}.\n\n", common::description());
-    writeln!(
-        page,
-        "| | load ms | check ms | start ms | first executions ms | together ms | | kB each | | most MB |"
-    )?;
+    let mut page = format!("From the text of a composite to its first executions. {}.\n\n", common::description());
+    writeln!(page, "| | load ms | check ms | start ms | first executions ms | together ms | | kB each | | most MB |")?;
     writeln!(page, "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")?;
     let few = measure(Case::Idle(1), arguments.rounds)?;
     let few = median(few.iter().map(|one| one.resident)).unwrap_or(f64::NAN);

@@ -82,8 +82,7 @@ impl Editor {
         let document = json!({ "uri": self.uri });
         let context = json!({ "includeDeclaration": true });
         // Each request takes the parameters that it knows.
-        let asked =
-            json!({ "textDocument": document, "position": place, "newName": "Another", "context": context });
+        let asked = json!({ "textDocument": document, "position": place, "newName": "Another", "context": context });
         let begun = Instant::now();
         let answer = self.ask(method, &asked)?;
         let took = milliseconds(begun);

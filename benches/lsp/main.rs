@@ -116,13 +116,11 @@ fn measure(size: u32, rounds: usize, rows: &mut Vec<Row>) -> Outcome<()> {
     let world = text.rfind("target=\"World").ok_or("no target")? + "target=\"".len();
     for what in QUESTIONS {
         let method = format!("textDocument/{what}");
-        let times: Outcome<Vec<f64>> =
-            (0..rounds).map(|_| editor.question(&method, &text, world + 1)).collect();
+        let times: Outcome<Vec<f64>> = (0..rounds).map(|_| editor.question(&method, &text, world + 1)).collect();
         row(what, &times?);
     }
     // A blank changes the text, but not its meaning.
-    let times: Outcome<Vec<f64>> =
-        (0..CHECKS.min(rounds)).map(|_| editor.check(&text, world - 8, " ")).collect();
+    let times: Outcome<Vec<f64>> = (0..CHECKS.min(rounds)).map(|_| editor.check(&text, world - 8, " ")).collect();
     row("diagnostics after a change", &times?);
     editor.close()
 }

@@ -37,15 +37,13 @@ pub struct ComponentTable {
     /// The size of this table in bytes.
     pub size: usize,
     /// Asks for topics and references. Called once, when the component is scheduled.
-    pub initialize:
-        unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
+    pub initialize: unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
     /// Does the work of one period, with what arrived since the last one. Never called for a passive component. It must
     /// not wait for anything.
     pub execute: unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
     /// Ends the work; messages that it sends still leave. Called once, when the component is unscheduled or the run
     /// ends.
-    pub shutdown:
-        unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
+    pub shutdown: unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status,
     /// Serves a call of one of the services that the class declares: the number of the operation, arguments and reply
     /// in their CDR form.
     pub serve: unsafe extern "C" fn(

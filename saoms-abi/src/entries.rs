@@ -40,8 +40,7 @@ pub struct EntriesFunctions {
     /// Gives the value of one; 0 where it is no single value.
     pub get: unsafe extern "C" fn(state: *mut c_void, entry: u32, value: *mut ValueView) -> u32,
     /// Sets it.
-    pub set:
-        unsafe extern "C" fn(state: *mut c_void, entry: u32, value: *const ValueView, error: Sink) -> Status,
+    pub set: unsafe extern "C" fn(state: *mut c_void, entry: u32, value: *const ValueView, error: Sink) -> Status,
     /// Gives the CDR form of one.
     pub get_bytes: unsafe extern "C" fn(state: *mut c_void, entry: u32, bytes: Sink, error: Sink) -> Status,
     /// Sets it from that.

@@ -1,8 +1,6 @@
 use core::ffi::c_void;
 
-use crate::{
-    Bytes, Inbox, LoopInstance, PropertyView, RecordView, ReportView, Sink, Status, TopicView, ValueView,
-};
+use crate::{Bytes, Inbox, LoopInstance, PropertyView, RecordView, ReportView, Sink, Status, TopicView, ValueView};
 
 /// The context that a component is lent for the time of a call: its functions, and the messages that arrived.
 #[repr(C)]
@@ -51,12 +49,8 @@ pub struct HostFunctions {
     /// The next random number of the component's own source: the same seed gives the same ones.
     pub next_random: unsafe extern "C" fn(state: *mut c_void) -> u64,
     /// Becomes a publisher of a topic that the class declares, in `initialize` alone; gives the index to send with.
-    pub publish: unsafe extern "C" fn(
-        state: *mut c_void,
-        topic: *const TopicView,
-        publisher: *mut u32,
-        error: Sink,
-    ) -> Status,
+    pub publish:
+        unsafe extern "C" fn(state: *mut c_void, topic: *const TopicView, publisher: *mut u32, error: Sink) -> Status,
     /// Becomes a subscriber of a topic that the class declares, in `initialize` alone; gives the place of its inbox.
     pub subscribe: unsafe extern "C" fn(
         state: *mut c_void,
@@ -123,12 +117,8 @@ pub struct HostFunctions {
     /// Writes a record to the journal: of phase 0 a symptom, 1 a decision, 2 an effect.
     pub journal: unsafe extern "C" fn(state: *mut c_void, phase: u32, record: *const RecordView),
     /// Writes to the journal that the present loop changed an entry; its name has to be part of the library.
-    pub changed: unsafe extern "C" fn(
-        state: *mut c_void,
-        entry: Bytes,
-        before: *const ValueView,
-        after: *const ValueView,
-    ),
+    pub changed:
+        unsafe extern "C" fn(state: *mut c_void, entry: Bytes, before: *const ValueView, after: *const ValueView),
 }
 
 /// Sees a loop of a component: its name, its class, its values and their number.

@@ -15,9 +15,7 @@ use std::time::Instant;
 
 use saoms_api::boundary::class_table;
 use saoms_api::host::{DynComponent, Registration, SharedMessage};
-use saoms_api::{
-    Cause, Class, Component, Context, Failure, Header, Message, Publisher, Subscription, Time, Topic,
-};
+use saoms_api::{Cause, Class, Component, Context, Failure, Header, Message, Publisher, Subscription, Time, Topic};
 use saoms_core::plugin::ImportedClass;
 
 use host::FakeHost;

@@ -33,9 +33,9 @@ impl Chance {
     /// The source of a component in a run with this seed: independent of those of other names.
     pub fn for_component(seed: u64, name: &str) -> Chance {
         // FNV-1a over the name, then mixed with the seed, so that neighbouring seeds and names share nothing.
-        let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        });
+        let hash = name
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
         Chance::new(split_mix(seed).1 ^ split_mix(hash).1.rotate_left(32))
     }
 

@@ -4,8 +4,8 @@ use std::time::Duration;
 use crate::host::{Host, TARGET_SHIFT};
 use crate::host::{Phase, Reference, ServiceCall, SharedMessage};
 use crate::{
-    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Publisher, Record, ReportValue,
-    Subscription, Time, Topic, Value, Work,
+    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Publisher, Record, ReportValue, Subscription,
+    Time, Topic, Value, Work,
 };
 
 /// Severity of a log line.

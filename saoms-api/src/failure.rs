@@ -101,10 +101,7 @@ impl fmt::Display for CallError {
                 "reference `{reference}` is not wired: give it a target in the composite, or do not call it"
             ),
             CallError::Busy { provider } => {
-                write!(
-                    formatter,
-                    "component `{provider}` is in the middle of an execution and cannot be called"
-                )
+                write!(formatter, "component `{provider}` is in the middle of an execution and cannot be called")
             }
             CallError::NotRunning { provider } => write!(formatter, "component `{provider}` is not running"),
             CallError::Mismatch { message } => formatter.write_str(message),

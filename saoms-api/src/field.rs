@@ -167,8 +167,7 @@ impl Field for String {
 }
 
 impl<T: Field> Field for Vec<T> {
-    const TYPE: ConstText =
-        ConstText::Joined(&[ConstText::Plain("{\"sequence\":"), T::TYPE, ConstText::Plain("}")]);
+    const TYPE: ConstText = ConstText::Joined(&[ConstText::Plain("{\"sequence\":"), T::TYPE, ConstText::Plain("}")]);
     const LEAST_SIZE: usize = 4;
 
     fn write(&self, writer: &mut Writer) {
@@ -184,8 +183,7 @@ impl<T: Field> Field for Vec<T> {
 
 /// Encoded as a sequence of at most one element, which is how ROS 2 interfaces say it: `T[<=1]`.
 impl<T: Field> Field for Option<T> {
-    const TYPE: ConstText =
-        ConstText::Joined(&[ConstText::Plain("{\"optional\":"), T::TYPE, ConstText::Plain("}")]);
+    const TYPE: ConstText = ConstText::Joined(&[ConstText::Plain("{\"optional\":"), T::TYPE, ConstText::Plain("}")]);
     const LEAST_SIZE: usize = 4;
     const VALUE: &'static str = T::VALUE;
 
@@ -213,9 +211,7 @@ impl<T: Field> Field for Option<T> {
         match reader.length(T::LEAST_SIZE)? {
             0 => Ok(None),
             1 => T::read(reader).map(Some),
-            more => {
-                Err(DecodeError::new(format!("found {more} values, expected at most one of an option"), at))
-            }
+            more => Err(DecodeError::new(format!("found {more} values, expected at most one of an option"), at)),
         }
     }
 }

@@ -101,9 +101,7 @@ pub use task::{TaskInterface, TaskInterfaceReference};
 pub use time::Time;
 pub use topic::{Publisher, Subscription, Topic};
 
-pub use saoms_derive::{
-    Class, Entries, Field, Knowledge, LoopClass, Message, Properties, PropertyField, interface,
-};
+pub use saoms_derive::{Class, Entries, Field, Knowledge, LoopClass, Message, Properties, PropertyField, interface};
 
 /// For the code that the macros generate.
 #[doc(hidden)]
@@ -114,8 +112,8 @@ pub mod generated {
     pub use crate::host::declaration::ConstText;
     pub use crate::message::Key;
     pub use crate::property::{
-        Preset, PropertyShape, Values, all_names, are_distinct, bounds_fit, chosen, complex, contains,
-        continued, count, default_fits, equal, flat, list, property, read,
+        Preset, PropertyShape, Values, all_names, are_distinct, bounds_fit, chosen, complex, contains, continued,
+        count, default_fits, equal, flat, list, property, read,
     };
     pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};

@@ -174,9 +174,7 @@ impl<'a> FleetView<'a> {
     /// True if a component that is, or may be, of this class or one that extends it is left out for a fault of its own,
     /// or has references whose wires are not known for a fault.
     pub fn misses<C: Class>(&self) -> bool {
-        self.missing
-            .iter()
-            .any(|declaration| declaration.as_ref().is_none_or(|all| all.contains(&C::DECLARATION)))
+        self.missing.iter().any(|declaration| declaration.as_ref().is_none_or(|all| all.contains(&C::DECLARATION)))
     }
 
     /// The components in document order; the place of one here is its index.
@@ -199,11 +197,7 @@ impl<'a> FleetView<'a> {
         let mut last: Option<(&'a ComponentView<'a>, Kinship)> = None;
         self.components.iter().enumerate().filter_map(move |(index, component)| {
             let kinship = match last {
-                Some((known, kinship))
-                    if std::ptr::eq(known.class.declaration, component.class.declaration) =>
-                {
-                    kinship
-                }
+                Some((known, kinship)) if std::ptr::eq(known.class.declaration, component.class.declaration) => kinship,
                 _ => component.kinship::<C>(),
             };
             last = Some((component, kinship));
@@ -283,9 +277,7 @@ impl ComponentView<'_> {
     fn read<C: Class>(&self, kinship: Kinship) -> Option<C::Properties> {
         match kinship {
             Kinship::Same => C::Properties::from_values(self.values).ok(),
-            Kinship::Extends => {
-                C::Properties::from_values(&values_of(self.values, C::Properties::NAMES)).ok()
-            }
+            Kinship::Extends => C::Properties::from_values(&values_of(self.values, C::Properties::NAMES)).ok(),
             Kinship::None => None,
         }
     }

@@ -69,9 +69,7 @@ impl Saved {
                 M::SCHEMA
             )));
         }
-        cdr::decode(&message)
-            .map(Some)
-            .map_err(|error| Failure::new(format!("what was saved cannot be read: {error}")))
+        cdr::decode(&message).map(Some).map_err(|error| Failure::new(format!("what was saved cannot be read: {error}")))
     }
 }
 

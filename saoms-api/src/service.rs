@@ -165,9 +165,7 @@ pub fn no_service(class: &str, service: &str) -> CallError {
 
 /// For generated code: the interface has no operation of this number.
 pub fn no_operation(interface: &str, operation: Operation) -> CallError {
-    CallError::Mismatch {
-        message: format!("interface `{interface}` has no operation with the number {operation}"),
-    }
+    CallError::Mismatch { message: format!("interface `{interface}` has no operation with the number {operation}") }
 }
 
 /// A call as the provider sees it: which of its services, and the call itself.

@@ -73,8 +73,7 @@ impl fmt::Display for Time {
 /// # Errors
 /// The message with found and expected text, if the text is no duration, is negative, or is longer than 584 years.
 pub fn parse_duration(text: &str) -> Result<Duration, String> {
-    const EXPECTED: &str =
-        "a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h";
+    const EXPECTED: &str = "a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h";
     let text = trim(text);
     match read_duration(text) {
         Ok(duration) => Ok(duration),

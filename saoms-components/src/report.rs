@@ -32,8 +32,7 @@ fn result(count: &Counts<'_>) -> Option<String> {
 /// `1 of 1 pieces of luggage delivered`; `None` if no luggage was requested.
 fn progress(count: &Counts<'_>) -> Option<String> {
     let requested = count("luggage.requested");
-    (requested > 0)
-        .then(|| format!("{} of {requested} pieces of luggage delivered", count("luggage.delivered")))
+    (requested > 0).then(|| format!("{} of {requested} pieces of luggage delivered", count("luggage.delivered")))
 }
 
 /// `1 collision`, `2 collisions`.

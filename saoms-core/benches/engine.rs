@@ -11,8 +11,8 @@ use std::time::Instant;
 
 use saoms_api::host::{DynLoop, PropertyValue, Registration};
 use saoms_api::{
-    Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
-    Publisher, Record, Subscription, Time, Topic, record,
+    Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties, Publisher,
+    Record, Subscription, Time, Topic, record,
 };
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties};
@@ -154,8 +154,7 @@ struct Shape {
 }
 
 /// A fleet of components that do nothing.
-const IDLE: Shape =
-    Shape { senders: 0, receivers: 0, all: false, sends: 0, state: false, writes: 0, loops: 0 };
+const IDLE: Shape = Shape { senders: 0, receivers: 0, all: false, sends: 0, state: false, writes: 0, loops: 0 };
 
 #[expect(clippy::print_stdout, reason = "a benchmark tells its result")]
 fn main() -> Result<(), Box<dyn std::error::Error>> {

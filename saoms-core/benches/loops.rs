@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use saoms_api::host::Registration;
 use saoms_api::{
-    Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties,
-    Record, Time, record,
+    Class, Component, Context, Entries, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Properties, Record, Time,
+    record,
 };
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, LoopSpec, TaskProperties};
@@ -117,25 +117,14 @@ impl Loop for Busy {
         Ok((self.changes >= 0).then(|| record!("has {changes} to do", changes = self.changes)))
     }
 
-    fn plan(
-        &mut self,
-        symptom: Record,
-        _: &mut Known,
-        _: &mut Context<'_>,
-    ) -> Result<Option<Record>, Failure> {
+    fn plan(&mut self, symptom: Record, _: &mut Known, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
         Ok(Some(symptom))
     }
 
     fn execute(&mut self, _: Record, known: &mut Known, _: &mut Context<'_>) -> Result<(), Failure> {
         let eight = &mut known.eight;
         let all = [
-            &mut eight.a,
-            &mut eight.b,
-            &mut eight.c,
-            &mut eight.d,
-            &mut eight.e,
-            &mut eight.f,
-            &mut eight.g,
+            &mut eight.a, &mut eight.b, &mut eight.c, &mut eight.d, &mut eight.e, &mut eight.f, &mut eight.g,
             &mut eight.h,
         ];
         all.into_iter().take(self.changes as usize).for_each(|value| *value += 1);

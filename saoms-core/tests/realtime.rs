@@ -13,10 +13,7 @@ fn realtime_works_or_says_what_to_grant() {
         Ok(fleet) => assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed),
         Err(error @ StartError::Realtime(_)) => {
             let text = error.to_string();
-            assert!(
-                text.contains("is not permitted") && text.contains("CAP_") && text.contains("ulimit"),
-                "{text}"
-            );
+            assert!(text.contains("is not permitted") && text.contains("CAP_") && text.contains("ulimit"), "{text}");
         }
         Err(other) => panic!("{other}"),
     }

@@ -109,8 +109,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
 impl Declared {
     fn of(input: &DeriveInput) -> Result<Declared> {
         let mut declared = Declared::default();
-        let attributes: Vec<_> =
-            input.attrs.iter().filter(|attribute| attribute.path().is_ident("class")).collect();
+        let attributes: Vec<_> = input.attrs.iter().filter(|attribute| attribute.path().is_ident("class")).collect();
         for attribute in &attributes {
             attribute.parse_nested_meta(|meta| declared.take(&meta))?;
         }

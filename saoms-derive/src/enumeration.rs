@@ -26,8 +26,7 @@ pub(crate) fn field(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream>
     }
     text.plain("}}");
     let text = text.into_text();
-    let literals =
-        numbers.iter().map(|number| LitInt::new(&number.to_string(), ident.span())).collect::<Vec<_>>();
+    let literals = numbers.iter().map(|number| LitInt::new(&number.to_string(), ident.span())).collect::<Vec<_>>();
     let words: Vec<_> = variants.iter().map(|variant| screaming_snake(variant)).collect();
     let expected = format!("a constant of {ident}");
     Ok(quote! {
@@ -147,9 +146,7 @@ fn unit_variants<'a>(input: &DeriveInput, data: &'a DataEnum) -> Result<Vec<&'a 
     }
     let unit = |variant: &'a syn::Variant| match &variant.fields {
         Fields::Unit => Ok(&variant.ident),
-        fields => {
-            Err(Error::new_spanned(fields, "an enumeration is named constants: its variants carry no data"))
-        }
+        fields => Err(Error::new_spanned(fields, "an enumeration is named constants: its variants carry no data")),
     };
     data.variants.iter().map(unit).collect()
 }
@@ -174,9 +171,8 @@ fn representation(input: &DeriveInput) -> Result<(Ident, &'static str)> {
             }
             let text: LitStr = meta.value()?.parse()?;
             let known = TYPES.iter().find(|(rust, _)| *rust == text.value());
-            let (rust, ros) = known.ok_or_else(|| {
-                Error::new(text.span(), "expected one of u8, u16, u32, u64, i8, i16, i32, i64")
-            })?;
+            let (rust, ros) =
+                known.ok_or_else(|| Error::new(text.span(), "expected one of u8, u16, u32, u64, i8, i16, i32, i64"))?;
             found = (Ident::new(rust, text.span()), ros);
             Ok(())
         })?;

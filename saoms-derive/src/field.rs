@@ -72,14 +72,12 @@ pub(crate) fn field(input: &DeriveInput) -> Result<TokenStream> {
 }
 
 fn key_field<'a>(key: &LitStr, fields: &[(&'a Ident, &Type)]) -> Result<&'a Ident> {
-    let names =
-        || fields.iter().map(|(name, _)| format!("`{}`", name.unraw())).collect::<Vec<_>>().join(", ");
+    let names = || fields.iter().map(|(name, _)| format!("`{}`", name.unraw())).collect::<Vec<_>>().join(", ");
     match fields.iter().find(|(name, _)| name.unraw() == key.value().as_str()) {
         Some((name, _)) => Ok(name),
-        None => Err(Error::new(
-            key.span(),
-            format!("there is no field `{}`: expected one of {}", key.value(), names()),
-        )),
+        None => {
+            Err(Error::new(key.span(), format!("there is no field `{}`: expected one of {}", key.value(), names())))
+        }
     }
 }
 
@@ -92,10 +90,9 @@ pub(crate) fn struct_fields<'a>(input: &'a DeriveInput, what: &str) -> Result<Ve
                 Ok(fields.named.iter().filter_map(|field| Some((field.ident.as_ref()?, &field.ty))).collect())
             }
             Fields::Unit => Ok(Vec::new()),
-            Fields::Unnamed(fields) => Err(Error::new_spanned(
-                fields,
-                format!("{what} has named fields, which its declaration lists"),
-            )),
+            Fields::Unnamed(fields) => {
+                Err(Error::new_spanned(fields, format!("{what} has named fields, which its declaration lists")))
+            }
         },
         _ => Err(Error::new_spanned(&input.ident, format!("{what} has to be a struct with named fields"))),
     }
@@ -105,10 +102,7 @@ pub(crate) fn no_generics(generics: &Generics, what: &str) -> Result<()> {
     if generics.params.is_empty() {
         return Ok(());
     }
-    Err(Error::new_spanned(
-        generics,
-        format!("{what} cannot be generic: one declaration stands for one type"),
-    ))
+    Err(Error::new_spanned(generics, format!("{what} cannot be generic: one declaration stands for one type")))
 }
 
 /// Code that makes a single value of two numbers.
@@ -134,13 +128,7 @@ fn pair(fields: &[(&Ident, &Type)]) -> std::result::Result<TokenStream, &'static
     }
 }
 
-fn structure(
-    ident: &Ident,
-    name: &str,
-    key: &str,
-    fields: &[(&Ident, &Type)],
-    value: &TokenStream,
-) -> TokenStream {
+fn structure(ident: &Ident, name: &str, key: &str, fields: &[(&Ident, &Type)], value: &TokenStream) -> TokenStream {
     let mut text = Json::default();
     text.plain("{\"name\":");
     text.string(name);
@@ -160,11 +148,7 @@ fn structure(
     let types: Vec<_> = fields.iter().map(|(_, of)| of).collect();
     // A structure without fields is one byte, as in ROS 2.
     let (least, write, read) = if fields.is_empty() {
-        (
-            quote!(1),
-            quote!(::saoms_api::Field::write(&(), writer)),
-            quote!(<() as ::saoms_api::Field>::read(reader)?;),
-        )
+        (quote!(1), quote!(::saoms_api::Field::write(&(), writer)), quote!(<() as ::saoms_api::Field>::read(reader)?;))
     } else {
         (
             quote!(#(<#types as ::saoms_api::Field>::LEAST_SIZE)+*),

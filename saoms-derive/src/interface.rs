@@ -4,8 +4,8 @@ use syn::ext::IdentExt;
 use syn::parse::Parser;
 use syn::punctuated::Punctuated;
 use syn::{
-    Attribute, Error, FnArg, GenericArgument, Ident, ItemTrait, LitStr, Meta, Pat, PathArguments,
-    ReceiverKind, Result, ReturnType, Token, TraitItem, TraitItemFn, Type,
+    Attribute, Error, FnArg, GenericArgument, Ident, ItemTrait, LitStr, Meta, Pat, PathArguments, ReceiverKind, Result,
+    ReturnType, Token, TraitItem, TraitItemFn, Type,
 };
 
 use crate::case::lower_camel;
@@ -76,8 +76,7 @@ fn reference(item: &ItemTrait, name: &str, operations: &[Operation<'_>]) -> Toke
     let doc = format!(
         "A handle to call a service with the interface [`{ident}`] through, from [`Context::reference`](::saoms_api::Context::reference)."
     );
-    let methods =
-        operations.iter().enumerate().map(|(number, operation)| operation.method(visibility, number));
+    let methods = operations.iter().enumerate().map(|(number, operation)| operation.method(visibility, number));
     quote! {
         #[doc = #doc]
         #[derive(Clone, Copy, Debug)]
@@ -115,10 +114,7 @@ impl<'a> Operation<'a> {
             return Err(Error::new_spanned(item, "an interface has operations only: expected `fn`"));
         };
         if let Some(default) = &function.default {
-            return Err(Error::new_spanned(
-                default,
-                "the component gives the body of an operation: expected `;`",
-            ));
+            return Err(Error::new_spanned(default, "the component gives the body of an operation: expected `;`"));
         }
         if !function.sig.generics.params.is_empty() {
             return Err(Error::new_spanned(&function.sig.generics, "an operation cannot be generic"));
@@ -250,11 +246,7 @@ fn name(arguments: TokenStream) -> Result<String> {
 
 fn receiver(function: &TraitItemFn, input: Option<&FnArg>) -> Result<()> {
     match input {
-        Some(FnArg::Receiver(receiver))
-            if matches!(receiver.kind, ReceiverKind::Reference(_, None, Some(_))) =>
-        {
-            Ok(())
-        }
+        Some(FnArg::Receiver(receiver)) if matches!(receiver.kind, ReceiverKind::Reference(_, None, Some(_))) => Ok(()),
         Some(other) => Err(Error::new_spanned(other, "an operation takes `&mut self` first")),
         None => Err(Error::new_spanned(&function.sig.ident, "an operation takes `&mut self` first")),
     }
@@ -272,10 +264,7 @@ fn argument(input: &FnArg) -> Result<(&Ident, &Type)> {
         return Err(Error::new_spanned(input, "expected an argument"));
     };
     let Pat::Ident(name) = &*argument.pat else {
-        return Err(Error::new_spanned(
-            &argument.pat,
-            "an argument needs a name, which its declaration lists",
-        ));
+        return Err(Error::new_spanned(&argument.pat, "an argument needs a name, which its declaration lists"));
     };
     if let Type::Reference(reference) = &*argument.ty {
         return Err(Error::new_spanned(

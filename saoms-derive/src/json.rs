@@ -43,11 +43,7 @@ impl Json {
     }
 
     /// `[a,b,c]`, where `element` writes each item.
-    pub(crate) fn list<T>(
-        &mut self,
-        items: impl IntoIterator<Item = T>,
-        mut element: impl FnMut(&mut Json, T),
-    ) {
+    pub(crate) fn list<T>(&mut self, items: impl IntoIterator<Item = T>, mut element: impl FnMut(&mut Json, T)) {
         self.plain("[");
         for (place, item) in items.into_iter().enumerate() {
             if place > 0 {

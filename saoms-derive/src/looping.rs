@@ -114,9 +114,7 @@ impl Declared {
 
     fn name<'a>(&'a self, input: &'a DeriveInput) -> Result<&'a LitStr> {
         match &self.name {
-            Some(name) if name.value().rsplit('.').next().is_some_and(|last| !last.trim().is_empty()) => {
-                Ok(name)
-            }
+            Some(name) if name.value().rsplit('.').next().is_some_and(|last| !last.trim().is_empty()) => Ok(name),
             Some(name) => Err(Error::new(name.span(), "expected a name, as in `example.BatterySaver`")),
             None => Err(Error::new_spanned(
                 &input.ident,

@@ -55,9 +55,7 @@ pub(crate) fn interface(text: &mut Json, name: &LitStr, interface: &Path) {
     text.plain("{\"name\":");
     text.string(&name.value());
     text.plain(",\"interface\":");
-    text.json(
-        quote_spanned!(interface.span()=> <dyn #interface as ::saoms_api::host::Interface>::DECLARATION),
-    );
+    text.json(quote_spanned!(interface.span()=> <dyn #interface as ::saoms_api::host::Interface>::DECLARATION));
 }
 
 /// The JSON object of a reference.

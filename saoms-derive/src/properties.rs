@@ -294,10 +294,7 @@ impl<'a> Property<'a> {
             return Err(Error::new_spanned(expression, "the default is not among the allowed values"));
         }
         if self.required_text && text.trim().is_empty() {
-            return Err(Error::new_spanned(
-                expression,
-                "the default is empty, which `required_text` forbids",
-            ));
+            return Err(Error::new_spanned(expression, "the default is empty, which `required_text` forbids"));
         }
         Ok(())
     }
@@ -321,17 +318,15 @@ impl<'a> Property<'a> {
         });
         let mut checks: Vec<_> = default.collect();
         if let Some(bound) = self.range.as_ref().and_then(|range| range.bounds.first()) {
-            let message = format!(
-                "the range of property `{name}` does not suit its type: expected numbers or durations"
-            );
+            let message =
+                format!("the range of property `{name}` does not suit its type: expected numbers or durations");
             checks.push(quote_spanned! {bound.span()=>
                 ::core::assert!(::saoms_api::generated::bounds_fit(&RULE), #message);
             });
         }
         if self.required_text || !self.allowed.is_empty() {
-            let message = format!(
-                "property `{name}` is not a string: `allowed` and `required_text` do not suit its type"
-            );
+            let message =
+                format!("property `{name}` is not a string: `allowed` and `required_text` do not suit its type");
             checks.push(quote_spanned! {self.field.span()=>
                 ::core::assert!(::core::matches!(RULE.kind, ::saoms_api::host::declaration::PropertyKind::String), #message);
             });
@@ -350,8 +345,7 @@ impl<'a> Property<'a> {
 
     fn rule(&self) -> TokenStream {
         let of = self.of;
-        let some =
-            |text: &Option<String>| text.as_ref().map(|text| quote!(::core::option::Option::Some(#text)));
+        let some = |text: &Option<String>| text.as_ref().map(|text| quote!(::core::option::Option::Some(#text)));
         let none = quote!(::core::option::Option::None);
         let mut members = Vec::new();
         if let Some(range) = &self.range {
@@ -416,11 +410,9 @@ impl<'a> Property<'a> {
         text.quoted(quote!(#shape.rule.kind.name()));
         text.member("doc", &property.doc);
         text.member("unit", &property.unit);
-        for (label, bound) in [
-            (",\"min\":", quote!(min)),
-            (",\"max\":", quote!(max)),
-            (",\"exclusiveMax\":", quote!(exclusive_max)),
-        ] {
+        for (label, bound) in
+            [(",\"min\":", quote!(min)), (",\"max\":", quote!(max)), (",\"exclusiveMax\":", quote!(exclusive_max))]
+        {
             text.text(quote! {{
                 const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
                 const PARTS: &[::saoms_api::host::declaration::ConstText] =

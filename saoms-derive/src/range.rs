@@ -20,9 +20,8 @@ impl Range {
                 "expected a range, as in `0..=10`, `0.0..1.0` or `\"1ms\"..=\"1h\"`",
             ));
         };
-        let bound = |end: &Option<Box<Expr>>| {
-            end.as_deref().map(|end| Literal::of(end).map(|end| end.text())).transpose()
-        };
+        let bound =
+            |end: &Option<Box<Expr>>| end.as_deref().map(|end| Literal::of(end).map(|end| end.text())).transpose();
         let (min, end) = (bound(&range.start)?, bound(&range.end)?);
         if let (Some(Ok(start)), Some(Ok(end))) =
             (min.as_ref().map(|text| text.parse::<f64>()), end.as_ref().map(|text| text.parse::<f64>()))
@@ -30,8 +29,7 @@ impl Range {
         {
             return Err(Error::new_spanned(expression, "this range holds no value"));
         }
-        let bounds =
-            [&range.start, &range.end].into_iter().flatten().map(|bound| (**bound).clone()).collect();
+        let bounds = [&range.start, &range.end].into_iter().flatten().map(|bound| (**bound).clone()).collect();
         Ok(match range.limits {
             RangeLimits::Closed(_) => Range { min, max: end, exclusive_max: None, bounds },
             RangeLimits::HalfOpen(_) => Range { min, max: None, exclusive_max: end, bounds },

@@ -17,13 +17,10 @@ const ROUNDS: u32 = 5;
 
 #[expect(clippy::print_stdout, reason = "a benchmark tells its result")]
 fn main() {
-    let wanted: Vec<String> =
-        std::env::args().skip(1).filter(|one| one.starts_with(char::is_alphabetic)).collect();
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|one| one.starts_with(char::is_alphabetic)).collect();
     let megabytes = std::env::args().filter_map(|argument| argument.parse::<usize>().ok()).next_back();
     let size = megabytes.unwrap_or(20) * 1_000_000;
-    for (name, part) in
-        [("robots", robot as fn(usize) -> String), ("calculators", calculator), ("tiny", tiny)]
-    {
+    for (name, part) in [("robots", robot as fn(usize) -> String), ("calculators", calculator), ("tiny", tiny)] {
         if !wanted.is_empty() && !wanted.iter().any(|argument| argument == name) {
             continue;
         }

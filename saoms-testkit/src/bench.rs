@@ -3,9 +3,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use saoms_api::host::contain::{contained, install_hook};
-use saoms_api::host::{
-    DynComponent, Invocation, PropertyValue, Registration, ServiceCall, SharedMessage, SmolStr,
-};
+use saoms_api::host::{DynComponent, Invocation, PropertyValue, Registration, ServiceCall, SharedMessage, SmolStr};
 use saoms_api::{CallError, Cause, Class, Context, Failure, Header, Message, ReportValue, Topic, Work};
 use saoms_core::plugin::Plugin;
 use saoms_lang::registry::{RegisteredLoop, Registry};
@@ -84,12 +82,10 @@ impl Bench {
     /// There is no such class, or its component refuses the values.
     pub fn in_registry(registry: &Registry, class: &str, values: &[(&str, &str)]) -> Result<Bench, Failure> {
         install_hook();
-        let found =
-            registry.get(class).ok_or_else(|| Failure::new(format!("there is no class `{class}`")))?;
+        let found = registry.get(class).ok_or_else(|| Failure::new(format!("there is no class `{class}`")))?;
         let given = values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value)));
         let mut values: Vec<_> = given.collect();
-        let absent =
-            found.presets().iter().filter(|(name, _)| !values.iter().any(|(given, _)| given == name));
+        let absent = found.presets().iter().filter(|(name, _)| !values.iter().any(|(given, _)| given == name));
         let absent: Vec<_> = absent.cloned().collect();
         values.extend(absent);
         let component = contained(|| found.construct(&values))??;

@@ -163,11 +163,9 @@ impl Fleet {
 
     fn compiled(&self) -> Compilation {
         let variables = self.variables.clone();
-        let variable = move |name: &str| {
-            variables.iter().find(|(known, _)| known == name).map(|(_, value)| value.into())
-        };
-        let project =
-            Project::new().set_all(&self.settings).severities(&self.severities).environment(variable);
+        let variable =
+            move |name: &str| variables.iter().find(|(known, _)| known == name).map(|(_, value)| value.into());
+        let project = Project::new().set_all(&self.settings).severities(&self.severities).environment(variable);
         let project = self.composites.iter().fold(project, |project, composite| match composite {
             Composite::File(path) => project.file(path),
             Composite::Text(text) => project.text("text.composite", text.trim_start()),

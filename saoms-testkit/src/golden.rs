@@ -53,8 +53,7 @@ impl Bench {
 #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
 fn hold(what: &str, text: &str, path: &Path) {
     if env::var_os("UPDATE_EXPECT").is_some() {
-        return fs::write(path, text)
-            .unwrap_or_else(|error| panic!("`{}` cannot be written: {error}", path.display()));
+        return fs::write(path, text).unwrap_or_else(|error| panic!("`{}` cannot be written: {error}", path.display()));
     }
     let expected = fs::read_to_string(path).unwrap_or_default();
     if let Some(difference) = difference(&expected, text) {
@@ -73,8 +72,8 @@ fn difference(expected: &str, found: &str) -> Option<String> {
     let (old, new): (Vec<&str>, Vec<&str>) = (expected.lines().collect(), found.lines().collect());
     let shorter = old.len().min(new.len());
     let same = old.iter().zip(&new).take_while(|(one, other)| one == other).count();
-    let rest = (old.iter().rev().zip(new.iter().rev()).take_while(|(one, other)| one == other).count())
-        .min(shorter - same);
+    let rest =
+        (old.iter().rev().zip(new.iter().rev()).take_while(|(one, other)| one == other).count()).min(shorter - same);
     let mut out = String::new();
     let mut put = |sign: &str, lines: &[&str]| {
         for line in lines {

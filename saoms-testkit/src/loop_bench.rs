@@ -127,8 +127,7 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
         values: &[(&str, &str)],
     ) -> Result<LoopBench<K>, Failure> {
         install_hook();
-        let class =
-            registry.get_loop(name).ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))?;
+        let class = registry.get_loop(name).ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))?;
         let given = values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value)));
         let values: Vec<_> = given.collect();
         let instance = contained(|| class.construct(&values))??;

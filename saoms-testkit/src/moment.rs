@@ -150,13 +150,9 @@ impl<'r> Expect<'r> {
     /// All events in order. An event that is both in the journal and in the log is there twice.
     fn logged(self) -> Vec<LoggedLine> {
         let entries = self.run.journal().of(self.component);
-        let entries = entries.iter().map(|entry| LoggedLine {
-            time: entry.time(),
-            number: Some(entry.id()),
-            text: entry.text(),
-        });
-        let lines =
-            self.run.log_lines(self.component).map(|(time, text)| LoggedLine { time, number: None, text });
+        let entries =
+            entries.iter().map(|entry| LoggedLine { time: entry.time(), number: Some(entry.id()), text: entry.text() });
+        let lines = self.run.log_lines(self.component).map(|(time, text)| LoggedLine { time, number: None, text });
         let mut all: Vec<LoggedLine> = entries.chain(lines).collect();
         all.sort_by_key(|logged| logged.time);
         all
@@ -168,8 +164,7 @@ fn did(all: &[LoggedLine]) -> String {
     if all.is_empty() {
         return "it did nothing".to_owned();
     }
-    let shown: String =
-        all.iter().take(SHOWN).map(|logged| format!("\n  {} {}", logged.time, logged.text)).collect();
+    let shown: String = all.iter().take(SHOWN).map(|logged| format!("\n  {} {}", logged.time, logged.text)).collect();
     match all.len().checked_sub(SHOWN) {
         None | Some(0) => format!("it did{shown}"),
         Some(more) => format!("it did{shown}\n  and {more} more"),
@@ -243,9 +238,7 @@ impl<'r> Moment<'r> {
     pub fn because(self, words: &str) -> Self {
         let journal = self.of.run.journal();
         let Some(entry) = self.record.number.and_then(|number| journal.entry(number)) else {
-            panic!(
-                "{self} is a line of the log, of which no reasons are known: ask for a record of the journal"
-            );
+            panic!("{self} is a line of the log, of which no reasons are known: ask for a record of the journal");
         };
         let (reasons, lost) = journal.reasons(entry);
         if !reasons.iter().any(|reason| reason.text().contains(words)) {

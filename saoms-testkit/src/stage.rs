@@ -5,9 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::host::{Host, LoopVisit};
-use saoms_api::host::{
-    NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
-};
+use saoms_api::host::{NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration};
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
 use saoms_lang::registry::{ClassTopic, RegisteredClass, RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
@@ -128,9 +126,7 @@ impl Stage {
 
     pub(crate) fn schema_heard(&self, topic: &str) -> Result<Schema, Failure> {
         let found = self.heard().find(|(name, _)| name == topic);
-        found
-            .map(|(_, schema)| schema)
-            .ok_or_else(|| Failure::new(format!("it does not subscribe to `{topic}`")))
+        found.map(|(_, schema)| schema).ok_or_else(|| Failure::new(format!("it does not subscribe to `{topic}`")))
     }
 
     pub(crate) fn schema_said(&self, topic: &str) -> Option<Schema> {
@@ -160,8 +156,7 @@ impl Stage {
                 Action::Sent(place, message) => {
                     let taken = &self.publishers[*place];
                     let shown = taken.schema.as_ref().and_then(|schema| schema.decode(message.bytes()).ok());
-                    let shown =
-                        shown.map_or_else(|| "bytes that are no message".to_owned(), |json| json.to_string());
+                    let shown = shown.map_or_else(|| "bytes that are no message".to_owned(), |json| json.to_string());
                     writeln!(text, "sends {} {shown}", taken.name)
                 }
                 Action::Log(level, line) => writeln!(text, "{}: {line}", level_name(*level)),
@@ -237,9 +232,7 @@ impl Host for Stage {
     fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {
         let place = publisher as usize;
         if place >= self.publishers.len() {
-            return Err(Failure::new(
-                "this publisher belongs to no topic: keep what `Context::publish` returned",
-            ));
+            return Err(Failure::new("this publisher belongs to no topic: keep what `Context::publish` returned"));
         }
         self.log_action(Action::Sent(place, message));
         Ok(())
@@ -248,13 +241,10 @@ impl Host for Stage {
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {
         let of_class = self.class.iter().flat_map(|class| &class.declaration().references);
         let of_loops = self.loops.iter().flat_map(|one| &one.declaration().references);
-        let declared = of_class
-            .chain(of_loops)
-            .any(|reference| reference.name == name && reference.interface.name == interface);
+        let declared =
+            of_class.chain(of_loops).any(|reference| reference.name == name && reference.interface.name == interface);
         if !declared {
-            return Err(Failure::new(format!(
-                "neither its class nor a loop declares the reference `{name}`"
-            )));
+            return Err(Failure::new(format!("neither its class nor a loop declares the reference `{name}`")));
         }
         // A reference that is not wired has a handle, too.
         let wired = self.wires.iter().position(|(reference, ..)| reference == name);
@@ -273,8 +263,7 @@ impl Host for Stage {
     }
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
-        let made =
-            self.loops.iter().map(|one| Ok((one.declaration().short_name().to_owned(), one.construct(&[])?)));
+        let made = self.loops.iter().map(|one| Ok((one.declaration().short_name().to_owned(), one.construct(&[])?)));
         made.collect()
     }
 

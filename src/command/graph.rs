@@ -84,9 +84,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     if found.iter().any(|one| one.severity == Severity::Error) {
         let names: Vec<String> = fleet.files.iter().map(|file| file.display().to_string()).collect();
         let name = names.join(" ");
-        eprint(&format!(
-            "warning: drawn as far as it is understood; `saoms check {name}` shows what is wrong\n"
-        ));
+        eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows what is wrong\n"));
     }
     let diagram = Diagram::of(contribution, &compilation.registry, census);
     // A picture of a large composite needs the memory.

@@ -72,16 +72,10 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Exit {
 }
 
 /// Writes all files; their names, or the name of the one that could not be written.
-fn write(
-    folder: &Path,
-    registry: &Registry,
-    xsd: Xsd,
-) -> Result<Vec<&'static str>, (&'static str, io::Error)> {
+fn write(folder: &Path, registry: &Registry, xsd: Xsd) -> Result<Vec<&'static str>, (&'static str, io::Error)> {
     fs::create_dir_all(folder).map_err(|error| ("", error))?;
     let schemas = schemas(registry, xsd);
     let catalog = catalog(&schemas);
     let texts = schemas.iter().map(|schema| (schema.file, &schema.text)).chain([(CATALOG, &catalog)]);
-    texts
-        .map(|(file, text)| fs::write(folder.join(file), text).map(|()| file).map_err(|error| (file, error)))
-        .collect()
+    texts.map(|(file, text)| fs::write(folder.join(file), text).map(|()| file).map_err(|error| (file, error))).collect()
 }

@@ -106,8 +106,7 @@ impl Checker {
                 self.one(&alone, false, &job, &mut finder, &mut files, &mut seen)?;
             }
         }
-        (self.newest.load(Ordering::Relaxed) == job.generation)
-            .then_some(Outcome { generation: job.generation, files })
+        (self.newest.load(Ordering::Relaxed) == job.generation).then_some(Outcome { generation: job.generation, files })
     }
 
     /// The fleets that one file is part of, and of each whether others elsewhere may use it; then what it is itself.
@@ -117,8 +116,7 @@ impl Checker {
             return (Vec::new(), FileKind::Composite);
         }
         let scene = Scene::new(around, self.registries.of(path, &[]));
-        let paths =
-            |fleet: &SceneFleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
+        let paths = |fleet: &SceneFleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
         let fleets = scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect();
         let sort = match scene.file() {
             one if one.is_beside => FileKind::Values,
@@ -162,12 +160,7 @@ impl Checker {
 }
 
 /// Diagnostics of the description of a contribution, and of the names of the composites there.
-fn contribution(
-    description: &Path,
-    job: &Job,
-    finder: &mut Finder,
-    files: &mut BTreeMap<PathBuf, Vec<Reported>>,
-) {
+fn contribution(description: &Path, job: &Job, finder: &mut Finder, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
     let folder = description.parent().unwrap_or(Path::new(""));
     let inner = folder.ends_with("META-INF").then(|| folder.parent()).flatten();
     let project = Project::new().file(inner.unwrap_or(folder)).open_texts(job.open.clone());

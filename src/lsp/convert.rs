@@ -19,8 +19,7 @@ pub(super) fn completion_item(file: &File, one: Proposal, knows_snippets: bool) 
     let format = if is_snippet { InsertTextFormat::SNIPPET } else { InsertTextFormat::PLAIN_TEXT };
     // Editors compare the typed text with this one, or else with the label.
     let filter_text = new_text.starts_with('<').then(|| format!("<{}", one.label));
-    let documentation =
-        (!one.doc.is_empty()).then_some(MarkupContent { kind: MarkupKind::Markdown, value: one.doc });
+    let documentation = (!one.doc.is_empty()).then_some(MarkupContent { kind: MarkupKind::Markdown, value: one.doc });
     CompletionItem {
         sort_text,
         label: one.label,

@@ -45,8 +45,7 @@ pub(super) fn reported<'d>(
             .labels
             .iter()
             .filter_map(|label| {
-                let location =
-                    Location { uri: places.uri(label.location.file)?, range: places.range(label.location) };
+                let location = Location { uri: places.uri(label.location.file)?, range: places.range(label.location) };
                 Some(DiagnosticRelatedInformation { location, message: label.text.clone() })
             })
             .collect();
@@ -74,10 +73,7 @@ pub(super) fn reported<'d>(
             edits: suggestion.edits.iter().fold(BTreeMap::new(), |mut edits, edit| {
                 let path = places.path(edit.location.file);
                 let range = places.range(edit.location);
-                edits
-                    .entry(path)
-                    .or_insert_with(Vec::new)
-                    .push(TextEdit::new(range, edit.replacement.clone()));
+                edits.entry(path).or_insert_with(Vec::new).push(TextEdit::new(range, edit.replacement.clone()));
                 edits
             }),
         });

@@ -98,11 +98,7 @@ mod tests {
         let uri = "file:///fleet.composite";
         all.open(uri.to_owned(), 1, "<ä>\n<🤖 x/>\n".to_owned());
         let text = |all: &Documents| all.get(uri).map(|one| one.text.to_string()).unwrap();
-        all.change(
-            uri,
-            2,
-            vec![change((1, 3), (1, 5), ""), change((0, 1), (0, 2), "aü"), change((9, 9), (9, 9), "!")],
-        );
+        all.change(uri, 2, vec![change((1, 3), (1, 5), ""), change((0, 1), (0, 2), "aü"), change((9, 9), (9, 9), "!")]);
         assert_eq!(text(&all), "<aü>\n<🤖/>\n!");
         all.change(uri, 3, vec![whole("new"), change((0, 3), (0, 0), "er")]);
         assert_eq!(text(&all), "newer");

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::str::FromStr;
 
 use lsp_types::{
-    CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionParams, Diagnostic, Position, Range, TextEdit,
-    Uri, WorkspaceEdit,
+    CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionParams, Diagnostic, Position, Range, TextEdit, Uri,
+    WorkspaceEdit,
 };
 
 use saoms_tools::editor::{Allowance, allowances};
@@ -38,9 +38,7 @@ impl<W: Write> Server<W> {
             }
             for (one, code) in touched.filter_map(|one| Some((one, one.can_be_allowed?))) {
                 let file = scene.file();
-                for Allowance { title, edits } in
-                    allowances(&scene, offset_in(file, one.shown.range.start), code)
-                {
+                for Allowance { title, edits } in allowances(&scene, offset_in(file, one.shown.range.start), code) {
                     let edits = edits.into_iter().map(|edit| text_edit(file, edit)).collect();
                     actions.push(self.action(&title, &[one], [(path.as_path(), edits)].into_iter(), false));
                 }
@@ -68,8 +66,7 @@ impl<W: Write> Server<W> {
         edits: impl Iterator<Item = (&'p Path, Vec<TextEdit>)>,
         is_preferred: bool,
     ) -> CodeAction {
-        let changes =
-            edits.filter_map(|(path, edits)| Some((Uri::from_str(&self.uri_of(path)).ok()?, edits)));
+        let changes = edits.filter_map(|(path, edits)| Some((Uri::from_str(&self.uri_of(path)).ok()?, edits)));
         let changes: HashMap<Uri, _> = changes.collect();
         CodeAction {
             title: title.to_owned(),

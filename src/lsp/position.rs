@@ -50,10 +50,13 @@ mod tests {
     fn columns_are_utf_16_units_there_and_back() {
         let text = "aä\r\n🤖x\rü\n\nz";
         let lines = LineIndex::new(text);
-        for (at, place) in [(0, (0, 0)), (3, (0, 2)), (5, (1, 0)), (9, (1, 2)), (10, (1, 3))]
-            .into_iter()
-            .chain([(11, (2, 0)), (13, (2, 1)), (14, (3, 0)), (15, (4, 0)), (16, (4, 1))])
-        {
+        for (at, place) in [(0, (0, 0)), (3, (0, 2)), (5, (1, 0)), (9, (1, 2)), (10, (1, 3))].into_iter().chain([
+            (11, (2, 0)),
+            (13, (2, 1)),
+            (14, (3, 0)),
+            (15, (4, 0)),
+            (16, (4, 1)),
+        ]) {
             assert_eq!(position(&lines, text, at), Position::new(place.0, place.1), "{at}");
             assert_eq!(super::offset(&lines, text, Position::new(place.0, place.1)), at, "{place:?}");
         }

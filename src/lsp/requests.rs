@@ -10,14 +10,14 @@ use lsp_types::request::{self as ask, Request};
 use lsp_types::{
     CompletionList, CompletionParams, CompletionResponse, DocumentFormattingParams, DocumentHighlight,
     DocumentHighlightParams, DocumentLink, DocumentLinkParams, DocumentSymbolParams, DocumentSymbolResponse,
-    FoldingRange, FoldingRangeParams, GotoDefinitionParams, GotoDefinitionResponse, Hover, HoverContents,
-    HoverParams, LinkedEditingRangeParams, LinkedEditingRanges, Location, MarkupContent, MarkupKind,
-    Position, PrepareRenameResponse, ReferenceParams, RenameParams, SelectionRange, SelectionRangeParams,
-    SymbolInformation, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit, WorkspaceSymbolResponse,
+    FoldingRange, FoldingRangeParams, GotoDefinitionParams, GotoDefinitionResponse, Hover, HoverContents, HoverParams,
+    LinkedEditingRangeParams, LinkedEditingRanges, Location, MarkupContent, MarkupKind, Position,
+    PrepareRenameResponse, ReferenceParams, RenameParams, SelectionRange, SelectionRangeParams, SymbolInformation,
+    TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit, WorkspaceSymbolResponse,
 };
 use saoms_tools::editor::{
-    DefinitionTarget, FileRange, Proposal, Scene, complete, definition, document_symbols, folds, formatted,
-    hover, linked_tags, links, prepare_rename, references, rename, selections, workspace_symbols,
+    DefinitionTarget, FileRange, Proposal, Scene, complete, definition, document_symbols, folds, formatted, hover,
+    linked_tags, links, prepare_rename, references, rename, selections, workspace_symbols,
 };
 use serde_json::Value;
 use serde_json::value::RawValue;
@@ -36,9 +36,7 @@ impl<W: Write> Server<W> {
         match method {
             ask::Completion::METHOD => answered::<ask::Completion>(params, |params| self.completion(params)),
             ask::HoverRequest::METHOD => answered::<ask::HoverRequest>(params, |params| self.hover(&params)),
-            ask::GotoDefinition::METHOD => {
-                answered::<ask::GotoDefinition>(params, |params| self.definition(&params))
-            }
+            ask::GotoDefinition::METHOD => answered::<ask::GotoDefinition>(params, |params| self.definition(&params)),
             ask::References::METHOD => answered::<ask::References>(params, |params| self.references(&params)),
             ask::DocumentHighlightRequest::METHOD => {
                 answered::<ask::DocumentHighlightRequest>(params, |params| self.highlights(&params))
@@ -107,10 +105,7 @@ impl<W: Write> Server<W> {
         Ok((!parts.is_empty()).then_some(Hover { contents: HoverContents::Markup(contents), range }))
     }
 
-    fn definition(
-        &mut self,
-        params: &GotoDefinitionParams,
-    ) -> Result<Option<GotoDefinitionResponse>, Refusal> {
+    fn definition(&mut self, params: &GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position_params)?;
         let all = definition(&scene, byte).into_iter().filter_map(|target| match target {
             DefinitionTarget::Range(place) => self.location(&scene, &place),
@@ -128,10 +123,7 @@ impl<W: Write> Server<W> {
         Ok(Some(found.iter().filter_map(|place| self.location(&scene, place)).collect()))
     }
 
-    fn highlights(
-        &mut self,
-        params: &DocumentHighlightParams,
-    ) -> Result<Option<Vec<DocumentHighlight>>, Refusal> {
+    fn highlights(&mut self, params: &DocumentHighlightParams) -> Result<Option<Vec<DocumentHighlight>>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position_params)?;
         let here = references(&scene, byte, true).into_iter().filter(|place| place.file == 0);
         Ok(Some(here.map(|place| DocumentHighlight { range: range(&scene, &place), kind: None }).collect()))

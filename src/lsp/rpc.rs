@@ -39,9 +39,7 @@ pub(super) fn read(input: &mut impl BufRead) -> io::Result<Option<Incoming>> {
     };
     match found == length {
         false => Err(io::ErrorKind::UnexpectedEof.into()),
-        true if is_too_long => {
-            Ok(Some(refusal(Value::Null, ErrorCode::InvalidRequest, "the message is too long")))
-        }
+        true if is_too_long => Ok(Some(refusal(Value::Null, ErrorCode::InvalidRequest, "the message is too long"))),
         true => Ok(Some(understood(&bytes))),
     }
 }
@@ -74,9 +72,7 @@ fn understood(bytes: &[u8]) -> Incoming {
     let id = value.get("id").cloned().unwrap_or_default();
     match serde_json::from_value(value) {
         // An identifier that is none makes a notification of a request.
-        Ok(message) if id.is_null() || !matches!(message, Message::Notification(_)) => {
-            Incoming::Message(message)
-        }
+        Ok(message) if id.is_null() || !matches!(message, Message::Notification(_)) => Incoming::Message(message),
         _ => {
             let what = "neither a request nor a response nor a notification";
             refusal(id, ErrorCode::InvalidRequest, what)

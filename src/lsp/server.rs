@@ -10,8 +10,8 @@ use std::sync::mpsc::{Receiver, Sender};
 
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
 use lsp_types::notification::{
-    self as notice, DidChangeTextDocument, DidChangeWatchedFiles, DidChangeWorkspaceFolders,
-    DidCloseTextDocument, DidOpenTextDocument, DidSaveTextDocument, Notification as _, PublishDiagnostics,
+    self as notice, DidChangeTextDocument, DidChangeWatchedFiles, DidChangeWorkspaceFolders, DidCloseTextDocument,
+    DidOpenTextDocument, DidSaveTextDocument, Notification as _, PublishDiagnostics,
 };
 use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri, WorkspaceFolder};
 use saoms_api::host::contain::contained;
@@ -94,12 +94,7 @@ impl PublishedDiagnostics {
 }
 
 impl<W: Write> Server<W> {
-    pub(super) fn new(
-        output: W,
-        registries: Arc<Registries>,
-        jobs: Sender<Job>,
-        newest: Arc<AtomicU64>,
-    ) -> Self {
+    pub(super) fn new(output: W, registries: Arc<Registries>, jobs: Sender<Job>, newest: Arc<AtomicU64>) -> Self {
         Self {
             output,
             state: State::New,
@@ -162,9 +157,7 @@ impl<W: Write> Server<W> {
             }
             (State::New, _) => refuse(ErrorCode::ServerNotInitialized, "`initialize` has to come first"),
             (State::ShutDown, _) => refuse(ErrorCode::InvalidRequest, "the session is shut down"),
-            (State::Running, "initialize") => {
-                refuse(ErrorCode::InvalidRequest, "the session is initialized already")
-            }
+            (State::Running, "initialize") => refuse(ErrorCode::InvalidRequest, "the session is initialized already"),
             (State::Running, "shutdown") => {
                 self.state = State::ShutDown;
                 written(&Value::Null)
@@ -246,11 +239,8 @@ impl<W: Write> Server<W> {
         if outcome.generation != self.newest.load(Ordering::Relaxed) {
             return Ok(());
         }
-        let open: HashMap<PathBuf, (String, i32)> = self
-            .documents
-            .iter()
-            .map(|(uri, one)| (one.path.clone(), (uri.to_owned(), one.version)))
-            .collect();
+        let open: HashMap<PathBuf, (String, i32)> =
+            self.documents.iter().map(|(uri, one)| (one.path.clone(), (uri.to_owned(), one.version))).collect();
         let mut files = outcome.files;
         // Files that were shown, or are open, and have no fault now.
         for path in self.shown.keys().chain(open.keys()) {
@@ -265,8 +255,7 @@ impl<W: Write> Server<W> {
             if let Some(before) = before.as_ref().filter(|before| before.uri != uri) {
                 self.show(&before.uri, None, &[])?;
             }
-            let is_same =
-                before.is_some_and(|one| one.uri == uri && one.version == version && one.all == all);
+            let is_same = before.is_some_and(|one| one.uri == uri && one.version == version && one.all == all);
             if !is_same {
                 self.show(&uri, version, &all)?;
             }

@@ -195,9 +195,8 @@ fn large_and_deep_files() {
             "<composite xmlns='http://www.osoa.org/xmlns/sca/1.0' xmlns:s='urn:saoms:1' name='c' targetNamespace='u'>{content}</composite>"
         )
     };
-    let robot = |inside: &str| {
-        format!("<component name='R'><implementation.java class='robot.Robot001'/>{inside}</component>")
-    };
+    let robot =
+        |inside: &str| format!("<component name='R'><implementation.java class='robot.Robot001'/>{inside}</component>");
     let many = |of: &dyn Fn(usize) -> String| (0..1500).map(of).collect::<String>();
     let prefixes = many(&|at| format!(" xmlns:p{at}='u{at}'"));
     for text in [
@@ -208,9 +207,7 @@ fn large_and_deep_files() {
         composite(&format!("<property name='p'>{}</property>", "<![CDATA[x]]>&lt;".repeat(5_000))),
         composite(&format!("<service name='s' promote='{}'/>", "a/b ".repeat(5_000))),
         composite(&"<!-- - -->\r\r\n".repeat(20_000)),
-        composite(&many(&|at| {
-            format!("<component name='C{at}'/><wire source='X{at}/world' target='Y{at}'/>")
-        })),
+        composite(&many(&|at| format!("<component name='C{at}'/><wire source='X{at}/world' target='Y{at}'/>"))),
         composite(&many(&|at| {
             format!(
                 "<component name='C{at}'><implementation.java class='C{at}'/><property name='p' source='$p{at}'/></component>"
@@ -220,22 +217,15 @@ fn large_and_deep_files() {
             "<component name='C'{prefixes}>{}</component>",
             "<implementation.composite name='q:c'/>".repeat(1500)
         )),
-        composite(&robot(&many(&|at| {
-            format!("<s:loop name='l{at}' class='saoms.BatteryMS' after='l{}'/>", at / 2)
-        }))),
-        composite(&robot(&format!(
-            "<property name='topicRename'>{}</property>",
-            many(&|at| format!("A{at},b::"))
-        ))),
+        composite(&robot(&many(&|at| format!("<s:loop name='l{at}' class='saoms.BatteryMS' after='l{}'/>", at / 2)))),
+        composite(&robot(&format!("<property name='topicRename'>{}</property>", many(&|at| format!("A{at},b::"))))),
         composite(&robot(&format!("<reference name='world' target='{}'/>", many(&|at| format!("R{at} "))))),
         composite(&format!(
             "<component name='R${{index}}' s:count='1'><property name='p'>{}</property></component>",
             "${x} ".repeat(5_000)
         )),
         composite(&many(&|at| {
-            format!(
-                "<component name='C{at}'><s:severity code='S1010' level='note' reason='r{at}'/></component>"
-            )
+            format!("<component name='C{at}'><s:severity code='S1010' level='note' reason='r{at}'/></component>")
         })),
     ] {
         holds(text.as_bytes());

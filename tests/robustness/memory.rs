@@ -40,8 +40,7 @@ fn holds(what: &str, bytes: &[u8]) {
     within(what, bytes.len() + components * COMPONENT / 20, || _ = checked(bytes));
 }
 
-const HEAD: &str =
-    "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='u'>";
+const HEAD: &str = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='u'>";
 
 /// So much of a part in a composite.
 fn composite(size: usize, before: &str, part: impl Fn(usize) -> String, after: &str) -> String {

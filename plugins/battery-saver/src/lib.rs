@@ -5,8 +5,7 @@
 //! on. The loop does not depend on robots: it reads and sets entries of any knowledge that has them.
 
 use saoms_api::{
-    Context, Effector, Entries, Entry, Failure, Knowledge, Loop, LoopClass, Properties, Record, Recordable,
-    record,
+    Context, Effector, Entries, Entry, Failure, Knowledge, Loop, LoopClass, Properties, Record, Recordable, record,
 };
 
 /// Properties of the loop.
@@ -36,12 +35,7 @@ impl Default for Discharge {
 
 /// Learns the battery level at which a robot has to charge, so that its battery is never discharged deeply.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "saver.BatterySaver",
-    senses("battery", "inCharge"),
-    effects("chargeAt"),
-    entries(Discharge)
-)]
+#[looping(name = "saver.BatterySaver", senses("battery", "inCharge"), effects("chargeAt"), entries(Discharge))]
 pub struct BatterySaver {
     properties: BatterySaverProperties,
     battery: Entry<f64>,
@@ -117,11 +111,7 @@ impl Loop for BatterySaver {
     }
 
     /// Decides once, when the robot starts to charge, if that was too late, or far too early.
-    fn analyze(
-        &mut self,
-        robot: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<Option<Symptom>, Failure> {
+    fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Symptom>, Failure> {
         let in_charge = self.in_charge.get(robot)?;
         if !in_charge || std::mem::replace(&mut self.was_in_charge, in_charge) {
             return Ok(None);
@@ -150,12 +140,7 @@ impl Loop for BatterySaver {
         })))
     }
 
-    fn execute(
-        &mut self,
-        decision: ChargeAt,
-        robot: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn execute(&mut self, decision: ChargeAt, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         self.charge_at.set(robot, decision.0)
     }
 }

@@ -101,10 +101,7 @@ mod tests {
         let mut robot = Bench::of::<CameraRobot>(&[("ID", "Robot3"), ("reach", "1")])?;
         robot.start()?;
         let block = Block::new(1, 3);
-        robot.deliver(
-            &POSITION,
-            Position { robot: 4, block, next: block, wanted: block, ..Position::default() },
-        );
+        robot.deliver(&POSITION, Position { robot: 4, block, next: block, wanted: block, ..Position::default() });
         robot.execute()?;
         let pictures = robot.sent(&CAMERA);
         assert_eq!(pictures.len(), 1);

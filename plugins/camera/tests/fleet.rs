@@ -25,12 +25,9 @@ fn a_robot_with_a_camera_works_as_any_robot() {
 #[test]
 fn the_robot_of_the_manual_has_its_number_and_its_charger() {
     let text = std::fs::read_to_string("fleet.composite").unwrap();
-    let text = text.replace(
-        "implementation.rust class=\"camera.Robot\"",
-        "implementation.java class=\"robot.Robot999\"",
-    );
-    let run = Fleet::of_text(text.replace("value=\"Robot1\"", "value=\"Robot999\""))
-        .run(1, Duration::from_secs(60));
+    let text =
+        text.replace("implementation.rust class=\"camera.Robot\"", "implementation.java class=\"robot.Robot999\"");
+    let run = Fleet::of_text(text.replace("value=\"Robot1\"", "value=\"Robot999\"")).run(1, Duration::from_secs(60));
     assert_eq!(run.sections["luggage"]["delivered"], 2, "{}", run.log());
     let seen = run.log_of("Viewer");
     assert!(seen[0].ends_with("from robot 999 at (0,1)"), "{seen:?}");
@@ -39,9 +36,7 @@ fn the_robot_of_the_manual_has_its_number_and_its_charger() {
 #[test]
 fn rules_over_fleets_take_it_for_a_robot() {
     let text = std::fs::read_to_string("fleet.composite").unwrap();
-    let text = text
-        .replace("value=\"Robot2\"", "value=\"Other1\"")
-        .replace("at 1s luggage (3,1)", "at 1s breakdown 7");
+    let text = text.replace("value=\"Robot2\"", "value=\"Other1\"").replace("at 1s luggage (3,1)", "at 1s breakdown 7");
     let found = Fleet::of_text(text.replace(" to (8,2)", "")).diagnostics();
     assert!(found.contains("both have the number 1"), "{found}");
     assert!(found.contains("error S5005") && found.contains("the fleet has no robot 7"), "{found}");

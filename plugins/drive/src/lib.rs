@@ -80,14 +80,8 @@ impl DriveProperties {
 
 impl Drive {
     /// Starts the action in the world.
-    fn begin_in_world(
-        &mut self,
-        context: &mut Context<'_>,
-        robot: u32,
-        action: Action,
-    ) -> Result<Progress, Failure> {
-        let progress =
-            if self.has_world { self.world.begin(context, robot, action)? } else { Progress::Done };
+    fn begin_in_world(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
+        let progress = if self.has_world { self.world.begin(context, robot, action)? } else { Progress::Done };
         self.in_world = (progress == Progress::Running).then_some(action);
         if progress == Progress::Done {
             self.arrive(action);
@@ -112,17 +106,9 @@ impl Drive {
 }
 
 impl Hardware for Drive {
-    fn enter(
-        &mut self,
-        context: &mut Context<'_>,
-        robot: u32,
-        name: String,
-        block: Block,
-    ) -> Result<Block, Failure> {
+    fn enter(&mut self, context: &mut Context<'_>, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
         if let Some(other) = self.robot.filter(|other| *other != robot) {
-            return Err(Failure::new(format!(
-                "these are the wheels of robot {other}: give robot {robot} its own"
-            )));
+            return Err(Failure::new(format!("these are the wheels of robot {other}: give robot {robot} its own")));
         }
         self.block = if self.has_world { self.world.enter(context, robot, name, block)? } else { block };
         self.robot = Some(robot);

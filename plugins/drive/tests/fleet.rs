@@ -37,11 +37,7 @@ fn wheels_that_jam_now_and_then_only_take_longer() {
         let run = run(1_000_000, 0.1, seed);
         assert_eq!(count(&run, "luggage", "delivered"), 2, "seed {seed}: {}", run.log());
         jams += count(&run, "drive", "jams");
-        assert_eq!(
-            run.trace_hash,
-            self::run(1_000_000, 0.1, seed).trace_hash,
-            "the same seed, the same jams"
-        );
+        assert_eq!(run.trace_hash, self::run(1_000_000, 0.1, seed).trace_hash, "the same seed, the same jams");
     }
     assert!(jams > 0);
 }
@@ -54,18 +50,14 @@ fn given_moves_jam() {
     let run = Fleet::of_text(text).set("jams", "0").run(1, Duration::from_secs(600));
     let log = run.log_of("Wheels1");
     assert_eq!(log.iter().filter(|line| line.starts_with("jams in move")).count(), 2, "{}", run.log());
-    assert!(
-        log[0].starts_with("jams in move 2, from ") && log[1].starts_with("jams in move 5, from "),
-        "{log:?}"
-    );
+    assert!(log[0].starts_with("jams in move 2, from ") && log[1].starts_with("jams in move 5, from "), "{log:?}");
 }
 
 #[test]
 fn each_robot_has_its_own_wheels() {
     let text = std::fs::read_to_string("fleet.composite").unwrap();
     let run = std::panic::catch_unwind(|| {
-        Fleet::of_text(text.replace("target=\"Wheels2\"", "target=\"Wheels1\""))
-            .run(1, Duration::from_secs(1))
+        Fleet::of_text(text.replace("target=\"Wheels2\"", "target=\"Wheels1\"")).run(1, Duration::from_secs(1))
     });
     let said = *run.expect_err("it does not start").downcast::<String>().unwrap();
     assert!(said.contains("these are the wheels of robot 1"), "{said}");

@@ -1,8 +1,6 @@
 use std::time::Duration;
 
-use saoms_api::{
-    Class, Component, Context, Failure, Finding, Place, Properties, Publisher, Subscription, Time, Work,
-};
+use saoms_api::{Class, Component, Context, Failure, Finding, Place, Properties, Publisher, Subscription, Time, Work};
 use saoms_components::grid::Block;
 
 use crate::messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};

@@ -15,12 +15,7 @@ pub struct MasterEnvironmentProperties {
 
 /// Distributes the events of the environment, and requests the luggage of flights.
 #[derive(Debug, Class)]
-#[class(
-    name = "flights.MasterEnvironment",
-    periodic,
-    subscribes(FLIGHT),
-    publishes(ENVIRONMENT, FLIGHT_STATE)
-)]
+#[class(name = "flights.MasterEnvironment", periodic, subscribes(FLIGHT), publishes(ENVIRONMENT, FLIGHT_STATE))]
 pub struct MasterEnvironment {
     #[extends]
     master: master::MasterEnvironment,
@@ -60,14 +55,10 @@ impl Component for MasterEnvironment {
             context.because(header.cause);
             match self.flights.add(flight) {
                 Ok((state, luggage)) => {
-                    context.info(format_args!(
-                        "flight {} has {} pieces of luggage",
-                        flight.number, flight.pieces
-                    ));
+                    context.info(format_args!("flight {} has {} pieces of luggage", flight.number, flight.pieces));
                     context.send(&self.states, state)?;
                     // Like luggage from any other sender, the master receives and checks this itself.
-                    context
-                        .send(&self.events, EnvironmentEvent { luggage, ..EnvironmentEvent::default() })?;
+                    context.send(&self.events, EnvironmentEvent { luggage, ..EnvironmentEvent::default() })?;
                 }
                 Err(reason) => {
                     let sender = context.sender_name(header).unwrap_or("nobody").to_owned();
@@ -114,8 +105,7 @@ mod tests {
         master.deliver(&FLIGHT, flight());
         master.execute()?;
         let events = master.sent(&ENVIRONMENT);
-        let numbers: Vec<u32> =
-            events.iter().flat_map(|event| &event.luggage).map(|one| one.luggage).collect();
+        let numbers: Vec<u32> = events.iter().flat_map(|event| &event.luggage).map(|one| one.luggage).collect();
         assert_eq!(numbers, [50, 51]);
         assert_eq!(master.sent(&FLIGHT_STATE)[0].open, 2);
         let brought = EventLuggage { luggage: 50, stage: LuggageStage::Delivered, ..EventLuggage::default() };

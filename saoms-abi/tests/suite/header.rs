@@ -16,8 +16,7 @@ fn generated() -> String {
         fs::read_dir(root().join("src")).unwrap().map(|entry| entry.unwrap().path()).collect();
     sources.sort();
     let builder = cbindgen::Builder::new().with_config(config);
-    let bindings =
-        sources.iter().fold(builder, |builder, source| builder.with_src(source)).generate().unwrap();
+    let bindings = sources.iter().fold(builder, |builder, source| builder.with_src(source)).generate().unwrap();
     let mut text = Vec::new();
     bindings.write(&mut text);
     // The prefix is for types; names of constants are written in full.
@@ -42,10 +41,7 @@ fn the_header_is_that_of_the_sources() {
 /// A C or C++ compiler of the system, with all warnings as errors.
 fn compiler(name: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(name);
-    command
-        .args(arguments)
-        .args(["-Wall", "-Wextra", "-Werror", "-pedantic", "-I"])
-        .arg(root().join("include"));
+    command.args(arguments).args(["-Wall", "-Wextra", "-Werror", "-pedantic", "-I"]).arg(root().join("include"));
     command
 }
 
@@ -86,21 +82,18 @@ fn the_headers_compile_alone_in_c_and_in_cpp() {
 #[test]
 fn the_header_says_what_the_boundary_is() {
     let header = fs::read_to_string(root().join("include/saoms.h")).unwrap();
-    for expected in [
-        format!("section(\"{}\")", saoms_abi::SECTION),
-        format!("#define SAOMS_ABI_VERSION {}\n", saoms_abi::VERSION),
-    ] {
+    for expected in
+        [format!("section(\"{}\")", saoms_abi::SECTION), format!("#define SAOMS_ABI_VERSION {}\n", saoms_abi::VERSION)]
+    {
         assert!(header.contains(&expected), "{expected}");
     }
     // Everything in it has a comment: no line begins a member, a type or a function without one above.
     let lines: Vec<&str> = header.lines().collect();
     let is_bare = |place: usize| {
         let line = lines[place];
-        let is_member =
-            line.starts_with("    ") && !line.starts_with("     ") && !line.trim_start().starts_with("//");
+        let is_member = line.starts_with("    ") && !line.starts_with("     ") && !line.trim_start().starts_with("//");
         (line.starts_with("typedef ") || is_member) && !lines[place - 1].trim_start().starts_with("//")
     };
-    let bare: Vec<&str> =
-        (1..lines.len()).filter(|place| is_bare(*place)).map(|place| lines[place]).collect();
+    let bare: Vec<&str> = (1..lines.len()).filter(|place| is_bare(*place)).map(|place| lines[place]).collect();
     assert!(bare.is_empty(), "without a comment: {bare:#?}");
 }

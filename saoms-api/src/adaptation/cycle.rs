@@ -29,11 +29,7 @@ pub trait Loop: Send + Sized + 'static {
     ///
     /// # Errors
     /// The component cannot start.
-    fn initialize(
-        &mut self,
-        knowledge: &mut Self::Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut Self::Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let _ = (knowledge, context);
         Ok(())
     }
@@ -83,11 +79,7 @@ pub trait Loop: Send + Sized + 'static {
     ///
     /// # Errors
     /// The component could not end properly.
-    fn shutdown(
-        &mut self,
-        knowledge: &mut Self::Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn shutdown(&mut self, knowledge: &mut Self::Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let _ = (knowledge, context);
         Ok(())
     }
@@ -103,8 +95,7 @@ pub trait DynLoop: Send {
     ///
     /// # Errors
     /// As there.
-    fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>)
-    -> Result<(), Failure>;
+    fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
     /// See [`Loop::monitor`].
     ///
     /// # Errors
@@ -137,11 +128,7 @@ impl<L: LoopClass> DynLoop for L {
         <L as LoopClass>::entries()
     }
 
-    fn initialize(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         Loop::initialize(self, subject::<L>(knowledge)?, context)
     }
 

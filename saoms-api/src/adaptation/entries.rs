@@ -183,7 +183,6 @@ pub fn set_field<F: crate::Field>(field: &mut F, name: &str, value: Value) -> Re
 /// # Errors
 /// They are not those of a value of its type.
 pub fn decode_field<F: crate::Field>(field: &mut F, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-    *field =
-        crate::host::cdr::decode(bytes).map_err(|error| Failure::new(format!("entry `{name}`: {error}")))?;
+    *field = crate::host::cdr::decode(bytes).map_err(|error| Failure::new(format!("entry `{name}`: {error}")))?;
     Ok(())
 }

@@ -29,8 +29,7 @@ impl<T: Field> Entry<T> {
     /// # Errors
     /// There is no such entry (the message names the nearest), or it is of another type.
     pub fn of(knowledge: &dyn Knowledge, name: &str) -> Result<Entry<T>, Failure> {
-        let Some((place, found)) = knowledge.all_declared().enumerate().find(|(_, entry)| entry.name == name)
-        else {
+        let Some((place, found)) = knowledge.all_declared().enumerate().find(|(_, entry)| entry.name == name) else {
             return Err(unknown(knowledge, name));
         };
         let wanted = T::TYPE.to_string();

@@ -43,11 +43,7 @@ impl Loops {
     ///
     /// # Errors
     /// The first failure of a loop; or two of them, or one and the component, have an entry of the same name.
-    pub fn initialize(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    pub fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let built_in: &'static [EntryDeclaration] = knowledge.declared();
         for named in &mut self.loops {
             named.writable.effects = named.instance.effects();
@@ -73,11 +69,7 @@ impl Loops {
     ///
     /// # Errors
     /// The first failure of a loop.
-    pub fn monitor(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    pub fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (place, named) in self.placed() {
             context.enter_loop(place);
             let result = named.instance.monitor(knowledge, context);
@@ -112,11 +104,7 @@ impl Loops {
     ///
     /// # Errors
     /// The first failure of a loop; the others are ended all the same.
-    pub fn shutdown(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    pub fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.loops
             .iter_mut()
             .map(|named| {

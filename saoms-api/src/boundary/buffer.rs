@@ -27,9 +27,7 @@ impl Buffer {
     /// All that was put.
     pub(super) fn get(&self) -> Result<&[u8], Failure> {
         if self.overflowed {
-            return Err(Failure::new(format!(
-                "found more than {MAX_BYTES} bytes, or bytes that cannot be read"
-            )));
+            return Err(Failure::new(format!("found more than {MAX_BYTES} bytes, or bytes that cannot be read")));
         }
         Ok(&self.bytes)
     }

@@ -13,11 +13,7 @@ use super::service::BytesCall;
 
 /// The table of a class.
 pub const fn class_table<C: Class>() -> ClassTable {
-    ClassTable {
-        size: size_of::<ClassTable>(),
-        construct: construct::<C>,
-        component: &ExportedComponent::<C>::TABLE,
-    }
+    ClassTable { size: size_of::<ClassTable>(), construct: construct::<C>, component: &ExportedComponent::<C>::TABLE }
 }
 
 unsafe extern "C" fn construct<C: Class>(
@@ -80,26 +76,18 @@ impl<C: DynComponent> ExportedComponent<C> {
     unsafe extern "C" fn initialize(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: the host calls with what the table's contract says.
         unsafe {
-            guarded(error, || {
-                Self::call(this, handle, false, |component, context| component.initialize(context))
-            })
+            guarded(error, || Self::call(this, handle, false, |component, context| component.initialize(context)))
         }
     }
 
     unsafe extern "C" fn execute(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: as in `initialize`.
-        unsafe {
-            guarded(error, || Self::call(this, handle, true, |component, context| component.execute(context)))
-        }
+        unsafe { guarded(error, || Self::call(this, handle, true, |component, context| component.execute(context))) }
     }
 
     unsafe extern "C" fn shutdown(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: as in `initialize`.
-        unsafe {
-            guarded(error, || {
-                Self::call(this, handle, false, |component, context| component.shutdown(context))
-            })
-        }
+        unsafe { guarded(error, || Self::call(this, handle, false, |component, context| component.shutdown(context))) }
     }
 
     unsafe extern "C" fn serve(
@@ -116,9 +104,7 @@ impl<C: DynComponent> ExportedComponent<C> {
             guarded_call(error, || {
                 let mut call = BytesCall::new(operation, arguments.get()?, reply);
                 let mut invocation = Invocation { service: service.get_text()?, call: &mut call };
-                Self::call(this, handle, false, |component, context| {
-                    component.serve(&mut invocation, context)
-                })
+                Self::call(this, handle, false, |component, context| component.serve(&mut invocation, context))
             })
         }
     }
@@ -137,9 +123,7 @@ impl<C: DynComponent> ExportedComponent<C> {
     unsafe extern "C" fn restore(this: *mut c_void, saved: Bytes, error: Sink) -> Status {
         // SAFETY: as in `save`.
         unsafe {
-            guarded(error, || {
-                (*this.cast::<Self>()).component.restore(&Saved::from_bytes(saved.get()?.to_vec()))
-            })
+            guarded(error, || (*this.cast::<Self>()).component.restore(&Saved::from_bytes(saved.get()?.to_vec())))
         }
     }
 

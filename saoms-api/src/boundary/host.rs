@@ -4,8 +4,7 @@ use std::ffi::c_void;
 use std::time::Duration;
 
 use saoms_abi::{
-    Bytes, HostFunctions, LoopInstance, LoopVisitor, RecordView, ReportView, Sink, Status, TopicView,
-    ValueView,
+    Bytes, HostFunctions, LoopInstance, LoopVisitor, RecordView, ReportView, Sink, Status, TopicView, ValueView,
 };
 
 use crate::host::Host;
@@ -58,12 +57,7 @@ fn nanos(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
-unsafe extern "C" fn publish(
-    state: *mut c_void,
-    view: *const TopicView,
-    index: *mut u32,
-    error: Sink,
-) -> Status {
+unsafe extern "C" fn publish(state: *mut c_void, view: *const TopicView, index: *mut u32, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         guarded(error, || {
@@ -73,12 +67,7 @@ unsafe extern "C" fn publish(
     }
 }
 
-unsafe extern "C" fn subscribe(
-    state: *mut c_void,
-    view: *const TopicView,
-    index: *mut u32,
-    error: Sink,
-) -> Status {
+unsafe extern "C" fn subscribe(state: *mut c_void, view: *const TopicView, index: *mut u32, error: Sink) -> Status {
     // SAFETY: as in `publish`.
     unsafe {
         guarded(error, || {
@@ -88,22 +77,13 @@ unsafe extern "C" fn subscribe(
     }
 }
 
-unsafe extern "C" fn send(
-    state: *mut c_void,
-    publisher: u32,
-    key: *const u64,
-    bytes: Bytes,
-    error: Sink,
-) -> Status {
+unsafe extern "C" fn send(state: *mut c_void, publisher: u32, key: *const u64, bytes: Bytes, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         guarded(error, || {
             let mut host = host(state)?;
             let header = Header { sender: host.sender(), sent: host.due(), cause: host.cause() };
-            host.send(
-                publisher,
-                SharedMessage::from_bytes(header, key.as_ref().copied(), bytes.get()?.to_vec()),
-            )
+            host.send(publisher, SharedMessage::from_bytes(header, key.as_ref().copied(), bytes.get()?.to_vec()))
         })
     }
 }
@@ -151,12 +131,7 @@ unsafe extern "C" fn chosen_loops(state: *mut c_void, visitor: *mut c_void, visi
     }
 }
 
-unsafe extern "C" fn chosen_loop(
-    state: *mut c_void,
-    place: u32,
-    given: *mut LoopInstance,
-    error: Sink,
-) -> Status {
+unsafe extern "C" fn chosen_loop(state: *mut c_void, place: u32, given: *mut LoopInstance, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and a place for the loop.
     unsafe {
         guarded(error, || {
@@ -211,8 +186,7 @@ unsafe extern "C" fn report(state: *mut c_void, path: Bytes, value: *const Repor
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         with_host(state, (), |host| {
-            let read =
-                path.get_text().map_err(Failure::from).and_then(|path| Ok((path, read_report(&*value)?)));
+            let read = path.get_text().map_err(Failure::from).and_then(|path| Ok((path, read_report(&*value)?)));
             match read {
                 Ok((path, value)) => host.report(path, value),
                 Err(failure) => warn(host, "a value for the report", &failure),
@@ -264,12 +238,7 @@ unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const Record
 }
 
 /// A change that cannot be read is left out with a warning.
-unsafe extern "C" fn changed(
-    state: *mut c_void,
-    entry: Bytes,
-    before: *const ValueView,
-    after: *const ValueView,
-) {
+unsafe extern "C" fn changed(state: *mut c_void, entry: Bytes, before: *const ValueView, after: *const ValueView) {
     // SAFETY: callers pass the state of their handle, and lend the views; texts are part of their library, which stays.
     unsafe {
         with_host(state, (), |host| {

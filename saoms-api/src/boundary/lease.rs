@@ -139,9 +139,8 @@ impl Lease {
         let knowledge =
             unsafe { mem::transmute::<*mut (dyn Knowledge + '_), *mut (dyn Knowledge + 'static)>(knowledge) };
         lease.knowledge.set(Some(knowledge));
-        let status = self.with_context(context, |lent, handle| {
-            lent.hold(|error| code(lease.entries.get(), handle, error))
-        });
+        let status =
+            self.with_context(context, |lent, handle| lent.hold(|error| code(lease.entries.get(), handle, error)));
         lease.knowledge.set(None);
         self.outcome(status)
     }
@@ -156,8 +155,7 @@ impl Lease {
         code: impl FnOnce(*const HostHandle, Sink, Sink) -> Status,
     ) -> Result<&[u8], CallError> {
         let into_reply = self.reply();
-        let status =
-            self.with_context(context, |lent, handle| lent.hold(|error| code(handle, into_reply, error)));
+        let status = self.with_context(context, |lent, handle| lent.hold(|error| code(handle, into_reply, error)));
         // SAFETY: there is no holder, so this thread alone uses it.
         let error = unsafe { &mut *self.0.error.get() };
         let result = call_outcome(status, &error.bytes);

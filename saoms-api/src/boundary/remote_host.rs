@@ -3,15 +3,12 @@ use std::fmt::{self, Write as _};
 use std::mem::MaybeUninit;
 use std::time::Duration;
 
-use saoms_abi::{
-    Bytes, HostFunctions, HostHandle, LoopInstance, PropertyView, RecordView, Sink, Status, TopicView,
-};
+use saoms_abi::{Bytes, HostFunctions, HostHandle, LoopInstance, PropertyView, RecordView, Sink, Status, TopicView};
 
 use crate::host::Host;
 use crate::host::contain::contained;
 use crate::host::{
-    DynLoop, LoopRegistration, NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr,
-    TopicDeclaration,
+    DynLoop, LoopRegistration, NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
 };
 use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
 
@@ -235,8 +232,7 @@ impl Host for RemoteHost<'_> {
         let arguments = call.arguments();
         let (mut reply, mut error) = (Buffer::default(), Buffer::default());
         let (into_reply, into_error) = (sink(&mut reply), sink(&mut error));
-        let status =
-            get!(self.call, reference, call.operation(), Bytes::lend(&arguments), into_reply, into_error);
+        let status = get!(self.call, reference, call.operation(), Bytes::lend(&arguments), into_reply, into_error);
         call_outcome(status, &error.bytes)?;
         call.reply(reply.get()?)
     }

@@ -9,8 +9,7 @@ use std::fmt;
 use std::time::Duration;
 
 pub use crate::adaptation::{
-    DynEntries, DynLoop, EntryDeclaration, KnowledgeClass, LoopRegistration, NamedLoops, Phase, Snapshot,
-    Subject,
+    DynEntries, DynLoop, EntryDeclaration, KnowledgeClass, LoopRegistration, NamedLoops, Phase, Snapshot, Subject,
 };
 pub use crate::component::DynComponent;
 pub use crate::field::Arguments;

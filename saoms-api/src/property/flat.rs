@@ -53,9 +53,6 @@ pub const fn list(items: &'static str) -> [ConstText; 3] {
 }
 
 /// The values with these names.
-pub(crate) fn values_of(
-    values: &[(SmolStr, PropertyValue)],
-    names: &[&str],
-) -> Vec<(SmolStr, PropertyValue)> {
+pub(crate) fn values_of(values: &[(SmolStr, PropertyValue)], names: &[&str]) -> Vec<(SmolStr, PropertyValue)> {
     values.iter().filter(|(name, _)| names.contains(&name.as_str())).cloned().collect()
 }

@@ -69,11 +69,7 @@ impl PropertyShape {
     }
 
     /// `"name":bound` with a comma before it, or nothing.
-    pub const fn bound(
-        kind: PropertyKind,
-        label: &'static str,
-        bound: Option<&'static str>,
-    ) -> [ConstText; 2] {
+    pub const fn bound(kind: PropertyKind, label: &'static str, bound: Option<&'static str>) -> [ConstText; 2] {
         match (bound, kind) {
             (None, _) => [ConstText::EMPTY, ConstText::EMPTY],
             (Some(bound), PropertyKind::Duration) => [ConstText::Plain(label), ConstText::Quoted(bound)],

@@ -38,12 +38,7 @@ fn bounds_are_part_of_the_message() {
         (Rule { max: Some("5"), ..integer }, "6", "5", ", at most 5"),
         (Rule { exclusive_max: Some("5"), ..integer }, "5", "4", ", below 5"),
         (Rule { min: Some("1"), exclusive_max: Some("5"), ..integer }, "5", "4", " from 1 to below 5"),
-        (
-            Rule { min: Some("-2"), max: Some("5"), unit: Some("m"), ..integer },
-            "-3",
-            "-2",
-            " from -2 to 5 [m]",
-        ),
+        (Rule { min: Some("-2"), max: Some("5"), unit: Some("m"), ..integer }, "-3", "-2", " from -2 to 5 [m]"),
     ];
     for (rule, outside, inside, expected) in cases {
         assert!(rule.check(inside).is_ok());

@@ -49,11 +49,7 @@ pub fn nearest_equal<'a>(name: &str, candidates: impl IntoIterator<Item = &'a st
 }
 
 /// Up to `limit` candidates that are like `name`, the most alike first; see [`nearest`].
-pub fn nearest_few<'a>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-    limit: usize,
-) -> Vec<&'a str> {
+pub fn nearest_few<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>, limit: usize) -> Vec<&'a str> {
     let wanted = Folded::new(name);
     // The most alike so far, in order; of equal ones the first stands first.
     let mut found: Vec<(usize, &str)> = Vec::new();

@@ -3,9 +3,7 @@
 use std::time::Duration;
 
 use saoms_api::host::{Interface, PropertyValue, Registration, SmolStr};
-use saoms_api::{
-    Class, Component, Context, Failure, Field, Message, Properties, PropertyField, Topic, interface,
-};
+use saoms_api::{Class, Component, Context, Failure, Field, Message, Properties, PropertyField, Topic, interface};
 
 /// Position of a robot.
 #[derive(Clone, Debug, PartialEq, Message)]
@@ -283,19 +281,13 @@ fn wrong_properties_say_what_was_found_and_expected() {
     };
     let cases = [
         (text("number", "0"), "property `number`: `0` is out of range: expected a whole number from 1 to 99"),
-        (
-            text("number", "1e3"),
-            "property `number`: `1e3` is not a whole number: expected a whole number from 1 to 99",
-        ),
+        (text("number", "1e3"), "property `number`: `1e3` is not a whole number: expected a whole number from 1 to 99"),
         (text("number", " "), "property `number`: the value is empty: expected a whole number from 1 to 99"),
         (
             text("number", "99999999999999999999999999999999999999999999"),
             "property `number`: `99999999999999999999999999999999999999999999` is out of range: expected a whole number from 1 to 99",
         ),
-        (
-            many("number", &["1", "2"]),
-            "property `number`: found a list: expected a whole number from 0 to 255",
-        ),
+        (many("number", &["1", "2"]), "property `number`: found a list: expected a whole number from 0 to 255"),
         (
             text("discharge", "100"),
             "property `discharge`: `100` is out of range: expected a number from 0.0 to below 100.0 [%]",
@@ -304,10 +296,7 @@ fn wrong_properties_say_what_was_found_and_expected() {
             text("discharge", "NaN"),
             "property `discharge`: `NaN` is not a number: expected a number from 0.0 to below 100.0 [%]",
         ),
-        (
-            text("late", "Use"),
-            "property `late`: `Use` is not allowed: expected `use`, `dropSilently` or `ask-me`",
-        ),
+        (text("late", "Use"), "property `late`: `Use` is not allowed: expected `use`, `dropSilently` or `ask-me`"),
         (
             text("waitTime", "10us"),
             "property `waitTime`: `10us` is out of range: expected a duration, at least 1ms (in ms, or with a unit: ns, us, ms, s, min, h)",
@@ -332,10 +321,7 @@ fn wrong_properties_say_what_was_found_and_expected() {
     for (value, expected) in cases {
         assert_eq!(robot(&[value]), Err(expected.to_owned()));
     }
-    assert_eq!(
-        robot(&[text("color", "red"), text("color", "red")]),
-        Err("property `color` is given twice".to_owned())
-    );
+    assert_eq!(robot(&[text("color", "red"), text("color", "red")]), Err("property `color` is given twice".to_owned()));
     let missing = RobotProperties::from_values(&[]).unwrap_err();
     assert_eq!(missing.message(), "property `number` is missing: expected a whole number from 1 to 99");
 }

@@ -4,49 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const NAMES: &[&str] = &[
-    "CallError",
-    "Cause",
-    "Chance",
-    "Class",
-    "Component",
-    "Context",
-    "Effector",
-    "Entries",
-    "Entry",
-    "Extras",
-    "Failure",
-    "Field",
-    "Finding",
-    "Header",
-    "Knowledge",
-    "Level",
-    "Loop",
-    "LoopClass",
-    "Loops",
-    "Message",
-    "Messages",
-    "Place",
-    "Properties",
-    "PropertyField",
-    "Publisher",
-    "Record",
-    "Recordable",
-    "ReportValue",
-    "Saved",
-    "Subscription",
-    "TaskInterface",
-    "TaskInterfaceReference",
-    "Time",
-    "Topic",
-    "Value",
-    "Work",
-    "extension",
-    "fleet_rules!",
-    "host",
-    "interface",
-    "plugin!",
-    "record!",
-    "rule",
+    "CallError", "Cause", "Chance", "Class", "Component", "Context", "Effector", "Entries", "Entry", "Extras",
+    "Failure", "Field", "Finding", "Header", "Knowledge", "Level", "Loop", "LoopClass", "Loops", "Message", "Messages",
+    "Place", "Properties", "PropertyField", "Publisher", "Record", "Recordable", "ReportValue", "Saved",
+    "Subscription", "TaskInterface", "TaskInterfaceReference", "Time", "Topic", "Value", "Work", "extension",
+    "fleet_rules!", "host", "interface", "plugin!", "record!", "rule",
 ];
 
 /// The names that the text of `lib.rs` and the exported macros of the crate make public, without hidden ones.
@@ -54,11 +16,8 @@ fn names() -> Vec<String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let root = fs::read_to_string(source.join("lib.rs")).unwrap();
     // Modules in the text are hidden ones.
-    let root = root
-        .split("#[doc(hidden)]\npub mod generated")
-        .next()
-        .unwrap()
-        .replace("#[doc(hidden)]\npub mod", "mod");
+    let root =
+        root.split("#[doc(hidden)]\npub mod generated").next().unwrap().replace("#[doc(hidden)]\npub mod", "mod");
     let mut names = Vec::new();
     for item in root.split("\npub ").skip(1) {
         let item = item.split(';').next().unwrap();

@@ -8,16 +8,14 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-use saoms_api::{
-    Class, Component, Context, Failure, Level, Properties, Publisher, Subscription, Time, Work, record,
-};
+use saoms_api::{Class, Component, Context, Failure, Level, Properties, Publisher, Subscription, Time, Work, record};
 
 use crate::console::Timestamp;
 use crate::grid::Map;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage,
-    ROBOT_LIST, RobotList,
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage, ROBOT_LIST,
+    RobotList,
 };
 use crate::validation::MessageValidator;
 
@@ -171,10 +169,7 @@ impl Environment {
         match event {
             None => {
                 context.count("luggage.ignored", 1);
-                context.log(
-                    Level::Error,
-                    format_args!("finds no free block for luggage where the scenario wants it"),
-                );
+                context.log(Level::Error, format_args!("finds no free block for luggage where the scenario wants it"));
                 Ok(())
             }
             Some(ScenarioEvent::Luggage { from, to }) => {
@@ -187,12 +182,7 @@ impl Environment {
                 context.console(format_args!("Environment: Test{test}: {request} at {now}"));
                 context.info(format_args!("luggage {} waits at {from} to be brought to {to}", self.luggage));
                 let luggage = self.luggage;
-                context.symptom(record!(
-                    "luggage {luggage} waits at {from} to be brought to {to}",
-                    luggage,
-                    from,
-                    to
-                ));
+                context.symptom(record!("luggage {luggage} waits at {from} to be brought to {to}", luggage, from, to));
                 context.send(&self.events, request.into())
             }
             Some(ScenarioEvent::Exceptional(event)) => {

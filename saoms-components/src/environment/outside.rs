@@ -80,9 +80,7 @@ impl Reader {
                 };
                 (event.clone().into(), format!("{kind} {}", event.pieces))
             }
-            ScenarioEvent::Breakdown(robot) => {
-                (Fault::breakdown(*robot).into(), format!("breakdown {robot}"))
-            }
+            ScenarioEvent::Breakdown(robot) => (Fault::breakdown(*robot).into(), format!("breakdown {robot}")),
             ScenarioEvent::End => (EnvironmentEvent::default(), "end".to_owned()),
         }
     }

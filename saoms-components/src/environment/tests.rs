@@ -66,10 +66,7 @@ fn lines_repeat_so_often_or_so_long() {
     assert_eq!(times("from 1s every 2s 2 times until 9s landing 1"), [1000, 3000]);
     assert_eq!(times("at 1s 3 times landing 1"), [1000, 1000, 1000]);
     assert_eq!(times("at 1s landing 1; then 1s every 1s 2 times landing 2"), [1000, 2000, 3000]);
-    assert_eq!(
-        times("at 9s landing 1; then 1s every 1s until 5s landing 2; then 1s landing 3"),
-        [9000, 11_000]
-    );
+    assert_eq!(times("at 9s landing 1; then 1s every 1s until 5s landing 2; then 1s landing 3"), [9000, 11_000]);
     assert_eq!(times("from 0 every 5s landing 1"), [0, 5000, 10_000, 15_000, 20_000]);
 }
 
@@ -246,8 +243,7 @@ fn word() -> impl Strategy<Value = String> {
 #[test]
 fn the_examples_of_the_documentation_are_scenarios() {
     let page = include_str!("../../../docs/scenarios.md");
-    let examples: Vec<&str> =
-        page.split("```scenario\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let examples: Vec<&str> = page.split("```scenario\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
     assert!(examples.len() >= 4);
     for example in examples {
         let (scenario, findings) = Scenario::read_partly(&[example]);
@@ -309,10 +305,7 @@ fn what_can_follow_is_what_the_grammar_says() {
         assert_eq!(words(line), [expected], "{line}");
     }
     assert!(words("from 1s every 2s ").contains(&Continuation::Word("until")));
-    assert!(
-        !words("at 1s ").contains(&Continuation::Word("until"))
-            && words("at 1s ").contains(&Continuation::Times)
-    );
+    assert!(!words("at 1s ").contains(&Continuation::Word("until")) && words("at 1s ").contains(&Continuation::Times));
     assert!(!words("at 1s 3 times ").contains(&Continuation::Times));
     for line in ["at 1s end ", "nonsense ", "at 1s landing 4 ", "at 1s nonsense "] {
         assert_eq!(words(line), [], "{line}");

@@ -93,8 +93,7 @@ impl FromStr for Block {
     /// Parses `(3,10)`; blanks are ignored.
     fn from_str(text: &str) -> Result<Block, String> {
         let expected = || format!("found `{}`, expected a block such as (3,10)", text.trim());
-        let inner =
-            text.trim().strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(expected)?;
+        let inner = text.trim().strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(expected)?;
         let (x, y) = inner.split_once(',').ok_or_else(expected)?;
         let number = |text: &str| text.trim().parse().map_err(|_| expected());
         Ok(Block { x: number(x)?, y: number(y)? })

@@ -133,10 +133,7 @@ impl Distances {
     /// Cost of the way from a block of the searched map; [`UNREACHABLE`] if there is none.
     #[inline]
     pub fn of(&self, map: &Map, block: Block) -> u32 {
-        self.place(map, block)
-            .and_then(|place| self.costs.get(place.at as usize))
-            .copied()
-            .unwrap_or(UNREACHABLE)
+        self.place(map, block).and_then(|place| self.costs.get(place.at as usize)).copied().unwrap_or(UNREACHABLE)
     }
 }
 

@@ -122,8 +122,7 @@ impl Map {
     /// no block.
     pub fn from_words(width: u32, height: u32, blocked: Vec<u64>) -> Option<Map> {
         let size = width as usize * height as usize;
-        let fits =
-            size > 0 && width <= Map::LONGEST && height <= Map::LONGEST && blocked.len() == size.div_ceil(64);
+        let fits = size > 0 && width <= Map::LONGEST && height <= Map::LONGEST && blocked.len() == size.div_ceil(64);
         let count = blocked.iter().map(|word| word.count_ones() as usize).sum();
         fits.then_some(Map { width, height, blocked, count })
     }

@@ -51,8 +51,7 @@ impl Map {
             }
         }
         let Some(first) = rows.first().copied() else {
-            faults
-                .push(TextFault::new(0..text.len(), "found no rows, expected one line of `.` and `@` a row"));
+            faults.push(TextFault::new(0..text.len(), "found no rows, expected one line of `.` and `@` a row"));
             return Err(faults);
         };
         let width = header.width.map_or_else(|| usual_length(&rows), |(width, _)| width as usize);
@@ -93,13 +92,7 @@ impl Map {
         Some(bytes(text, &row[start..start + sign.len_utf8()]))
     }
 
-    fn read_row<'a>(
-        &mut self,
-        y: i32,
-        row: &'a str,
-        width: usize,
-        said: Option<u32>,
-    ) -> Result<(), (&'a str, String)> {
+    fn read_row<'a>(&mut self, y: i32, row: &'a str, width: usize, said: Option<u32>) -> Result<(), (&'a str, String)> {
         for (x, (start, sign)) in (0..).zip(row.char_indices()) {
             match sign {
                 '.' | 'G' | 'E' | 'S' => {}
@@ -107,8 +100,7 @@ impl Map {
                     self.set_blocked(Block::new(x, y));
                 }
                 other => {
-                    let message =
-                        format!("found `{other}`, expected `.` for a free block or `@` for a blocked one");
+                    let message = format!("found `{other}`, expected `.` for a free block or `@` for a blocked one");
                     return Err((&row[start..start + other.len_utf8()], message));
                 }
             }

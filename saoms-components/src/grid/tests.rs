@@ -117,11 +117,7 @@ fn distances_are_those_of_the_shortest_ways() {
             let cost = distances.of(&map, map.block(place));
             // A move against a lane costs a quarter more.
             let most = moves.saturating_mul(MOVE + 1);
-            assert!(
-                (moves.saturating_mul(MOVE)..=most).contains(&cost),
-                "{} to {to}: {cost}",
-                map.block(place)
-            );
+            assert!((moves.saturating_mul(MOVE)..=most).contains(&cost), "{} to {to}: {cost}", map.block(place));
         }
     }
 }

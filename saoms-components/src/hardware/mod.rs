@@ -18,13 +18,7 @@ pub use area::Area;
 #[interface(name = "saoms.Hardware")]
 pub trait Hardware {
     /// Registers a robot with its number, its name and the block where it assumes to be; returns its real position.
-    fn enter(
-        &mut self,
-        context: &mut Context<'_>,
-        robot: u32,
-        name: String,
-        block: Block,
-    ) -> Result<Block, Failure>;
+    fn enter(&mut self, context: &mut Context<'_>, robot: u32, name: String, block: Block) -> Result<Block, Failure>;
 
     /// The map that the robots share.
     fn area(&mut self, context: &mut Context<'_>) -> Result<Area, Failure>;

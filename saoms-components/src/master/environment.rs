@@ -5,8 +5,8 @@ use super::open_luggage::OpenLuggage;
 use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent,
-    FAULT, Fault, LuggageStage, ROBOT_LIST, RobotList,
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT,
+    Fault, LuggageStage, ROBOT_LIST, RobotList,
 };
 use crate::validation::{MessageValidator, Problem, Validate};
 
@@ -85,9 +85,7 @@ impl Component for MasterEnvironment {
         for (header, event) in context.receive(&self.events).with_headers() {
             context.because(header.cause);
             self.sort(context, header, event)?;
-            context.console(format_args!(
-                "MasterEnvironmentManagingSystem: new event received and managed at {now}"
-            ));
+            context.console(format_args!("MasterEnvironmentManagingSystem: new event received and managed at {now}"));
         }
         context.because(Cause::default());
         for (header, said) in context.receive(&self.responses).with_headers() {
@@ -105,12 +103,7 @@ impl Component for MasterEnvironment {
 }
 
 impl MasterEnvironment {
-    fn sort(
-        &mut self,
-        context: &mut Context<'_>,
-        header: Header,
-        event: &EnvironmentEvent,
-    ) -> Result<(), Failure> {
+    fn sort(&mut self, context: &mut Context<'_>, header: Header, event: &EnvironmentEvent) -> Result<(), Failure> {
         for request in &event.luggage {
             let EventLuggage { luggage, from, to, .. } = *request;
             match self.filter.luggage(request) {
@@ -145,9 +138,7 @@ impl MasterEnvironment {
 
     /// Handles a message about luggage from a robot, or from another component on the robots' topic.
     fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
-        if header.sender == context.sender()
-            || !self.validator.accepts(said, header, self.filter.area(), context)
-        {
+        if header.sender == context.sender() || !self.validator.accepts(said, header, self.filter.area(), context) {
             return;
         }
         if said.stage == LuggageStage::Request {

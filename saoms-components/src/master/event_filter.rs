@@ -83,11 +83,8 @@ mod tests {
 
     #[test]
     fn a_response_is_no_request() {
-        let response =
-            EventLuggage { robot: 3, ..EventLuggage::request(1, Block::new(0, 0), Block::new(1, 0)) };
+        let response = EventLuggage { robot: 3, ..EventLuggage::request(1, Block::new(0, 0), Block::new(1, 0)) };
         assert!(EventFilter::default().luggage(&response).unwrap_err().is_lost);
-        assert!(
-            EventFilter::default().luggage(&EventLuggage::given_up(1, response.from, response.to)).is_err()
-        );
+        assert!(EventFilter::default().luggage(&EventLuggage::given_up(1, response.from, response.to)).is_err());
     }
 }

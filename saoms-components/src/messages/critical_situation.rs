@@ -86,12 +86,7 @@ impl Validate for CriticalSituation {
         of_robot(self.critical)
     }
 
-    fn validate(
-        &self,
-        sender: u32,
-        validator: &mut MessageValidator,
-        area: Option<&Map>,
-    ) -> Result<(), Problem> {
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
         validator.check_known(self.critical)?;
         if self.stage != CriticalStage::Request {
             Problem::of_block(self.healer_block, area)?;

@@ -71,12 +71,7 @@ impl Validate for EventLuggage {
         format!("luggage {} from {} to {}", self.luggage, self.from, self.to)
     }
 
-    fn validate(
-        &self,
-        sender: u32,
-        validator: &mut MessageValidator,
-        area: Option<&Map>,
-    ) -> Result<(), Problem> {
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
         let EventLuggage { robot, from, to, block, .. } = *self;
         match self.stage {
             LuggageStage::Request => Problem::of_request(self, area),

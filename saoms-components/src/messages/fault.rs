@@ -47,12 +47,7 @@ impl Validate for Fault {
         of_robot(self.robot)
     }
 
-    fn validate(
-        &self,
-        _sender: u32,
-        validator: &mut MessageValidator,
-        _area: Option<&Map>,
-    ) -> Result<(), Problem> {
+    fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
         validator.check_known(self.robot)
     }
 }

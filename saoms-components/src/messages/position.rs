@@ -67,12 +67,7 @@ impl Validate for Position {
 
     /// The first message about an unknown robot is accepted: a robot sends its position before anything else, and its
     /// block is kept free.
-    fn validate(
-        &self,
-        sender: u32,
-        validator: &mut MessageValidator,
-        area: Option<&Map>,
-    ) -> Result<(), Problem> {
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
         let Position { block, next, wanted, .. } = *self;
         for block in [block, next, wanted] {
             Problem::of_block(block, area)?;

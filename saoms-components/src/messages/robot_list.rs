@@ -58,12 +58,7 @@ impl Validate for RobotList {
         of_robot(self.robot)
     }
 
-    fn validate(
-        &self,
-        sender: u32,
-        validator: &mut MessageValidator,
-        area: Option<&Map>,
-    ) -> Result<(), Problem> {
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
         if !(0.0..=100.0).contains(&self.battery) {
             return Err(Problem::Battery { percent: self.battery });
         }

@@ -24,12 +24,7 @@ impl Validate for RobotState {
         of_robot(self.robot)
     }
 
-    fn validate(
-        &self,
-        _sender: u32,
-        validator: &mut MessageValidator,
-        _area: Option<&Map>,
-    ) -> Result<(), Problem> {
+    fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
         validator.check_known(self.robot)?;
         if self.emulate == 0 { Ok(()) } else { validator.check_known(self.emulate) }
     }

@@ -20,9 +20,8 @@ impl Shades {
     /// Classes for numbers up to `most`: small numbers are told apart more finely.
     pub(super) fn up_to(most: u64) -> Shades {
         let classes = SHADES.len() as u64;
-        let mut from: Vec<u64> = (0..classes)
-            .map(|class| (most * class * class).div_ceil(classes * classes).max(class + 1))
-            .collect();
+        let mut from: Vec<u64> =
+            (0..classes).map(|class| (most * class * class).div_ceil(classes * classes).max(class + 1)).collect();
         from.retain(|least| *least <= most.max(1));
         Shades { from, most }
     }
@@ -56,11 +55,7 @@ pub(super) fn draw(svg: &mut Svg, frame: &Frame, recording: &Recording) -> Shade
     let cell = number(frame.cell);
     for (block, visits) in visits {
         let (x, y) = frame.corner(*block);
-        tiles[shades.class(visits.count)].push_str(&format!(
-            "M{} {}h{cell}v{cell}h-{cell}z",
-            number(x),
-            number(y)
-        ));
+        tiles[shades.class(visits.count)].push_str(&format!("M{} {}h{cell}v{cell}h-{cell}z", number(x), number(y)));
         let (right, down) = (visits.right.unsigned_abs(), visits.down.unsigned_abs());
         if frame.cell >= ARROWED && right.max(down) * 2 > visits.count {
             let (x, y) = frame.middle(*block);

@@ -20,8 +20,7 @@ impl Area {
             return Some(Area { left: 0, top: 0, width: map.width(), height: map.height() });
         }
         let chargers = recording.robots.values().filter_map(|robot| robot.charger);
-        let luggage =
-            recording.collected.keys().chain(recording.delivered.keys()).chain(recording.open.values());
+        let luggage = recording.collected.keys().chain(recording.delivered.keys()).chain(recording.open.values());
         let blocks: Vec<Block> = recording.visits.keys().chain(luggage).copied().chain(chargers).collect();
         let side = |at: fn(&Block) -> i32| {
             let (least, most) = (blocks.iter().map(at).min()?, blocks.iter().map(at).max()?);
@@ -68,8 +67,7 @@ impl Frame {
 
     /// The upper left corner of a block.
     pub(super) fn corner(&self, block: Block) -> (f64, f64) {
-        let (x, y) =
-            (f64::from(block.x) - f64::from(self.area.left), f64::from(block.y) - f64::from(self.area.top));
+        let (x, y) = (f64::from(block.x) - f64::from(self.area.left), f64::from(block.y) - f64::from(self.area.top));
         (self.left + x * self.cell, self.top + y * self.cell)
     }
 
@@ -132,8 +130,7 @@ impl Frame {
         let room = 12.0 + 7.0 * (end.to_string().len() as f64);
         let steps = (0..6).flat_map(|power| [1, 2, 5].map(|step| step * 10_i64.pow(power)));
         let cell = self.cell;
-        let step =
-            steps.into_iter().find(|step| *step as f64 * cell >= room).unwrap_or(i64::from(Map::LONGEST));
+        let step = steps.into_iter().find(|step| *step as f64 * cell >= room).unwrap_or(i64::from(Map::LONGEST));
         (i64::from(first)..end).filter(move |at| at % step == 0).map(|at| at as f64)
     }
 
@@ -151,12 +148,7 @@ impl Frame {
             if place > first {
                 let (x, y) = self.corner(map.block(first));
                 let length = number((place - first) as f64 * cell);
-                outline.push_str(&format!(
-                    "M{} {}h{length}v{}h-{length}z",
-                    number(x),
-                    number(y),
-                    number(cell)
-                ));
+                outline.push_str(&format!("M{} {}h{length}v{}h-{length}z", number(x), number(y), number(cell)));
             } else {
                 place += 1;
             }

@@ -118,11 +118,8 @@ pub(super) const TAG: f64 = 14.0;
 
 /// A label with a robot's number, from its upper left corner: full where the robot starts, hollow where it ends.
 pub(super) fn tag(svg: &mut Svg, x: f64, y: f64, text: &str, look: &Look, hollow: bool) {
-    let (width, fill, ink) = (
-        tag_width(text),
-        if hollow { "#fff" } else { look.colour },
-        if hollow { "#000" } else { look.on_colour },
-    );
+    let (width, fill, ink) =
+        (tag_width(text), if hollow { "#fff" } else { look.colour }, if hollow { "#000" } else { look.on_colour });
     let class = if hollow { "end" } else { "start" };
     svg.open("g", format_args!(r#"class="tag {class}" data-robot="{}""#, escaped(text)));
     svg.leaf(

@@ -51,9 +51,8 @@ pub(super) fn lanes(robots: &[&[Leg]], sharing: Sharing) -> Option<Lanes> {
             let (first, last) = (one.min(other), one.max(other));
             let strips = corridors.entry((leg.is_level(), across)).or_default();
             let joins = |strip: &Strip| {
-                let is_same_way = |known: &usize| {
-                    sharing == Sharing::Robot || legs[*known].is_forward() == leg.is_forward()
-                };
+                let is_same_way =
+                    |known: &usize| sharing == Sharing::Robot || legs[*known].is_forward() == leg.is_forward();
                 strip.robot == robot
                     && strip.legs.first().is_some_and(is_same_way)
                     && strip.first <= last
@@ -80,14 +79,7 @@ pub(super) fn lanes(robots: &[&[Leg]], sharing: Sharing) -> Option<Lanes> {
 }
 
 /// Adds a leg to a strip, and to it all others that the longer one now touches.
-fn join(
-    strips: &mut Vec<Strip>,
-    known: usize,
-    first: i32,
-    last: i32,
-    leg: usize,
-    joins: impl Fn(&Strip) -> bool,
-) {
+fn join(strips: &mut Vec<Strip>, known: usize, first: i32, last: i32, leg: usize, joins: impl Fn(&Strip) -> bool) {
     strips[known].legs.push(leg);
     strips[known].first = strips[known].first.min(first);
     strips[known].last = strips[known].last.max(last);
@@ -109,9 +101,7 @@ fn join(
 fn colour(strips: &mut [Strip]) -> Option<()> {
     let mut lanes: Vec<Vec<(i32, i32)>> = Vec::new();
     for strip in strips {
-        let free = |lane: &Vec<(i32, i32)>| {
-            lane.iter().all(|(first, last)| strip.last < *first || *last < strip.first)
-        };
+        let free = |lane: &Vec<(i32, i32)>| lane.iter().all(|(first, last)| strip.last < *first || *last < strip.first);
         strip.lane = lanes.iter().position(free).unwrap_or(lanes.len());
         if strip.lane == lanes.len() {
             lanes.push(Vec::new());
@@ -134,8 +124,7 @@ fn widths(strips: &[Strip]) -> Vec<usize> {
         let mut last = strips[*start].last;
         let mut lanes = 0;
         let mut end = 0;
-        while let Some(strip) = rest.get(end).map(|place| &strips[*place]).filter(|strip| strip.first <= last)
-        {
+        while let Some(strip) = rest.get(end).map(|place| &strips[*place]).filter(|strip| strip.first <= last) {
             last = last.max(strip.last);
             lanes = lanes.max(strip.lane + 1);
             end += 1;

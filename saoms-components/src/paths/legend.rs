@@ -107,11 +107,7 @@ impl Sign {
             Sign::End => glyphs::end(svg, x, y, 3.0, &super::palette::look(4), true),
             Sign::Unheard => svg.leaf(
                 "path",
-                format_args!(
-                    r##"d="M{} {}h24" stroke="#000" stroke-dasharray="2 4""##,
-                    number(x - 12.0),
-                    number(y)
-                ),
+                format_args!(r##"d="M{} {}h24" stroke="#000" stroke-dasharray="2 4""##, number(x - 12.0), number(y)),
             ),
             Sign::Flow => svg.leaf(
                 "path",
@@ -170,11 +166,7 @@ pub(super) fn draw(svg: &mut Svg, groups: &[Group], left: f64, top: f64, columns
 }
 
 fn text(svg: &mut Svg, x: f64, y: f64, size: u32, fill: &str, text: &str) {
-    svg.element(
-        "text",
-        format_args!(r#"x="{}" y="{}" font-size="{size}" fill="{fill}""#, number(x), number(y)),
-        text,
-    );
+    svg.element("text", format_args!(r#"x="{}" y="{}" font-size="{size}" fill="{fill}""#, number(x), number(y)), text);
 }
 
 /// The end of a name says more than its beginning: that is what is left out.

@@ -56,10 +56,13 @@ impl Lines<'_> {
             ));
         }
         if !unheard.is_empty() {
-            svg.leaf("path", format_args!(
-                r#"class="unheard" d="{unheard}" fill="none" stroke="{}" stroke-width="1" stroke-dasharray="2 4""#,
-                look.colour
-            ));
+            svg.leaf(
+                "path",
+                format_args!(
+                    r#"class="unheard" d="{unheard}" fill="none" stroke="{}" stroke-width="1" stroke-dasharray="2 4""#,
+                    look.colour
+                ),
+            );
         }
         self.draw_arrows(svg, path, &self.lanes.offsets[place], look.colour);
         let middle = self.frame.middle(path.start);
@@ -76,9 +79,8 @@ impl Lines<'_> {
                 let from = runs.last().and_then(|run| run.points.last()).copied();
                 let from = from.unwrap_or(self.frame.middle(leg.from));
                 let next = path.legs.get(place + 1).filter(|next| !next.jump);
-                let to = next.map_or(self.frame.middle(leg.to), |next| {
-                    self.end_of(next, offsets[place + 1], leg.to, None)
-                });
+                let to =
+                    next.map_or(self.frame.middle(leg.to), |next| self.end_of(next, offsets[place + 1], leg.to, None));
                 runs.push(Run { jump: true, points: vec![from, to] });
                 continue;
             }
@@ -133,8 +135,7 @@ impl Lines<'_> {
                     continue;
                 }
                 let back = -sign * long;
-                let corners =
-                    if level { [(back, -half), (back, half)] } else { [(-half, back), (half, back)] };
+                let corners = if level { [(back, -half), (back, half)] } else { [(-half, back), (half, back)] };
                 let [one, other] = corners.map(|(dx, dy)| format!("{} {}", number(x + dx), number(y + dy)));
                 arrows.push_str(&format!("M{} {}L{one}L{other}z", number(x), number(y)));
             }
@@ -142,9 +143,7 @@ impl Lines<'_> {
         if !arrows.is_empty() {
             svg.leaf(
                 "path",
-                format_args!(
-                    r##"class="arrows" d="{arrows}" fill="{colour}" stroke="#fff" stroke-width="0.7""##
-                ),
+                format_args!(r##"class="arrows" d="{arrows}" fill="{colour}" stroke="#fff" stroke-width="0.7""##),
             );
         }
     }

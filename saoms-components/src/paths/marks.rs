@@ -121,8 +121,7 @@ impl Marks<'_> {
         let Some((left, top)) = self.inside(&block, self.frame.corner(block)) else { return };
         let y = if class == "deliver" { top + cell - INSET - size / 2.0 } else { top + INSET + size / 2.0 };
         let taken = cell.min(room);
-        let x = if class == "wait" && taken < cell { left + taken - INSET } else { left + cell - INSET }
-            - size / 2.0;
+        let x = if class == "wait" && taken < cell { left + taken - INSET } else { left + cell - INSET } - size / 2.0;
         glyphs::luggage(svg, x, y, size, class);
         let label = pieces.numbers(2).unwrap_or_else(|| format!("\u{d7}{}", pieces.count));
         let width = 6.0 * label.chars().count() as f64;

@@ -14,19 +14,11 @@ use crate::report::counted;
 const NAMED: usize = 120;
 
 /// The legend of a picture.
-pub(super) fn of(
-    marks: &Marks<'_>,
-    style: &Style,
-    robots: &[Moved<'_>],
-    shades: Option<&Shades>,
-) -> Vec<Group> {
+pub(super) fn of(marks: &Marks<'_>, style: &Style, robots: &[Moved<'_>], shades: Option<&Shades>) -> Vec<Group> {
     let mut groups = vec![Group { heading: "Robots", entries: named(style, robots) }];
     if let Some(shades) = shades {
         let entry = |(shade, text)| Entry::Sign { sign: Sign::Shade(shade), text };
-        groups.push(Group {
-            heading: "How often a block was entered",
-            entries: shades.legend().map(entry).collect(),
-        });
+        groups.push(Group { heading: "How often a block was entered", entries: shades.legend().map(entry).collect() });
     }
     groups.push(Group { heading: "Signs", entries: signs(marks, style, robots) });
     groups
@@ -50,9 +42,7 @@ fn named(style: &Style, robots: &[Moved<'_>]) -> Vec<Entry> {
     let entry = |(place, (number, robot, path)): (usize, &Moved<'_>)| {
         let (name, deeds) = (robot.name.to_string(), deeds(robot, path));
         match style {
-            Style::Lines { .. } => {
-                Entry::Robot { look: look(place), number: number.to_string(), name, deeds }
-            }
+            Style::Lines { .. } => Entry::Robot { look: look(place), number: number.to_string(), name, deeds },
             Style::Density => {
                 let delivered = robot.delivered.count;
                 Entry::Plain { name, deeds: format!("{delivered} delivered \u{b7} {} blocks", path.moves) }

@@ -16,13 +16,7 @@ pub(super) struct Robot {
 
 impl Robot {
     pub(super) fn new(name: &Arc<str>) -> Robot {
-        Robot {
-            name: Arc::clone(name),
-            path: None,
-            charger: None,
-            delivered: Pieces::default(),
-            empty: false,
-        }
+        Robot { name: Arc::clone(name), path: None, charger: None, delivered: Pieces::default(), empty: false }
     }
 }
 
@@ -80,9 +74,7 @@ impl Path {
         self.moves += u64::from(distance);
         let jump = distance > 1;
         match self.legs.last_mut() {
-            Some(leg)
-                if !jump && !leg.jump && leg.to == from && leg.direction() == direction(from, block) =>
-            {
+            Some(leg) if !jump && !leg.jump && leg.to == from && leg.direction() == direction(from, block) => {
                 leg.to = block;
                 0
             }
@@ -128,11 +120,8 @@ mod tests {
         let mut path = Path::new(Block::new(0, 0));
         let way = [(1, 0), (2, 0), (2, 0), (3, 0), (3, 1), (3, 0), (7, 0), (8, 0)];
         let added: usize = way.iter().map(|(x, y)| path.go(Block::new(*x, *y))).sum();
-        let legs: Vec<String> = path
-            .legs
-            .iter()
-            .map(|leg| format!("{}{}{}", leg.from, if leg.jump { "~" } else { "-" }, leg.to))
-            .collect();
+        let legs: Vec<String> =
+            path.legs.iter().map(|leg| format!("{}{}{}", leg.from, if leg.jump { "~" } else { "-" }, leg.to)).collect();
         assert_eq!(legs, ["(0,0)-(3,0)", "(3,0)-(3,1)", "(3,1)-(3,0)", "(3,0)~(7,0)", "(7,0)-(8,0)"]);
         assert_eq!((added, path.moves), (5, 10));
     }

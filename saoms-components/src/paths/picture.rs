@@ -72,11 +72,8 @@ pub(super) fn draw(recording: &Recording, title: &str, outcome: &str) -> String 
     let aside = (1..=ASIDE).find(fits).filter(|_| frame.width() <= 1.4 * frame.height());
     let columns = aside.unwrap_or(((frame.width() / COLUMN) as usize).max(1));
     let bottom = frame.top + frame.height();
-    let (left, top) = if aside.is_some() {
-        (frame.left + frame.width() + 32.0, frame.top)
-    } else {
-        (frame.left, bottom + 28.0)
-    };
+    let (left, top) =
+        if aside.is_some() { (frame.left + frame.width() + 32.0, frame.top) } else { (frame.left, bottom + 28.0) };
     let height = legend::draw(&mut svg, &groups, left, top, columns);
     let right = (frame.left + frame.width())
         .max(left + columns as f64 * COLUMN)
@@ -148,12 +145,8 @@ fn draw_density(svg: &mut Svg, marks: &Marks<'_>, robots: &[Moved<'_>]) -> Shade
     svg.open("g", format_args!(r##"class="last" fill="#000" stroke="#fff""##));
     for (_, robot, path) in robots.iter().filter(|(.., path)| frame.area.contains(path.now)) {
         let (x, y) = frame.middle(path.now);
-        let place = format!(
-            r#"cx="{}" cy="{}" r="{}""#,
-            number(x),
-            number(y),
-            number((frame.cell * 0.2).clamp(1.0, 5.0))
-        );
+        let place =
+            format!(r#"cx="{}" cy="{}" r="{}""#, number(x), number(y), number((frame.cell * 0.2).clamp(1.0, 5.0)));
         svg.open("circle", format_args!("{place}"));
         svg.element("title", format_args!(""), &format!("{}: {}", robot.name, meaning::deeds(robot, path)));
         svg.close();

@@ -68,12 +68,7 @@ impl RobotKnowledge {
         Ok(true)
     }
 
-    fn take_in(
-        &mut self,
-        context: &mut Context<'_>,
-        action: Action,
-        progress: Progress,
-    ) -> Result<Outcome, Failure> {
+    fn take_in(&mut self, context: &mut Context<'_>, action: Action, progress: Progress) -> Result<Outcome, Failure> {
         match progress {
             Progress::Running => Ok(Outcome::Running),
             Progress::Done => {
@@ -129,8 +124,7 @@ impl RobotKnowledge {
                     context.warn(format_args!("could not collect luggage {luggage} at {block}: tries again"));
                     return;
                 }
-                context
-                    .warn(format_args!("could not collect luggage {luggage} at {block}: gives the job up"));
+                context.warn(format_args!("could not collect luggage {luggage} at {block}: gives the job up"));
                 self.untold = self.job.map(|job| (job, LuggageStage::Refused));
                 self.failures = 0;
                 self.drop_job();

@@ -35,8 +35,6 @@ impl RobotKnowledge {
     /// Prints the robot's next block, in the format of the console in the manual's figures.
     pub(super) fn show_move(&self, context: &mut Context<'_>, next: Block) {
         let RobotKnowledge { name, block, .. } = self;
-        context.console(format_args!(
-            "{name} says: My position now is: {block} and my next position will be: {next}"
-        ));
+        context.console(format_args!("{name} says: My position now is: {block} and my next position will be: {next}"));
     }
 }

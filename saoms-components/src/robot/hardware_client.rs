@@ -110,11 +110,7 @@ impl HardwareClient {
     }
 
     /// Takes the hardware out of service; the answer is the robot's position. `None` without hardware.
-    pub(crate) fn retire(
-        &mut self,
-        context: &mut Context<'_>,
-        robot: u32,
-    ) -> Result<Reply<Option<Block>>, Failure> {
+    pub(crate) fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Reply<Option<Block>>, Failure> {
         if !self.wired || !self.entered {
             return Ok(Reply::Answer(None));
         }

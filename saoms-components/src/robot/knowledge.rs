@@ -183,8 +183,7 @@ impl RobotKnowledge {
 
     /// Its request for a healer.
     pub fn situation(&self, kind: CriticalKind) -> CriticalSituation {
-        let (luggage, from, to) =
-            self.job.map_or((0, self.block, self.block), |job| (job.luggage, job.from, job.to));
+        let (luggage, from, to) = self.job.map_or((0, self.block, self.block), |job| (job.luggage, job.from, job.to));
         CriticalSituation {
             critical: self.number,
             block: self.block,

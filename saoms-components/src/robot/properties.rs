@@ -64,8 +64,7 @@ impl RobotProperties {
 
     pub(crate) fn charge_block(&self, number: u32) -> Result<Block, Failure> {
         let row = self.charge_y.map_or_else(|| i32::try_from(number), Ok);
-        row.map(|y| Block::new(self.charge_x, y)).map_err(|_| {
-            Failure::new(format!("robot {number} has no row of this number: give the property `chargeY`"))
-        })
+        row.map(|y| Block::new(self.charge_x, y))
+            .map_err(|_| Failure::new(format!("robot {number} has no row of this number: give the property `chargeY`")))
     }
 }

@@ -8,12 +8,7 @@ use crate::validation::Validate;
 
 impl RobotKnowledge {
     /// True if the message is possible and sent by the robot that it names. Rejected messages are logged.
-    pub(super) fn accepts<M: Validate>(
-        &mut self,
-        message: &M,
-        header: Header,
-        context: &mut Context<'_>,
-    ) -> bool {
+    pub(super) fn accepts<M: Validate>(&mut self, message: &M, header: Header, context: &mut Context<'_>) -> bool {
         self.validator.accepts(message, header, self.routes.map(), context)
     }
 
@@ -21,8 +16,7 @@ impl RobotKnowledge {
     pub(super) fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
         let RobotKnowledge { validator, lists, routes, .. } = self;
         let heard = context.receive(&positions).with_headers();
-        let sound =
-            heard.filter(|(header, position)| validator.accepts(*position, *header, routes.map(), context));
+        let sound = heard.filter(|(header, position)| validator.accepts(*position, *header, routes.map(), context));
         lists.peers.hear(sound.map(|(_, position)| position));
     }
 

@@ -190,8 +190,7 @@ impl Routes {
         self.clock = self.clock.wrapping_add(1);
         let known = self.ways.iter().position(|way| way.distances.to() == Some(to));
         let oldest = || {
-            let ages =
-                self.ways.iter().enumerate().map(|(place, way)| (self.clock.wrapping_sub(way.asked), place));
+            let ages = self.ways.iter().enumerate().map(|(place, way)| (self.clock.wrapping_sub(way.asked), place));
             ages.max().map_or(0, |(_, place)| place)
         };
         let place = known.unwrap_or_else(oldest);

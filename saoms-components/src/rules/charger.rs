@@ -35,7 +35,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             let in_columns = u32::try_from(robot.charger.x).is_ok_and(|column| column < area.map.width());
             let place = if in_columns { robot.charger_place(fleet) } else { robot.column_place(fleet) };
             let finding = Finding::new(place, message);
-            let help = "give it a free block: `chargeX` is its column, `chargeY` its row, by default the robot's number";
+            let help =
+                "give it a free block: `chargeX` is its column, `chargeY` its row, by default the robot's number";
             findings.push(area.explain(finding.help(help), robot.charger));
         }
     }

@@ -92,9 +92,8 @@ fn cut_off(reached: &mut Reached<'_>, piece: &LuggageLine, spot: &Spanned<Spot>)
             return None;
         }
     }
-    let message = format!(
-        "no way on the map leads to {cut} of the {all} free blocks here from the charger of any robot"
-    );
+    let message =
+        format!("no way on the map leads to {cut} of the {all} free blocks here from the charger of any robot");
     let severity = if cut == all { Severity::Error } else { Severity::Warning };
     (cut > 0).then(|| Finding::new(piece.place(spot), message).severity(severity).help(HELP))
 }

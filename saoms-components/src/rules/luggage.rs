@@ -24,9 +24,7 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let area = area(fleet);
-    let says = |component: &ComponentView<'_>| {
-        component.has_broker || component.class.publishes.contains(&AREA.name())
-    };
+    let says = |component: &ComponentView<'_>| component.has_broker || component.class.publishes.contains(&AREA.name());
     let is_said = fleet.misses::<World>() || fleet.components().iter().any(says);
     let (mut findings, mut budget) = (Vec::new(), Budget::default());
     for piece in luggage(fleet) {
@@ -45,12 +43,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     findings
 }
 
-fn check_spot(
-    area: &WorldMap,
-    piece: &LuggageLine,
-    spot: &Spanned<Spot>,
-    budget: &mut Budget,
-) -> Option<Finding> {
+fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget: &mut Budget) -> Option<Finding> {
     let place = piece.place(spot);
     if let Some(block) = spot.value.block() {
         let problem = area.problem(block)?;
@@ -70,8 +63,7 @@ fn check_spot(
     let (x, y) = (area.map.width() - 1, area.map.height() - 1);
     let beyond = !area.map.contains(last);
     beyond.then(|| {
-        let message =
-            format!("the blocks from {first} to {last} reach beyond the map, which ends at ({x},{y})");
+        let message = format!("the blocks from {first} to {last} reach beyond the map, which ends at ({x},{y})");
         Finding::new(place, message).severity(Severity::Warning).help("only blocks of the map are drawn")
     })
 }

@@ -56,8 +56,7 @@ impl WorldMap {
     pub(super) fn explain(&self, finding: Finding, block: Block) -> Finding {
         if let Some(&value) = self.blocked().get(&block) {
             let all = 0..self.properties.blocked[value].len();
-            return finding
-                .label(Place::property("blocked").part(value, all).in_component(self.index), "blocked here");
+            return finding.label(Place::property("blocked").part(value, all).in_component(self.index), "blocked here");
         }
         let map = Place::property("map").in_component(self.index);
         match self.properties.map.as_deref().map(|text| Map::written(text, block)) {

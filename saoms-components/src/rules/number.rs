@@ -23,8 +23,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (robot, other) in sharing(&robots, |robot| robot.number) {
         let name = |robot: &FleetRobot| fleet.components()[robot.index].path;
-        let message =
-            format!("robots `{}` and `{}` both have the number {}", name(other), name(robot), robot.number);
+        let message = format!("robots `{}` and `{}` both have the number {}", name(other), name(robot), robot.number);
         // If both have the same ID, the ID has to change. The checker reports that itself, unless it is told not to.
         let is_same_id = robot.properties.id.trim() == other.properties.id.trim();
         let place = match is_same_id {

@@ -67,9 +67,8 @@ impl Fact for Robots {
 pub(super) fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> bool {
     let mut robots = fleet.indices::<Robot>().peekable();
     let mut components = fleet.components().iter().enumerate();
-    components.any(|(index, component)| {
-        robots.next_if_eq(&index).is_none() && component.class.publishes.contains(&topic)
-    })
+    components
+        .any(|(index, component)| robots.next_if_eq(&index).is_none() && component.class.publishes.contains(&topic))
 }
 
 /// The robots that share a key with an earlier one, each with the first that has the key, in document order.
@@ -91,8 +90,7 @@ pub(super) fn sharing<K: Ord>(
 
 /// Robots that are wired to a world, with the index of the world, sorted by world and then in document order.
 pub(super) fn by_world(robots: &[FleetRobot]) -> Vec<(usize, &FleetRobot)> {
-    let mut wired: Vec<(usize, &FleetRobot)> =
-        robots.iter().filter_map(|robot| Some((robot.world?, robot))).collect();
+    let mut wired: Vec<(usize, &FleetRobot)> = robots.iter().filter_map(|robot| Some((robot.world?, robot))).collect();
     wired.sort_by_key(|(world, _)| *world);
     wired
 }

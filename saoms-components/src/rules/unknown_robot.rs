@@ -82,8 +82,7 @@ fn check_name(
     budget: &mut Budget,
 ) -> Option<Finding> {
     if let Some(number) = names.by_name.get(text).filter(|number| **number != least) {
-        let message =
-            format!("`{text}` stands for robot {least}, and the robot of this name has the number {number}");
+        let message = format!("`{text}` stands for robot {least}, and the robot of this name has the number {number}");
         return Some(Finding::new(place, message).instead(number.to_string()));
     }
     let known = names.between(least, most);

@@ -100,8 +100,7 @@ fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_woken: bool)
         let help = "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for landings and take-offs";
         return Some((first, message, help));
     }
-    let help =
-        "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are woken";
+    let help = "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are woken";
     (!is_woken).then_some((first, message, help))
 }
 

@@ -67,19 +67,14 @@ fn without_robots(fleet: &FleetView<'_>, area: &WorldMap) -> Finding {
 }
 
 /// A finding for a robot without a world if other robots in its composite have one; the innermost composite counts.
-fn beside(
-    fleet: &FleetView<'_>,
-    robot: &FleetRobot,
-    around: &HashMap<&str, (usize, &FleetRobot)>,
-) -> Option<Finding> {
+fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &HashMap<&str, (usize, &FleetRobot)>) -> Option<Finding> {
     let own = composite(fleet.components()[robot.index].path);
     let mut outer = std::iter::successors(Some(own), |path| Some(composite(path.strip_suffix('/')?)));
     let (world, other) = outer.find_map(|path| around.get(path))?;
     let path = fleet.components()[*world].path;
-    let message =
-        "this robot is wired to no world, and others are: neither the world nor they know where it is";
-    let finding = Finding::new(Place::component(robot.index), message)
-        .label(Place::component(other.index), "this one is wired");
+    let message = "this robot is wired to no world, and others are: neither the world nor they know where it is";
+    let finding =
+        Finding::new(Place::component(robot.index), message).label(Place::component(other.index), "this one is wired");
     Some(finding.help(match composite(path) == own {
         true => {
             let name = path.rsplit('/').next().unwrap_or(path);

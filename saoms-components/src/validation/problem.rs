@@ -63,10 +63,7 @@ impl fmt::Display for Problem {
         match *self {
             Problem::NoRobot => formatter.write_str("found robot 0, expected a number from 1 on"),
             Problem::Unknown { robot } => {
-                write!(
-                    formatter,
-                    "found robot {robot}, which did not say that it is there, expected one that did"
-                )
+                write!(formatter, "found robot {robot}, which did not say that it is there, expected one that did")
             }
             Problem::Foreign { robot, speaker } => {
                 write!(formatter, "it is in the name of robot {robot}, for which component {speaker} speaks")
@@ -96,10 +93,7 @@ impl fmt::Display for Problem {
                 write!(formatter, "found a period of {micros} us, expected one of at most a day")
             }
             Problem::Response { robot } => {
-                write!(
-                    formatter,
-                    "found a response with robot {robot}, expected a request, which is of no robot"
-                )
+                write!(formatter, "found a response with robot {robot}, expected a request, which is of no robot")
             }
             Problem::UnknownLuggage => {
                 formatter.write_str("nobody asked for it, expected the number of luggage that waits")

@@ -36,11 +36,8 @@ fn a_state_that_cannot_be_makes_nobody_known() {
 #[test]
 fn robots_are_unknown_only_where_robots_say_that_they_are_there() {
     let here = Block::new(0, 0);
-    let taken = EventLuggage {
-        robot: 3,
-        stage: LuggageStage::Taken,
-        ..EventLuggage::request(1, here, Block::new(1, 0))
-    };
+    let taken =
+        EventLuggage { robot: 3, stage: LuggageStage::Taken, ..EventLuggage::request(1, here, Block::new(1, 0)) };
     let call = RobotState { robot: 4, awake: true, emulate: 0 };
     let mut validator = MessageValidator::default();
     assert_eq!(taken.validate(1, &mut validator, None), Ok(()));

@@ -16,12 +16,7 @@ pub(crate) trait Validate {
     fn about(&self) -> String;
 
     /// Checks the message of this sender.
-    fn validate(
-        &self,
-        sender: u32,
-        validator: &mut MessageValidator,
-        area: Option<&Map>,
-    ) -> Result<(), Problem>;
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem>;
 }
 
 /// The robot of a message, for people.
@@ -36,12 +31,7 @@ impl Validate for Area {
         format!("{} x {} blocks", self.width, self.height)
     }
 
-    fn validate(
-        &self,
-        _sender: u32,
-        _intake: &mut MessageValidator,
-        _area: Option<&Map>,
-    ) -> Result<(), Problem> {
+    fn validate(&self, _sender: u32, _intake: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
         let Area { width, height, .. } = *self;
         match Option::<Map>::from(self.clone()) {
             Some(_) => Ok(()),

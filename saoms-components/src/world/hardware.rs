@@ -69,13 +69,7 @@ impl World {
 }
 
 impl Hardware for World {
-    fn enter(
-        &mut self,
-        _context: &mut Context<'_>,
-        robot: u32,
-        name: String,
-        block: Block,
-    ) -> Result<Block, Failure> {
+    fn enter(&mut self, _context: &mut Context<'_>, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
         let block = self.referee.enter(robot, name, block)?;
         // A robot that starts again has forgotten its luggage, which therefore lies where other robots look for it.
         self.stock.unload(robot, block);

@@ -107,12 +107,7 @@ impl Stock {
         }
     }
 
-    pub(super) fn deposit(
-        &mut self,
-        luggage: u32,
-        robot: u32,
-        block: Block,
-    ) -> Result<HandlingOutcome, String> {
+    pub(super) fn deposit(&mut self, luggage: u32, robot: u32, block: Block) -> Result<HandlingOutcome, String> {
         let piece = self.pieces.get_mut(&luggage).filter(|piece| piece.place == PiecePosition::On(robot));
         let Some(piece) = piece else { return Err(format!("it does not carry luggage {luggage}")) };
         if block != piece.to {

@@ -12,8 +12,8 @@ use saoms_api::{Class, Component, Context, Failure, Publisher, Subscription, Wor
 
 use crate::hardware::Hardware;
 use crate::messages::{
-    AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault,
-    LuggageStage, ROBOT_LIST, RobotList,
+    AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, LuggageStage,
+    ROBOT_LIST, RobotList,
 };
 use crate::validation::{MessageValidator, Problem};
 
@@ -73,9 +73,7 @@ impl Component for World {
         self.collisions = context.publish(&COLLISION)?;
         let area = context.publish(&AREA)?;
         context.send(&area, self.referee.map().into())?;
-        for section in
-            ["luggage.delivered", "luggage.open", "collisions.vertex", "collisions.swap", "stranded"]
-        {
+        for section in ["luggage.delivered", "luggage.open", "collisions.vertex", "collisions.swap", "stranded"] {
             context.count(section, 0);
         }
         Ok(())

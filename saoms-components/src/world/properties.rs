@@ -28,7 +28,8 @@ pub struct WorldProperties {
 }
 
 /// Help for several blocks in one text.
-const SEVERAL: &str = "write several blocks as `many=\"true\"` and a `<value>` for each: `<value>(3,1)</value><value>(0,2)</value>`";
+const SEVERAL: &str =
+    "write several blocks as `many=\"true\"` and a `<value>` for each: `<value>(3,1)</value><value>(0,2)</value>`";
 
 /// Maximum number of wrong blocks that are reported.
 const MOST_WRONG: usize = 1000;
@@ -36,11 +37,11 @@ const MOST_WRONG: usize = 1000;
 impl WorldProperties {
     /// The map with all blocked blocks, or findings about it.
     pub(crate) fn map(&self) -> Result<Map, Vec<Finding>> {
-        let (mut map, mut findings) =
-            match self.map.as_deref().map_or(Ok(Map::new(self.width, self.height)), Map::read) {
-                Ok(map) => (Some(map), Vec::new()),
-                Err(faults) => (None, faults.into_iter().map(|fault| fault.finding("map", 0)).collect()),
-            };
+        let (mut map, mut findings) = match self.map.as_deref().map_or(Ok(Map::new(self.width, self.height)), Map::read)
+        {
+            Ok(map) => (Some(map), Vec::new()),
+            Err(faults) => (None, faults.into_iter().map(|fault| fault.finding("map", 0)).collect()),
+        };
         for (value, text) in self.blocked.iter().enumerate() {
             if findings.len() >= MOST_WRONG {
                 break;

@@ -162,8 +162,7 @@ impl Referee {
             return;
         }
         let over = |body: &Body| body.moving.is_some_and(|(_, until)| until <= now);
-        let done: Vec<u32> =
-            self.bodies.iter().filter(|(_, body)| over(body)).map(|(robot, _)| *robot).collect();
+        let done: Vec<u32> = self.bodies.iter().filter(|(_, body)| over(body)).map(|(robot, _)| *robot).collect();
         for robot in done {
             self.progress(robot, now);
         }
@@ -198,8 +197,7 @@ impl Referee {
     }
 
     fn collide(&mut self, robot: u32, from: Block, to: Block) -> Option<Collision> {
-        let exchanges =
-            |meeting: &Meeting| meeting.other == robot && meeting.block == from && meeting.from == to;
+        let exchanges = |meeting: &Meeting| meeting.other == robot && meeting.block == from && meeting.from == to;
         if let Some(place) = self.meetings.iter().position(exchanges) {
             let meeting = self.meetings.remove(place);
             return Some(Collision { robot: meeting.entered, other: robot, block: from, swap: true });
@@ -224,9 +222,8 @@ impl Referee {
             *holders = holders.saturating_sub(1);
         }
         if !self.meetings.is_empty() {
-            self.meetings.retain(|meeting| {
-                meeting.block != block || (meeting.entered != robot && meeting.other != robot)
-            });
+            self.meetings
+                .retain(|meeting| meeting.block != block || (meeting.entered != robot && meeting.other != robot));
         }
     }
 

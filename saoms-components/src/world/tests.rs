@@ -56,11 +56,7 @@ fn a_robot_that_starts_again_is_where_it_was() {
     referee.begin_move(1, block(2, 0), later).unwrap().unwrap();
     assert_eq!(referee.enter(1, name(1), block(0, 0)), Ok(block(1, 0)));
     assert_eq!(referee.is_running(1), Ok(false));
-    assert_eq!(
-        referee.enter(2, name(2), block(2, 0)),
-        Ok(block(2, 0)),
-        "what the stopped robot held is free"
-    );
+    assert_eq!(referee.enter(2, name(2), block(2, 0)), Ok(block(2, 0)), "what the stopped robot held is free");
 }
 
 #[test]
@@ -149,9 +145,7 @@ fn a_robot_that_is_out_of_order_stays_until_it_starts_again() {
     referee.begin_move(1, block(1, 0), later).unwrap().unwrap();
     referee.retire(1).unwrap();
     referee.settle(later);
-    assert!(
-        referee.is_retired(1) && referee.is_retired_at(block(0, 0)) && !referee.is_retired_at(block(1, 0))
-    );
+    assert!(referee.is_retired(1) && referee.is_retired_at(block(0, 0)) && !referee.is_retired_at(block(1, 0)));
     assert_eq!(referee.enter(1, name(1), block(0, 0)), Ok(block(0, 0)));
     assert!(!referee.is_retired(1));
 }
@@ -172,16 +166,9 @@ fn luggage_that_the_world_has_yet_to_hear_of_is_waited_for() {
 fn a_number_belongs_to_one_robot() {
     let mut referee = Referee::new(Map::read("...").unwrap());
     assert_eq!(referee.enter(7, "A7".to_owned(), block(0, 0)), Ok(block(0, 0)));
-    assert_eq!(
-        referee.enter(7, "A7".to_owned(), block(0, 0)),
-        Ok(block(0, 0)),
-        "a restarted robot is still there"
-    );
+    assert_eq!(referee.enter(7, "A7".to_owned(), block(0, 0)), Ok(block(0, 0)), "a restarted robot is still there");
     let failure = referee.enter(7, "B7".to_owned(), block(1, 0)).unwrap_err();
-    assert_eq!(
-        failure.message(),
-        "robots `A7` and `B7` both have the number 7: give one of them another `number`"
-    );
+    assert_eq!(failure.message(), "robots `A7` and `B7` both have the number 7: give one of them another `number`");
 }
 
 #[test]
@@ -194,11 +181,7 @@ fn luggage_that_is_given_up_is_no_open_work() {
     assert!(!stock.is_settled());
     stock.give_up(8);
     assert!(stock.is_settled());
-    assert_eq!(
-        stock.collect(7, 1, from, |_| false),
-        Ok(HandlingOutcome::Handled),
-        "it can be brought all the same"
-    );
+    assert_eq!(stock.collect(7, 1, from, |_| false), Ok(HandlingOutcome::Handled), "it can be brought all the same");
     assert_eq!(stock.deposit(7, 1, to), Ok(HandlingOutcome::Delivered));
     assert!(stock.is_settled());
 }

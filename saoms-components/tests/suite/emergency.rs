@@ -108,8 +108,7 @@ impl Emergency<'_> {
         let world = fleet.add::<World>("World", fast, zero, times, &[]);
         fleet.add::<MasterEnvironment>("MasterEnvironment", fast, zero, &[], &[]);
         fleet.add::<Environment>("Environment", fast, zero, &[("scenario", self.scenario)], &[]);
-        let strokes: Vec<String> =
-            self.strokes.iter().map(|(time, robot)| format!("{time} {robot}")).collect();
+        let strokes: Vec<String> = self.strokes.iter().map(|(time, robot)| format!("{time} {robot}")).collect();
         if !strokes.is_empty() {
             fleet.add::<Fate>("Fate", fast, zero, &[("strokes", &strokes.join(";"))], &[]);
         }
@@ -253,15 +252,15 @@ fn what_nobody_is_left_for_is_given_up() {
 #[test]
 fn a_broken_robot_is_in_nobodys_way() {
     // Robots 1 and 2 break at the luggage and at its destination.
-    let scenario =
-        "at 100ms luggage (0,1) to (5,5); at 100ms luggage (6,6) to (0,2); at 100ms luggage (0,1) to (0,2)";
+    let scenario = "at 100ms luggage (0,1) to (5,5); at 100ms luggage (6,6) to (0,2); at 100ms luggage (0,1) to (0,2)";
     let strokes = vec![(50, 1), (50, 2)];
     Emergency { scenario, strokes, ..Emergency::default() }.check();
 }
 
 #[test]
 fn a_landing_awakes_robots_that_sleep_again_afterwards() {
-    let scenario = "at 1s landing 4; at 2s luggage (3,1) to (3,6); at 2s luggage (6,4) to (1,4); at 20s luggage (5,5) to (6,6)";
+    let scenario =
+        "at 1s landing 4; at 2s luggage (3,1) to (3,6); at 2s luggage (6,4) to (1,4); at 20s luggage (5,5) to (6,6)";
     let asleep = &[2, 3, 4];
     let fleet = Emergency { scenario, robots: 4, asleep, counter: 50, ..Emergency::default() }.check();
     let told = |what: &str| fleet.log.iter().filter(|line| line.ends_with(what)).count();

@@ -186,8 +186,7 @@ impl Fleet {
     fn deliver(&mut self, sender: usize, messages: Vec<(u32, SharedMessage)>) {
         for (publisher, message) in messages {
             let topic = &mut self.topics[self.seats[sender].publishes[publisher as usize]];
-            let key_of =
-                |message: &SharedMessage| (message.header().sender, message.key().unwrap_or_default());
+            let key_of = |message: &SharedMessage| (message.header().sender, message.key().unwrap_or_default());
             let key = key_of(&message);
             for (reader, inbox) in &topic.readers {
                 let inbox = &mut self.seats[*reader].inboxes[*inbox];
@@ -334,8 +333,7 @@ impl Host for View<'_> {
         let Some((provider, service)) = target else { return Err(CallError::NotWired { reference: name }) };
         let mut component = self.fleet.components[provider].take().expect("no component calls itself");
         let mut view = View { fleet: self.fleet, index: provider };
-        let result =
-            component.serve(&mut Invocation { service: &service, call }, &mut Context::new(&mut view, &[]));
+        let result = component.serve(&mut Invocation { service: &service, call }, &mut Context::new(&mut view, &[]));
         self.fleet.components[provider] = Some(component);
         result
     }

@@ -125,9 +125,7 @@ fn differences(
     };
     for wire in &after.references {
         let same = before.references.iter().any(|known| {
-            known.reference == wire.reference
-                && known.interface == wire.interface
-                && same_targets(known, wire)
+            known.reference == wire.reference && known.interface == wire.interface && same_targets(known, wire)
         });
         if !same {
             differences.push(Difference::Reference(wire.reference.clone()));

@@ -85,8 +85,7 @@ fn plan(current: &str, wanted: &str) -> String {
     let mut words: Vec<String> = plan.remove.iter().map(|place| format!("-{}", old(place))).collect();
     words.extend(plan.replace.iter().map(|replacement| {
         assert_eq!(old(&replacement.current), new(&replacement.wanted));
-        let why: Vec<String> =
-            replacement.differences.iter().map(|difference| format!("{difference:?}")).collect();
+        let why: Vec<String> = replacement.differences.iter().map(|difference| format!("{difference:?}")).collect();
         format!("~{}({})", new(&replacement.wanted), why.join(" "))
     }));
     words.extend(plan.add.iter().map(|place| format!("+{}", new(place))));
@@ -125,10 +124,7 @@ fn what_differs_is_replaced_and_says_why() {
     let (before, mut after) = (assembly("A belt"), assembly("A belt"));
     assert!(ChangePlan::between(&members(&before), &members(&after)).is_empty());
     after.components[0].task.as_mut().unwrap().period = Duration::from_millis(11);
-    assert_eq!(
-        ChangePlan::between(&members(&before), &members(&after)).replace[0].differences,
-        [Difference::Task]
-    );
+    assert_eq!(ChangePlan::between(&members(&before), &members(&after)).replace[0].differences, [Difference::Task]);
 }
 
 #[test]

@@ -151,11 +151,8 @@ impl Bus {
     /// Notes the numbers of observers outside the fleet that want the messages of a topic.
     pub fn observe(&mut self, topic: TopicId, observers: &[u32]) {
         let known = &mut self.topics[topic.0 as usize].observers;
-        let more: Vec<u32> = observers
-            .iter()
-            .copied()
-            .filter(|one| known.as_ref().is_none_or(|known| !known.contains(one)))
-            .collect();
+        let more: Vec<u32> =
+            observers.iter().copied().filter(|one| known.as_ref().is_none_or(|known| !known.contains(one))).collect();
         if !more.is_empty() {
             *known = Some(known.iter().flat_map(|known| known.iter().copied()).chain(more).collect());
         }
@@ -178,12 +175,7 @@ impl Bus {
         self.topics[topic.0 as usize].name_hash
     }
 
-    fn user(
-        &mut self,
-        name: &str,
-        declared: &TopicDeclaration<'_>,
-        by: &Arc<str>,
-    ) -> Result<TopicId, Mismatch> {
+    fn user(&mut self, name: &str, declared: &TopicDeclaration<'_>, by: &Arc<str>) -> Result<TopicId, Mismatch> {
         if let Some(&id) = self.names.get(name) {
             let topic = &mut self.topics[id.0 as usize];
             topic.join(declared, by)?;

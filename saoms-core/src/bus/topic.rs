@@ -90,11 +90,7 @@ impl BusTopic {
     fn mismatch(&self, declared: &TopicDeclaration<'_>) -> Mismatch {
         let describe = |message: &str, kind: TopicKind, schema: &str| {
             if self.message == declared.message && !agree(&self.schema, declared.schema) {
-                format!(
-                    "{} messages `{message}` with the fields {}",
-                    kind.name(),
-                    schema.trim().replace('\n', ", ")
-                )
+                format!("{} messages `{message}` with the fields {}", kind.name(), schema.trim().replace('\n', ", "))
             } else {
                 format!("{} messages `{message}`", kind.name())
             }

@@ -75,8 +75,7 @@ impl Faults {
 
     /// The fault of a message that is sent on this topic at this time.
     pub(crate) fn of_message(&self, topic: &str, now: Time) -> Option<MessageFaultKind> {
-        let applies =
-            |fault: &&MessageFault| fault.topic == topic && (fault.from..fault.until).contains(&now);
+        let applies = |fault: &&MessageFault| fault.topic == topic && (fault.from..fault.until).contains(&now);
         self.messages.iter().find(applies).map(|fault| fault.kind)
     }
 

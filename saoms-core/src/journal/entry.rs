@@ -96,9 +96,7 @@ impl JournalEntry {
     /// A value of the record by its name.
     pub fn value(&self, name: &str) -> Option<Value> {
         match &self.what {
-            Content::Noted(record) => {
-                record.values().find(|(known, _)| *known == name).map(|(_, value)| json(value))
-            }
+            Content::Noted(record) => record.values().find(|(known, _)| *known == name).map(|(_, value)| json(value)),
             Content::Read { values, .. } => values.get(name).cloned(),
         }
     }
@@ -106,9 +104,7 @@ impl JournalEntry {
     /// All values by name.
     pub fn values(&self) -> Map<String, Value> {
         match &self.what {
-            Content::Noted(record) => {
-                record.values().map(|(name, value)| (name.to_owned(), json(value))).collect()
-            }
+            Content::Noted(record) => record.values().map(|(name, value)| (name.to_owned(), json(value))).collect(),
             Content::Read { values, .. } => values.clone(),
         }
     }

@@ -119,11 +119,7 @@ impl RecordQueue {
 
     /// Waits for records and takes all of them. Returns the number of records that were lost for want of room, and the
     /// end of the run if these are the last ones. `joined` gets the components that joined the running fleet.
-    pub(crate) fn next(
-        &self,
-        entries: &mut Vec<JournalEntry>,
-        joined: &mut Vec<ComponentName>,
-    ) -> (u64, Option<Time>) {
+    pub(crate) fn next(&self, entries: &mut Vec<JournalEntry>, joined: &mut Vec<ComponentName>) -> (u64, Option<Time>) {
         let mut reader = self.reader.lock().unwrap_or_else(PoisonError::into_inner);
         let Reader { batch, components } = &mut *reader;
         batch.clear();
@@ -141,8 +137,7 @@ impl RecordQueue {
             self.emptied.notify_all();
         }
         drop(waiting);
-        components
-            .extend(members.iter().map(|(named, _)| (Arc::from(named.name.as_str()), LoopNames::default())));
+        components.extend(members.iter().map(|(named, _)| (Arc::from(named.name.as_str()), LoopNames::default())));
         joined.clear();
         joined.extend(members.into_iter().filter_map(|(named, later)| later.then_some(named)));
         for (component, place, name) in names {

@@ -64,9 +64,8 @@ impl fmt::Display for JournalReadError {
             JournalReadError::Malformed { line, column, message } => {
                 write!(formatter, "line {line}, column {column}: {message}")
             }
-            JournalReadError::Other => formatter.write_str(
-                "this is neither a report of `saoms run --report` nor a file of `saoms run --journal`",
-            ),
+            JournalReadError::Other => formatter
+                .write_str("this is neither a report of `saoms run --report` nor a file of `saoms run --journal`"),
             JournalReadError::NoJournal => formatter.write_str("this report holds no journal"),
         }
     }
@@ -137,8 +136,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
     let head = lines.next().map_or("", |(_, line)| line);
     let mut head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
     if head.journal != 1 {
-        let message =
-            format!("this file has the form {}, which a newer version of the program writes", head.journal);
+        let message = format!("this file has the form {}, which a newer version of the program writes", head.journal);
         return Err(incomplete(1, message));
     }
     let (mut entries, mut end) = (Vec::new(), None);
@@ -174,8 +172,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
         entries,
         ..Journal::default()
     };
-    let end =
-        end.map(|end| time(end.time_s)).transpose().map_err(|wrong| incomplete(1, wrong.to_string()))?;
+    let end = end.map(|end| time(end.time_s)).transpose().map_err(|wrong| incomplete(1, wrong.to_string()))?;
     Ok(JournalDocument { journal, components: head.components, end, is_report: false })
 }
 

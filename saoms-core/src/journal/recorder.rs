@@ -169,12 +169,8 @@ impl Recorder {
                 self.push(stamp, Phase::Symptom, fingerprint, cause, false, record)
             }
         };
-        *self.chain() = CauseChain {
-            because: Cause::default(),
-            symptom: Some(reference),
-            decision: None,
-            newest: reference.id,
-        };
+        *self.chain() =
+            CauseChain { because: Cause::default(), symptom: Some(reference), decision: None, newest: reference.id };
     }
 
     /// The newest change of one of these entries by another loop.
@@ -187,9 +183,8 @@ impl Recorder {
 
     fn decision(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
         let cause = self.chain().reason();
-        let before = self
-            .loop_state()
-            .and_then(|state| state.last.decision.filter(|_| state.last.symptom_id() == cause));
+        let before =
+            self.loop_state().and_then(|state| state.last.decision.filter(|_| state.last.symptom_id() == cause));
         let reference = match before.filter(|before| before.fingerprint == fingerprint) {
             Some(before) => RecordRef { at: None, ..before },
             None => self.push(stamp, Phase::Decision, fingerprint, cause, false, record),

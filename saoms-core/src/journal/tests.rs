@@ -78,10 +78,7 @@ fn files_that_are_no_journal_are_told_apart() {
          EOF while parsing an object"
     );
     let newer = HEAD.replace("\"journal\":1", "\"journal\":2");
-    assert_eq!(
-        refused(&newer),
-        "line 1: this file has the form 2, which a newer version of the program writes"
-    );
+    assert_eq!(refused(&newer), "line 1: this file has the form 2, which a newer version of the program writes");
 }
 
 #[test]
@@ -93,10 +90,7 @@ fn a_wrong_record_is_told_at_its_line() {
             record.replace("effect", "affect"),
             "line 2, column 53: this is no record of a journal: unknown variant `affect`",
         ),
-        (
-            record.replace("1.0", "-1.0"),
-            "line 2: this is no record of a journal: `-1` is no time of a run in seconds",
-        ),
+        (record.replace("1.0", "-1.0"), "line 2: this is no record of a journal: `-1` is no time of a run in seconds"),
         (
             record.replace("\"text\"", "\"cause\":1,\"text\""),
             "line 2: this is no record of a journal: record 1 cannot follow",
@@ -122,10 +116,8 @@ fn the_file_of_a_run_that_goes_on_may_end_in_the_middle_of_a_record() {
 
 #[test]
 fn records_that_are_missing_in_a_file_are_counted() {
-    let text = format!(
-        "{HEAD}\n{}\n",
-        r#"{"id":3,"time_s":1.0,"component":"A","phase":"effect","text":"acts","cause":2}"#
-    );
+    let text =
+        format!("{HEAD}\n{}\n", r#"{"id":3,"time_s":1.0,"component":"A","phase":"effect","text":"acts","cause":2}"#);
     let journal = read(&text).unwrap().journal;
     assert_eq!((journal.records, journal.lost), (3, 2));
     let why = journal.why("A", None).unwrap();
@@ -151,16 +143,11 @@ fn what_was_done_for_one_reason_is_one_chain_and_what_was_known_is_told() {
     );
     let told = |at: Option<u64>| {
         let why = journal.why("A", at.map(|at| Time::from_nanos(at * 1_000_000_000))).unwrap();
-        let texts = |entries: &[&super::JournalEntry]| {
-            entries.iter().map(|entry| entry.text()).collect::<Vec<_>>().join(", ")
-        };
-        let chains: Vec<_> = why
-            .chains
-            .iter()
-            .map(|chain| format!("{} <- {}", texts(&chain.acts), texts(&chain.reasons)))
-            .collect();
-        let known: Vec<_> =
-            why.knowledge.iter().map(|known| format!("{}={}", known.entry, known.shown())).collect();
+        let texts =
+            |entries: &[&super::JournalEntry]| entries.iter().map(|entry| entry.text()).collect::<Vec<_>>().join(", ");
+        let chains: Vec<_> =
+            why.chains.iter().map(|chain| format!("{} <- {}", texts(&chain.acts), texts(&chain.reasons))).collect();
+        let known: Vec<_> = why.knowledge.iter().map(|known| format!("{}={}", known.entry, known.shown())).collect();
         format!("{:?}: {} | {}", why.time.map(|time| time.as_secs_f64()), chains.join("; "), known.join(" "))
     };
     let acts = "Some(2.0): next: none -> (1,2), lights up <- goes, hears, calls; rests <- ";

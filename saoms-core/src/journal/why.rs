@@ -119,9 +119,8 @@ impl Journal {
         let ends = told.iter().filter(|entry| !told.iter().any(|other| other.cause() == entry.id()));
         let mut chains: Vec<Chain<'a>> = Vec::new();
         for act in ends {
-            let together = chains
-                .iter_mut()
-                .find(|chain| act.cause() != Cause::default() && chain.acts[0].cause() == act.cause());
+            let together =
+                chains.iter_mut().find(|chain| act.cause() != Cause::default() && chain.acts[0].cause() == act.cause());
             match together {
                 Some(chain) => chain.acts.push(act),
                 None => {

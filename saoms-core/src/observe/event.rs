@@ -110,11 +110,7 @@ impl fmt::Display for Occurrence {
             Occurrence::Left => formatter.write_str("has shut down"),
             Occurrence::Failed { message, restart: None } => write!(formatter, "failed: {message}"),
             Occurrence::Failed { message, restart: Some(pause) } => {
-                write!(
-                    formatter,
-                    "failed and is restarted in {}: {message}",
-                    saoms_api::host::format_duration(*pause)
-                )
+                write!(formatter, "failed and is restarted in {}: {message}", saoms_api::host::format_duration(*pause))
             }
             Occurrence::Restarted { number } => write!(formatter, "restarted ({number})"),
             Occurrence::Replaced { continued: true } => {
@@ -132,10 +128,7 @@ impl fmt::Display for Occurrence {
                 write!(formatter, "lost {count} messages of topic `{topic}`, whose queue was full")
             }
             Occurrence::Overrun { missed } => {
-                write!(
-                    formatter,
-                    "stopped, because executions could not start in time: {missed} would be left out"
-                )
+                write!(formatter, "stopped, because executions could not start in time: {missed} would be left out")
             }
             Occurrence::Abandoned => formatter.write_str("did not end in time and is left behind"),
         }

@@ -15,11 +15,7 @@ pub(crate) struct RecordDelivery {
 
 /// Delivers records as they come, until the queue is closed and empty. `failed` is called with the first failure of
 /// each observer, when it happens; after that, its records are only counted.
-pub(crate) fn deliver_records(
-    queue: &RecordQueue,
-    observers: &Observers,
-    failed: impl Fn(&Failure),
-) -> RecordDelivery {
+pub(crate) fn deliver_records(queue: &RecordQueue, observers: &Observers, failed: impl Fn(&Failure)) -> RecordDelivery {
     let mut listeners: Vec<_> = observers.of_journal().map(|observer| (observer, 0_u64, true)).collect();
     let mut delivery = RecordDelivery::default();
     let (mut entries, mut joined) = (Vec::new(), Vec::new());
@@ -33,9 +29,7 @@ pub(crate) fn deliver_records(
                 continue;
             }
             let result = contained(|| observer.records(&records));
-            if let Err(failure) =
-                result.unwrap_or_else(|| Err(Failure::new("an observer of the journal panicked")))
-            {
+            if let Err(failure) = result.unwrap_or_else(|| Err(Failure::new("an observer of the journal panicked"))) {
                 *missing += entries.len() as u64;
                 *is_well = false;
                 failed(&failure);

@@ -7,8 +7,8 @@ use saoms_api::host::Phase;
 use saoms_api::{Cause, Failure, Level, Time, record};
 
 use super::{
-    Beginning, EventQueue, Interest, JournalFile, Observer, Observers, Occurrence, Records, RunEvent,
-    RunProgress, deliver_records,
+    Beginning, EventQueue, Interest, JournalFile, Observer, Observers, Occurrence, Records, RunEvent, RunProgress,
+    deliver_records,
 };
 use crate::journal::{ComponentName, RecordQueue, Recorder, Stamp};
 

@@ -39,11 +39,9 @@ impl fmt::Display for PluginError {
                 "plugin `{}` is no shared library: expected what `cargo build` makes of a crate with `crate-type = [\"cdylib\"]`, an ELF file",
                 path.display()
             ),
-            PluginError::Broken { path, message } => write!(
-                out,
-                "plugin `{}` is damaged or cut off ({message}): build or copy it again",
-                path.display()
-            ),
+            PluginError::Broken { path, message } => {
+                write!(out, "plugin `{}` is damaged or cut off ({message}): build or copy it again", path.display())
+            }
             PluginError::Machine { path, found } => write!(
                 out,
                 "plugin `{}` was built for {found}, this program runs on {}: build it with `cargo build --target {}-unknown-linux-gnu`",

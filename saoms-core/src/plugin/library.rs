@@ -11,11 +11,8 @@ use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, Plug
 
 /// Loads a library. It is never unloaded.
 pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
-    let unloadable = |message: String| PluginError::Unloadable {
-        path: path.to_owned(),
-        package: metadata.package.clone(),
-        message,
-    };
+    let unloadable =
+        |message: String| PluginError::Unloadable { path: path.to_owned(), package: metadata.package.clone(), message };
     // A name without a slash would be searched for in the system's folders.
     let absolute = std::path::absolute(path).map_err(|error| unloadable(error.to_string()))?;
     let copy = match copied {
@@ -34,30 +31,20 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
     let library: &'static Library = Box::leak(Box::new(library));
     let table = {
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
-        let entry: Symbol<'_, EntryPoint> =
-            unsafe { library.get(metadata.entry.as_bytes()) }.map_err(|error| {
-                unloadable(format!("it has no function `{}`: {}", metadata.entry, with_causes(&error)))
-            })?;
+        let entry: Symbol<'_, EntryPoint> = unsafe { library.get(metadata.entry.as_bytes()) }
+            .map_err(|error| unloadable(format!("it has no function `{}`: {}", metadata.entry, with_causes(&error))))?;
         // SAFETY: the same.
         unsafe { entry(VERSION) }
     };
     // SAFETY: by the same rules the table is null or constant; what a table of this version begins with is there.
     let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it gives no table".to_owned()))?;
-    let disagrees = |message: String| {
-        unloadable(format!("its code and its metadata are not from the same build: {message}"))
-    };
+    let disagrees =
+        |message: String| unloadable(format!("its code and its metadata are not from the same build: {message}"));
     if table.version != VERSION {
-        return Err(disagrees(format!(
-            "its code has version {} of the boundary, expected {VERSION}",
-            table.version
-        )));
+        return Err(disagrees(format!("its code has version {} of the boundary, expected {VERSION}", table.version)));
     }
     if table.size < size_of::<PluginTable>() {
-        return Err(disagrees(format!(
-            "its table has {} bytes, expected {}",
-            table.size,
-            size_of::<PluginTable>()
-        )));
+        return Err(disagrees(format!("its table has {} bytes, expected {}", table.size, size_of::<PluginTable>())));
     }
     let counts = [
         ("classes", table.class_count, metadata.classes.len()),

@@ -62,9 +62,10 @@ impl<'de> Deserialize<'de> for RuleMetadata {
         let Written { code: id, name, meaning, severity, rule, judges_parts, prevents_start } =
             Written::deserialize(from)?;
         let severities = [Severity::Note, Severity::Warning, Severity::Error];
-        let severity = severities.into_iter().find(|known| known.name() == severity).ok_or_else(|| {
-            D::Error::custom(format!("`{severity}` is none of `note`, `warning` and `error`"))
-        })?;
+        let severity = severities
+            .into_iter()
+            .find(|known| known.name() == severity)
+            .ok_or_else(|| D::Error::custom(format!("`{severity}` is none of `note`, `warning` and `error`")))?;
         let code = kept(&id, &name, &meaning, severity, rule.as_deref());
         Ok(RuleMetadata { code, judges_parts, prevents_start })
     }
@@ -76,8 +77,7 @@ fn kept(id: &str, name: &str, meaning: &str, severity: Severity, rule: Option<&s
     static KNOWN: Mutex<Vec<&'static Code>> = Mutex::new(Vec::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let same = |code: &&Code| {
-        (code.id, code.name, code.meaning) == (id, name, meaning)
-            && (code.severity, code.rule) == (severity, rule)
+        (code.id, code.name, code.meaning) == (id, name, meaning) && (code.severity, code.rule) == (severity, rule)
     };
     if let Some(same) = known.iter().find(|code| same(code)) {
         return same;

@@ -106,8 +106,7 @@ impl Plugin {
 
     /// Loads its code, at the first call.
     fn code(&self) -> Result<&Code, Failure> {
-        let code =
-            self.code.get_or_init(|| library::load(&self.path, self.copied, &self.metadata, &self.text));
+        let code = self.code.get_or_init(|| library::load(&self.path, self.copied, &self.metadata, &self.text));
         code.as_ref().map_err(|error| Failure::new(error.to_string()))
     }
 }

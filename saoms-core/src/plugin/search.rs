@@ -40,11 +40,9 @@ impl Search {
     /// The classes of a registry together with those of all libraries that are found, and what is wrong with these.
     pub fn classes(&self, mut registry: Registry) -> Classes {
         let found = self.run();
-        let left_out =
-            found.left_out.iter().map(|error| PluginFault { is_error: false, text: error.to_string() });
+        let left_out = found.left_out.iter().map(|error| PluginFault { is_error: false, text: error.to_string() });
         let mut problems: Vec<PluginFault> = left_out.collect();
-        problems
-            .extend(found.errors.iter().map(|error| PluginFault { is_error: true, text: error.to_string() }));
+        problems.extend(found.errors.iter().map(|error| PluginFault { is_error: true, text: error.to_string() }));
         for plugin in &found.plugins {
             if let Err(error) = plugin.register(&mut registry) {
                 let text = match error {

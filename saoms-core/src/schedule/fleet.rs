@@ -71,11 +71,7 @@ pub struct UnknownComponent {
 impl fmt::Display for UnknownComponent {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.passive {
-            write!(
-                formatter,
-                "component `{}` is passive: it has no executions that could be scheduled",
-                self.name
-            )
+            write!(formatter, "component `{}` is passive: it has no executions that could be scheduled", self.name)
         } else {
             write!(formatter, "the fleet has no component `{}`", self.name)
         }
@@ -118,17 +114,12 @@ impl RunningFleet {
         // From here on, dropping the fleet ends the run.
         let handle = Handle { shared };
         if let Err(error) = &awake {
-            let text = format!(
-                "processors that sleep will be slow to wake, /dev/cpu_dma_latency cannot be held: {error}"
-            );
+            let text =
+                format!("processors that sleep will be slow to wake, /dev/cpu_dma_latency cannot be held: {error}");
             handle.shared.note(Level::Warning, text);
         }
-        let mut fleet = RunningFleet {
-            handle,
-            _awake: awake.unwrap_or_default(),
-            deliverer: Some(deliverer),
-            journal: None,
-        };
+        let mut fleet =
+            RunningFleet { handle, _awake: awake.unwrap_or_default(), deliverer: Some(deliverer), journal: None };
         fleet.journal = spawn_journal(&fleet.handle.shared).map_err(StartError::Thread)?;
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
@@ -219,9 +210,8 @@ impl RunningFleet {
 fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDelivery>>> {
     let Some(records) = shared.lock().records.clone() else { return Ok(None) };
     let shared = Arc::clone(shared);
-    let deliver = move || {
-        deliver_records(&records, &shared.observers, |failure| shared.note(Level::Error, failure.to_string()))
-    };
+    let deliver =
+        move || deliver_records(&records, &shared.observers, |failure| shared.note(Level::Error, failure.to_string()));
     thread::Builder::new().name("saoms-journal".to_owned()).spawn(deliver).map(Some)
 }
 

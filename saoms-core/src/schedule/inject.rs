@@ -207,14 +207,7 @@ impl Engine {
         }
     }
 
-    fn deliver_injection(
-        &mut self,
-        time: u64,
-        topic: TopicId,
-        bytes: Vec<u8>,
-        key: Option<u64>,
-        text: String,
-    ) {
+    fn deliver_injection(&mut self, time: u64, topic: TopicId, bytes: Vec<u8>, key: Option<u64>, text: String) {
         let name = Arc::clone(self.bus.name(topic));
         let cause = self.record_outside(time, text);
         let header = Header { sender: OUTSIDE, sent: Time::from_nanos(time), cause };

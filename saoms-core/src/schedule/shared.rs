@@ -110,10 +110,7 @@ impl Shared {
         }
         // Both are sequentially consistent: either the thread that closes the queue sees the lower count, or it is
         // woken.
-        if is_delivering
-            && self.delivering.fetch_sub(1, Ordering::SeqCst) == 1
-            && self.closing.load(Ordering::SeqCst)
-        {
+        if is_delivering && self.delivering.fetch_sub(1, Ordering::SeqCst) == 1 && self.closing.load(Ordering::SeqCst) {
             self.end.wake();
         }
         if wake {

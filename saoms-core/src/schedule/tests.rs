@@ -64,10 +64,7 @@ fn panics_are_contained_with_message_and_place() {
     assert_eq!(contained(|| 5), Ok(5));
     let text = |failure: Result<(), saoms_api::Failure>| failure.unwrap_err().to_string();
     let plain = text(contained(|| panic!("plain")));
-    assert!(
-        plain.starts_with("panicked at ") && plain.contains("tests.rs:") && plain.ends_with(": plain"),
-        "{plain}"
-    );
+    assert!(plain.starts_with("panicked at ") && plain.contains("tests.rs:") && plain.ends_with(": plain"), "{plain}");
     let number = 5;
     assert!(text(contained(|| panic!("number {number}"))).ends_with(": number 5"));
     let inner = text(contained(|| {

@@ -202,8 +202,7 @@ impl Ends {
             "console" => context.console(format_args!("{rest}")),
             "time" => context.info(format_args!("now {} due {}", context.now(), context.due())),
             "number" => {
-                let (number, name, period) =
-                    (context.execution(), context.name().to_owned(), context.period());
+                let (number, name, period) = (context.execution(), context.name().to_owned(), context.period());
                 context.info(format_args!("{name} {number} every {period:?}"));
             }
             "random" => {
@@ -240,10 +239,8 @@ impl Ends {
                 context.send(&self.put, Entry { key, value: number() })?;
             }
             "read" => {
-                let read: Vec<_> = context
-                    .receive(&self.read)
-                    .map(|entry| format!("{}={}", entry.key, entry.value))
-                    .collect();
+                let read: Vec<_> =
+                    context.receive(&self.read).map(|entry| format!("{}={}", entry.key, entry.value)).collect();
                 context.info(format_args!("reads [{}]", read.join(", ")));
             }
             "own" => context.send(&self.own, Own { value: number() })?,

@@ -93,10 +93,7 @@ fn a_change_that_cannot_be_prepared_leaves_everything_as_it_was() {
          Y actor period=10 first=[fail no room]";
     let (before, hash) = run(fleet, &[], 50);
     let (told, changed) = run(fleet, &[(22, wanted)], 50);
-    assert!(
-        told.starts_with("component `Y` of class `actor` could not start: no room\n"),
-        "\n--- told:\n{told}"
-    );
+    assert!(told.starts_with("component `Y` of class `actor` could not start: no room\n"), "\n--- told:\n{told}");
     let attempts = ["could not start", " X: hello", " X: no"];
     let rest = told.lines().filter(|line| !attempts.iter().any(|attempt| line.contains(attempt)));
     assert_eq!(rest.collect::<Vec<_>>(), before.lines().collect::<Vec<_>>());
@@ -196,8 +193,7 @@ fn one_that_was_removed_can_come_again_and_a_new_period_counts_from_the_last_exe
     let done = apply(&fleet.handle(), "A actor period=4 each=[time]").unwrap();
     assert_eq!(done.replaced, [("A".to_owned(), Takeover::Began)]);
     let report = fleet.run_to_end();
-    let times: Vec<_> =
-        diary.lines().lines().filter_map(|line| Some(line.split_once("due ")?.1.to_owned())).collect();
+    let times: Vec<_> = diary.lines().lines().filter_map(|line| Some(line.split_once("due ")?.1.to_owned())).collect();
     let expected = ["0.000", "0.010", "0.035", "0.039", "0.043", "0.047", "0.051", "0.055", "0.059"];
     assert_eq!(times, expected.map(|time| format!("{time} s")));
     assert_eq!(of(&report, "A").executions, 9);

@@ -49,10 +49,8 @@ fn nobody_voting_is_no_end() {
 
 #[test]
 fn in_virtual_time_a_fleet_without_scheduled_components_ends() {
-    let (fleet, diary) = start(
-        "A actor period=10 task=A each=[3: unschedule]\nB callee",
-        saoms_core::schedule::Settings::simulated(1),
-    );
+    let (fleet, diary) =
+        start("A actor period=10 task=A each=[3: unschedule]\nB callee", saoms_core::schedule::Settings::simulated(1));
     let report = fleet.unwrap().run_to_end();
     assert_eq!(
         outcome(&report),
@@ -104,10 +102,8 @@ fn a_stop_before_time_begins_ends_the_run_at_once() {
 
 #[test]
 fn a_component_that_does_not_return_ends_a_virtual_run_and_is_named() {
-    let settings = saoms_core::schedule::Settings {
-        virtual_watchdog: std::time::Duration::from_millis(60),
-        ..simulated(1000)
-    };
+    let settings =
+        saoms_core::schedule::Settings { virtual_watchdog: std::time::Duration::from_millis(60), ..simulated(1000) };
     let (report, diary) = run(
         "A actor period=10 last=[log last]
          B actor period=10 each=[2: sleep 1500] last=[log never]
@@ -163,17 +159,13 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
         })
     );
     assert_eq!(serde_json::from_value::<saoms_core::report::RunReport>(json).unwrap(), report);
-    assert_eq!(
-        (report.count("parcels.delivered"), report.count("lost"), report.count("map.colour")),
-        (1, 0, 0)
-    );
+    assert_eq!((report.count("parcels.delivered"), report.count("lost"), report.count("map.colour")), (1, 0, 0));
 }
 
 #[test]
 fn what_is_sent_at_the_end_overflows_no_queue() {
-    let senders: String = (0..20)
-        .map(|n| format!("A{n} actor publishes=TALK subscribes=TALK queue=4 last=[say bye]\n"))
-        .collect();
+    let senders: String =
+        (0..20).map(|n| format!("A{n} actor publishes=TALK subscribes=TALK queue=4 last=[say bye]\n")).collect();
     let (report, _) = run(&senders, simulated(50));
     assert_eq!(outcome(&report), "Elapsed after 0.05 s");
     assert!(report.components.iter().all(|component| component.dropped == 0 && component.messages.sent == 1));
@@ -189,10 +181,8 @@ fn a_program_that_listens_slowly_does_not_make_a_component_look_stuck() {
             }
         }
     }
-    let settings = saoms_core::schedule::Settings {
-        virtual_watchdog: std::time::Duration::from_secs(1),
-        ..simulated(70_000)
-    };
+    let settings =
+        saoms_core::schedule::Settings { virtual_watchdog: std::time::Duration::from_secs(1), ..simulated(70_000) };
     let assembly = crate::fleet::assembly("A actor period=1 each=[log a]");
     let slow = std::sync::Arc::new(Slow(std::sync::atomic::AtomicUsize::new(0)));
     let fleet = saoms_core::schedule::RunningFleet::start(assembly, settings, vec![slow.clone()]).unwrap();

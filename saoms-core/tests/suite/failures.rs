@@ -20,8 +20,7 @@ fn an_error_stops_the_component_and_fails_the_run_and_the_others_go_on() {
 
 #[test]
 fn a_panic_is_a_failure_with_its_place() {
-    let (report, diary) =
-        run("A actor period=10 each=[1: panic out of paper]\nB actor period=10", simulated(40));
+    let (report, diary) = run("A actor period=10 each=[1: panic out of paper]\nB actor period=10", simulated(40));
     let told = diary.lines();
     assert!(told.starts_with("[0.010 s] A: failed: panicked at "), "{told}");
     assert!(told.contains("actor.rs:") && told.ends_with(": out of paper\n"), "{told}");

@@ -71,11 +71,7 @@ fn a_late_message_keeps_the_order_of_time() {
         run(fleet, Settings { faults, ..simulated(100) }).0.trace_hash.unwrap()
     };
     assert_eq!(hash(3), hash(3));
-    let told = run(
-        fleet,
-        Settings { faults: talk(MessageFaultKind::Late(Duration::from_millis(3))), ..simulated(20) },
-    );
-    let times: Vec<_> =
-        told.1.lines().lines().map(|line| line.split(' ').next().unwrap().to_owned()).collect();
+    let told = run(fleet, Settings { faults: talk(MessageFaultKind::Late(Duration::from_millis(3))), ..simulated(20) });
+    let times: Vec<_> = told.1.lines().lines().map(|line| line.split(' ').next().unwrap().to_owned()).collect();
     assert_eq!(times.join("\n"), unindent("[0.000\n[0.007\n[0.014"));
 }

@@ -11,9 +11,7 @@ use saoms_api::host::{PropertyValue, Registration, parse_duration};
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use saoms_core::report::{ComponentReport, RunReport};
 use saoms_core::schedule::{RunningFleet, Settings, StartError};
-use saoms_lang::assembly::{
-    Assembly, ComponentSpec, Loss, Overrun, Restart, TaskProperties, Wire, WireTarget,
-};
+use saoms_lang::assembly::{Assembly, ComponentSpec, Loss, Overrun, Restart, TaskProperties, Wire, WireTarget};
 use saoms_lang::registry::Registry;
 
 use crate::actor::{Actor, Callee};
@@ -39,8 +37,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
     let (path, rest) = line.split_once(' ').unwrap();
     let (class, rest) = rest.split_once(' ').unwrap_or((rest, ""));
     let class = Arc::clone(registry.get(class).unwrap());
-    let task =
-        [("ID", path), ("period", "100ms"), ("queue", "16")].map(|(name, value)| (name.into(), value.into()));
+    let task = [("ID", path), ("period", "100ms"), ("queue", "16")].map(|(name, value)| (name.into(), value.into()));
     let mut task = TaskProperties::from_values(&task).unwrap();
     let wire = |reference: &str, interface: &str| Wire {
         reference: reference.to_owned(),
@@ -131,8 +128,7 @@ impl Diary {
     /// The events as lines, without the starts and ends that every component has.
     pub(crate) fn lines(&self) -> String {
         let events = self.events.lock().unwrap();
-        let told =
-            events.iter().filter(|event| !matches!(event.what, Occurrence::Started | Occurrence::Left));
+        let told = events.iter().filter(|event| !matches!(event.what, Occurrence::Started | Occurrence::Left));
         told.fold(String::new(), |mut text, event| {
             writeln!(text, "{event}").unwrap();
             text

@@ -60,8 +60,7 @@ fn messages_take_effect_at_their_time_before_those_who_are_due_then() {
 fn messages_are_checked_against_the_schema_of_their_topic() {
     let (fleet, _) = start(FLEET, simulated(30));
     let fleet = fleet.unwrap();
-    let refused =
-        |topic: &str, content: Value| say(&fleet.handle(), topic, content, None).unwrap_err().to_string();
+    let refused = |topic: &str, content: Value| say(&fleet.handle(), topic, content, None).unwrap_err().to_string();
     assert_eq!(refused("TALKS", json!({})), "the fleet has no topic `TALKS`; did you mean `TALK`?");
     assert_eq!(refused("other", json!({})), "the fleet has no topic `other`; its topics are: TALK, TABLE");
     assert_eq!(

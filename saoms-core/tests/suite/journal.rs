@@ -159,17 +159,11 @@ fn the_oldest_records_of_each_component_are_overwritten_and_counted() {
     for component in ["Gate", "Robot"] {
         let left = journal.of(component);
         assert!((65..=128).contains(&left.len()), "{component}: {}", left.len());
-        assert_eq!(
-            left.last().map(|entry| entry.time() > saoms_api::Time::from_nanos(99_000_000_000)),
-            Some(true)
-        );
+        assert_eq!(left.last().map(|entry| entry.time() > saoms_api::Time::from_nanos(99_000_000_000)), Some(true));
     }
     let early = saoms_api::Time::from_nanos(1_000_000_000);
     let error = journal.why("Robot", Some(early)).unwrap_err();
-    assert!(
-        error.to_string().starts_with("what it did then was overwritten: its journal reaches back to "),
-        "{error}"
-    );
+    assert!(error.to_string().starts_with("what it did then was overwritten: its journal reaches back to "), "{error}");
 }
 
 /// A folder and the path of a file in it.
@@ -191,8 +185,7 @@ fn the_file_holds_every_record_in_the_form_of_the_report() {
     assert_eq!(document.journal.records, report.journal.records);
     assert_eq!((document.journal.lost, report.journal.lost), (0, 0));
     assert_eq!(document.end, Some(saoms_api::Time::from_nanos(100_000_000_000)));
-    let names: Vec<_> =
-        document.components.iter().map(|one| (one.name.as_str(), one.id.as_deref())).collect();
+    let names: Vec<_> = document.components.iter().map(|one| (one.name.as_str(), one.id.as_deref())).collect();
     assert_eq!(names, [("Gate", Some("Gate")), ("Robot", Some("Robot"))]);
     let report = serde_json::to_string_pretty(&whole).unwrap();
     let document = read(&report).unwrap();

@@ -50,8 +50,7 @@ fn read(topic: &'static str, fleet: &str, settings: Settings) -> (String, Option
     (told.clone(), report.trace_hash)
 }
 
-const FLEET: &str =
-    "A actor period=10 publishes=TALK first=[say begins] each=[0: say one; 2: say two] last=[say ends]
+const FLEET: &str = "A actor period=10 publishes=TALK first=[say begins] each=[0: say one; 2: say two] last=[say ends]
      B actor period=10 delay=5 publishes=[TALK TABLE] rename=TALK/elsewhere each=[say unheard; put 1 2]
      C actor period=10 subscribes=TALK each=[hear]";
 

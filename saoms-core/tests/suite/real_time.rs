@@ -12,9 +12,7 @@ use crate::fleet::{Diary, of, outcome, real, run, start};
 
 /// Number of times that the fleet had to go on without a slow component.
 fn takeovers(diary: &Diary, name: &str) -> usize {
-    diary.count(|event| {
-        event.component.as_deref() == Some(name) && matches!(event.what, Occurrence::Slow { .. })
-    })
+    diary.count(|event| event.component.as_deref() == Some(name) && matches!(event.what, Occurrence::Slow { .. }))
 }
 
 /// Waits for something to happen, up to ten seconds.
@@ -36,10 +34,7 @@ fn executions_follow_the_clock() {
         // Each due execution has run or is counted as missed; the last one may have been so late that later ones are
         // counted, too.
         let component = of(&report, name);
-        assert!(
-            component.executions <= due && component.executions + component.missed >= due,
-            "{component:?}"
-        );
+        assert!(component.executions <= due && component.executions + component.missed >= due, "{component:?}");
     }
 }
 
@@ -86,8 +81,7 @@ fn executions_do_not_overlap_and_those_left_out_are_counted() {
 
 #[test]
 fn catch_up_leaves_no_execution_out() {
-    let (report, _) =
-        run("A actor period=5 overrun=catchUp each=[2: sleep 100]\nB actor period=5", real(400));
+    let (report, _) = run("A actor period=5 overrun=catchUp each=[2: sleep 100]\nB actor period=5", real(400));
     let a = of(&report, "A");
     assert_eq!(a.missed, 0);
     assert!(a.executions > 40, "{a:?}");
@@ -248,8 +242,7 @@ fn the_end_waits_for_executions_and_lets_everybody_shut_down() {
 #[test]
 fn who_does_not_end_in_time_is_left_behind_when_the_time_of_the_run_is_over() {
     let settings = Settings { grace: Duration::from_millis(100), ..real(100) };
-    let (report, _) =
-        run("A actor period=10 each=[sleep 20000]\nB actor period=10 last=[log last]", settings);
+    let (report, _) = run("A actor period=10 each=[sleep 20000]\nB actor period=10 last=[log last]", settings);
     assert_eq!(report.outcome.status, RunStatus::Failed);
     assert!(report.outcome.reasons.iter().any(|why| why.contains('A')), "{:?}", report.outcome.reasons);
 }
@@ -307,8 +300,7 @@ fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
     }
     let assembly = crate::fleet::assembly("A actor period=5 each=[log a]");
     let fleet =
-        saoms_core::schedule::RunningFleet::start(assembly, real(60), vec![std::sync::Arc::new(Clumsy)])
-            .unwrap();
+        saoms_core::schedule::RunningFleet::start(assembly, real(60), vec![std::sync::Arc::new(Clumsy)]).unwrap();
     assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed);
 }
 

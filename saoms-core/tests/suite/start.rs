@@ -71,8 +71,7 @@ fn if_one_fails_those_before_it_shut_down_in_reverse_order_and_nothing_starts() 
 #[test]
 fn values_that_do_not_fit_together_and_panics_are_named() {
     assert!(
-        refused("A actor\nB actor made=[too big]")
-            .ends_with("component `B` of class `actor` could not start: too big")
+        refused("A actor\nB actor made=[too big]").ends_with("component `B` of class `actor` could not start: too big")
     );
     let panics = refused("A actor first=[panic lost a screw]");
     assert!(panics.contains("component `A` of class `actor` could not start: panicked at "), "{panics}");
@@ -85,10 +84,7 @@ fn a_provider_that_panics_when_called_is_the_one_that_is_named() {
         "A actor peer=B first=[ask a] last=[log last]
          B callee called=[panic short circuit] last=[log never]",
     );
-    assert!(
-        told.contains("component `B` of class `callee` could not start: component `B` failed: panicked"),
-        "{told}"
-    );
+    assert!(told.contains("component `B` of class `callee` could not start: component `B` failed: panicked"), "{told}");
 }
 
 #[test]
@@ -135,8 +131,7 @@ fn components_that_do_not_run_on_startup_wait() {
 
 #[test]
 fn a_fleet_of_thousands_starts_and_ends() {
-    let fleet: String =
-        (0..3000).map(|n| format!("A{n} actor period=10 publishes=OWN subscribes=TALK\n")).collect();
+    let fleet: String = (0..3000).map(|n| format!("A{n} actor period=10 publishes=OWN subscribes=TALK\n")).collect();
     let fleet = RunningFleet::start(assembly(&fleet), simulated(20), Vec::new()).unwrap();
     let report = fleet.run_to_end();
     assert_eq!(report.periods, 6000);

@@ -20,10 +20,7 @@ fn the_same_seed_gives_the_same_run() {
 
 #[test]
 fn the_hash_is_the_same_on_every_machine() {
-    assert_eq!(
-        hash("A actor period=10 publishes=TALK each=[say hello; say-random]", 1, 100),
-        "023a0c30061cfb20"
-    );
+    assert_eq!(hash("A actor period=10 publishes=TALK each=[say hello; say-random]", 1, 100), "023a0c30061cfb20");
 }
 
 #[test]

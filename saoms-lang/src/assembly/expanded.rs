@@ -23,11 +23,7 @@ use crate::syntax::NewElement;
 /// What would be told again of that composite and is lowered in those that it comes from is lowered in it as well, for
 /// the same reason: `found` are the diagnostics of the check that made the assembly. Of the wiring report, which that
 /// check may not have made, it keeps what `like` says of the fleet.
-pub fn expanded<'d>(
-    assembly: &Assembly,
-    like: &Composite,
-    found: impl IntoIterator<Item = &'d Diagnostic>,
-) -> String {
+pub fn expanded<'d>(assembly: &Assembly, like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> String {
     let paths: Vec<&str> = assembly.components.iter().map(|component| component.path.as_str()).collect();
     let names = names(&paths);
     let lacks_target = |component: &ComponentSpec| {
@@ -42,14 +38,11 @@ pub fn expanded<'d>(
         let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
             let uri = |target: &super::WireTarget| format!("{}/{}", names[target.component], target.service);
             let targets: Vec<String> = wire.targets.iter().map(uri).collect();
-            NewElement::new("reference")
-                .with("name", wire.reference.as_str())
-                .with("target", targets.join(" "))
+            NewElement::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "))
         });
         component(one, name, references)
     });
-    let mut root =
-        root(like).children(severities(like, found)).children(components).declare("", version.namespace());
+    let mut root = root(like).children(severities(like, found)).children(components).declare("", version.namespace());
     root.hoist();
     let mut text = String::new();
     root.write(0, &mut text);
@@ -64,9 +57,9 @@ fn severities<'d>(like: &Composite, found: impl IntoIterator<Item = &'d Diagnost
         let node = NewElement::new("s:severity").with("code", code).with("level", level.name());
         node.with("reason", reason).declare("s", SAOMS_NAMESPACE)
     };
-    let lowered = lowered(found).into_iter().map(|(code, set)| {
-        severity(code, set.level, set.reason.as_deref().unwrap_or("set on the command line"))
-    });
+    let lowered = lowered(found)
+        .into_iter()
+        .map(|(code, set)| severity(code, set.level, set.reason.as_deref().unwrap_or("set on the command line")));
     lowered.chain(of_wiring.map(|rule| severity(&rule.code, rule.level.value, &rule.reason))).collect()
 }
 
@@ -84,8 +77,7 @@ fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'st
     let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
     let mut told: HashSet<&'static str> = HashSet::new();
     for one in found.into_iter().filter(|one| codes::outlives_expansion(one.code)) {
-        let Some(set) = one.set.as_ref().filter(|set| set.level != SeverityLevel::Set(Severity::Error))
-        else {
+        let Some(set) = one.set.as_ref().filter(|set| set.level != SeverityLevel::Set(Severity::Error)) else {
             told.insert(one.code.id);
             continue;
         };
@@ -117,20 +109,13 @@ fn names(paths: &[&str]) -> Vec<String> {
 }
 
 /// A component of a class, with these references.
-fn component(
-    component: &ComponentSpec,
-    name: &str,
-    references: impl IntoIterator<Item = NewElement>,
-) -> NewElement {
+fn component(component: &ComponentSpec, name: &str, references: impl IntoIterator<Item = NewElement>) -> NewElement {
     let node = NewElement::new("component").with("name", name);
     let node = match component.path == name {
         true => node,
         false => node.with("s:path", component.path.as_str()).declare("s", SAOMS_NAMESPACE),
     };
-    node.child(implementation(component))
-        .children(valued(component))
-        .children(references)
-        .children(loops(component))
+    node.child(implementation(component)).children(valued(component)).children(references).children(loops(component))
 }
 
 /// The attributes that name the class of a component.
@@ -178,9 +163,7 @@ fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<NewElement> 
     match value {
         PropertyValue::Text(text) => vec![node().text(text)],
         PropertyValue::Complex(parts) => vec![node().children(inside(parts))],
-        PropertyValue::Many(values) => {
-            values.iter().flat_map(|value| part(name, value, is_in_none)).collect()
-        }
+        PropertyValue::Many(values) => values.iter().flat_map(|value| part(name, value, is_in_none)).collect(),
     }
 }
 

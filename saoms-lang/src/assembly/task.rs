@@ -96,10 +96,7 @@ pub enum Loss {
 /// The properties that say more about `restart`: without it they have no effect, and with it `expand` writes them.
 pub(crate) const OF_RESTART: [&str; 2] = ["restartBackoff", "restartLimit"];
 
-#[expect(
-    clippy::expect_used,
-    reason = "the declaration is a constant, which every test of the checker reads"
-)]
+#[expect(clippy::expect_used, reason = "the declaration is a constant, which every test of the checker reads")]
 static DECLARATIONS: LazyLock<Vec<PropertyDeclaration>> = LazyLock::new(|| {
     // Proof: the derive writes the text while this compiles, from the struct above, and no input reaches it; any test
     // that checks a periodic component reads it.
@@ -165,20 +162,9 @@ mod tests {
     fn a_composite_states_what_is_required_and_what_is_not_the_default() {
         let task = |more: &[(&str, &str)]| stated(&[&[("ID", "a"), ("period", "1000")], more].concat());
         assert_eq!(task(&[]), "ID=a period=1s");
-        assert_eq!(
-            task(&[("delay", "0"), ("useJMS", "true"), ("url", ""), ("queue", "01024")]),
-            "ID=a period=1s"
-        );
-        let given = [
-            ("loss", "accept"),
-            ("topicRename", " A , b ::C,d"),
-            ("overrun", "catchUp"),
-            ("deadline", "0.5s"),
-        ];
-        assert_eq!(
-            task(&given),
-            "ID=a period=1s topicRename=A,b::C,d overrun=catchUp deadline=500ms loss=accept"
-        );
+        assert_eq!(task(&[("delay", "0"), ("useJMS", "true"), ("url", ""), ("queue", "01024")]), "ID=a period=1s");
+        let given = [("loss", "accept"), ("topicRename", " A , b ::C,d"), ("overrun", "catchUp"), ("deadline", "0.5s")];
+        assert_eq!(task(&given), "ID=a period=1s topicRename=A,b::C,d overrun=catchUp deadline=500ms loss=accept");
         assert_eq!(task(&[("restartLimit", "7")]), "ID=a period=1s");
         let restart = task(&[("restartLimit", "7"), ("restart", "onFailure")]);
         assert_eq!(restart, "ID=a period=1s restart=onFailure restartBackoff=100ms restartLimit=7");

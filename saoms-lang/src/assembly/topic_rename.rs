@@ -96,11 +96,9 @@ pub(crate) fn read(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
 
 /// Pairs with other separators, as they are meant.
 pub(crate) fn pairs_of(text: &str) -> Option<String> {
-    let is_name =
-        |name: &str| !name.is_empty() && !name.contains([':', ',', '=', '-', ';', '>', '<', '&', '|']);
+    let is_name = |name: &str| !name.is_empty() && !name.contains([':', ',', '=', '-', ';', '>', '<', '&', '|']);
     let pair = |pair: &str| {
-        let (old, new) =
-            [",", "->", "=", ":", ";"].iter().find_map(|separator| pair.split_once(separator))?;
+        let (old, new) = [",", "->", "=", ":", ";"].iter().find_map(|separator| pair.split_once(separator))?;
         let (old, new) = (old.trim(), new.trim());
         (is_name(old) && is_name(new)).then(|| format!("{old},{new}"))
     };

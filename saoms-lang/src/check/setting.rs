@@ -25,12 +25,7 @@ impl Setting {
     /// assert!(Setting::parse("--set", "speed", &mut sources, &mut diagnostics).is_none());
     /// assert!(diagnostics.has_errors());
     /// ```
-    pub fn parse(
-        option: &str,
-        text: &str,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Self> {
+    pub fn parse(option: &str, text: &str, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Self> {
         let file = sources.add(option, text);
         let piece = |start: usize, piece: &str| {
             let trimmed = piece.trim();

@@ -40,9 +40,7 @@ impl Variable {
         diagnostics: &mut Diagnostics,
     ) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
-        for named in
-            contribution.composites().iter().flat_map(|one| &one.properties).filter_map(|one| one.env())
-        {
+        for named in contribution.composites().iter().flat_map(|one| &one.properties).filter_map(|one| one.env()) {
             if all.iter().any(|known| known.name == named.as_str()) {
                 continue;
             }

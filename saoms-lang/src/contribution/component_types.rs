@@ -43,8 +43,7 @@ pub(super) fn paths(component: &ComponentElement, composite: &Composite) -> Vec<
             };
             let mut named: Vec<String> = names.iter().filter_map(|name| attribute(name)).collect();
             // A bundle of which there are several versions has one description for each: `CustomerV2`.
-            let version =
-                attribute("bundleVersion").and_then(|version| Some(version.split('.').next()?.to_owned()));
+            let version = attribute("bundleVersion").and_then(|version| Some(version.split('.').next()?.to_owned()));
             if let (Some(bundle), Some(version)) = (attribute("bundle"), version) {
                 named.push(format!("{bundle}V{version}"));
             }
@@ -52,13 +51,11 @@ pub(super) fn paths(component: &ComponentElement, composite: &Composite) -> Vec<
         }
     };
     let is_plain = |name: &String| {
-        !name.is_empty()
-            && Path::new(name).components().all(|part| matches!(part, std::path::Component::Normal(_)))
+        !name.is_empty() && Path::new(name).components().all(|part| matches!(part, std::path::Component::Normal(_)))
     };
     let of_script = |name: String| {
         let path = PathBuf::from(&name);
-        let has_ending = matches!(implementation.kind, ImplementationKind::Other { .. })
-            && name.contains('/')
+        let has_ending = matches!(implementation.kind, ImplementationKind::Other { .. }) && name.contains('/')
             || path.extension().is_some_and(|ending| ending.len() <= 6 && !name.contains('/'));
         if has_ending { path.with_extension(ENDING) } else { PathBuf::from(format!("{name}.{ENDING}")) }
     };

@@ -53,13 +53,11 @@ impl Finder {
             }
             let shown = quoted(namespace);
             let mut all = others.iter();
-            let holder = all.find(|(other, _)| {
-                self.candidates.admit(1) && self.index.namespaces(other).contains(namespace)
-            });
+            let holder =
+                all.find(|(other, _)| self.candidates.admit(1) && self.index.namespaces(other).contains(namespace));
             if let Some((holder, _)) = holder {
                 let holder = quoted(&holder.display().to_string());
-                let message =
-                    format!("the contribution in {holder} has the namespace {shown}, and does not export it");
+                let message = format!("the contribution in {holder} has the namespace {shown}, and does not export it");
                 let help = format!("write `<export namespace=\"{namespace}\"/>` in its description");
                 diagnostics.push(Diagnostic::new(&codes::EXCHANGE, entry.at, message).help(help));
                 continue;
@@ -84,9 +82,7 @@ fn holds_others(root: &Path) -> bool {
             let (path, is_folder) = (entry.path(), entry.file_type().is_ok_and(|kind| kind.is_dir()));
             let ending = path.extension().map(|ending| ending.to_string_lossy().into_owned());
             let is_usual = ending.is_some_and(|ending| USUAL.contains(&ending.as_str()))
-                || path
-                    .file_name()
-                    .is_some_and(|name| name.to_string_lossy().starts_with("sca-contribution"));
+                || path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("sca-contribution"));
             match is_folder {
                 true => waiting.push(path),
                 false if left == 0 || !is_usual && !is_of_definitions(&path) => return true,

@@ -66,13 +66,10 @@ impl Finder {
                 self.exchange(description, &root, max_size, context.diagnostics);
             }
             let deployables = description.iter().flat_map(|description| &description.deployables);
-            let mut deployed: Vec<Option<PathBuf>> = deployables
-                .map(|one| contribution.find(one, &mut self.index, &root, context.diagnostics))
-                .collect();
+            let mut deployed: Vec<Option<PathBuf>> =
+                deployables.map(|one| contribution.find(one, &mut self.index, &root, context.diagnostics)).collect();
             let inside = root.join(DEPLOYABLES);
-            deployed.extend(
-                contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some),
-            );
+            deployed.extend(contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some));
             contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
         }
         let is_empty = fleets.is_empty() && !has_definitions && !context.diagnostics.has_errors();
@@ -113,19 +110,11 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
 }
 
 /// Reports a folder that has no composites, or too many files to look at all of them.
-fn unlisted(
-    folder: &Path,
-    is_empty: bool,
-    index: &Index,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) {
+fn unlisted(folder: &Path, is_empty: bool, index: &Index, sources: &mut Sources, diagnostics: &mut Diagnostics) {
     let (message, help) = match (index.is_complete(), is_empty) {
         (true, false) => return,
         (true, true) => ("a directory without composites", "the names of composites end with `.composite`"),
-        (false, _) => {
-            ("a directory with too many files in it and below", "name the directories in it one by one")
-        }
+        (false, _) => ("a directory with too many files in it and below", "name the directories in it one by one"),
     };
     let file = sources.add(folder.display().to_string(), "");
     let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);
@@ -146,8 +135,7 @@ impl Files {
     /// leads to no file is no composite, and reported.
     fn read(all: Vec<PathBuf>, context: &mut ReadContext<'_>) -> Self {
         let max_size = context.max_size;
-        let (mut scratch, mut untold) =
-            (Sources::with_open(context.sources.open().clone()), Diagnostics::new());
+        let (mut scratch, mut untold) = (Sources::with_open(context.sources.open().clone()), Diagnostics::new());
         let (mut paths, mut composites, mut places) = (Vec::with_capacity(all.len()), Vec::new(), Vec::new());
         for path in all {
             let file = read(&path, max_size, &mut scratch, &mut untold);
@@ -201,17 +189,15 @@ impl Files {
         let local = deployable.local();
         let namespaces = deployable.namespace.as_ref().map(std::slice::from_ref);
         // Also a file that could be read no further than its first tag.
-        let found =
-            index.find(root, namespaces, local).filter(|found| self.paths.binary_search(found).is_ok());
+        let found = index.find(root, namespaces, local).filter(|found| self.paths.binary_search(found).is_ok());
         if found.is_some() {
             return found;
         }
         let all = self.read.composites();
         let name = quoted(&deployable.name);
         let (at, prefix) = (deployable.name.location, deployable.name.as_str().strip_suffix(local));
-        let of_namespace = |one: &&Composite| {
-            deployable.namespace.as_ref().is_none_or(|namespace| namespace == one.namespace())
-        };
+        let of_namespace =
+            |one: &&Composite| deployable.namespace.as_ref().is_none_or(|namespace| namespace == one.namespace());
         let message = format!("the contribution has no composite {name}");
         // Where there are none at all, they are put beside it by those who make the contribution of this folder and
         // others.
@@ -244,12 +230,7 @@ impl Files {
     }
 
     /// The composites that run together, and every other composite that none here names.
-    fn fleets(
-        self,
-        mut deployed: Vec<PathBuf>,
-        description: Option<&Description>,
-        fleets: &mut Vec<FolderFleet>,
-    ) {
+    fn fleets(self, mut deployed: Vec<PathBuf>, description: Option<&Description>, fleets: &mut Vec<FolderFleet>) {
         let all = self.read.composites();
         let links: Vec<Vec<usize>> = all
             .iter()

@@ -148,10 +148,8 @@ impl Imports {
                 lacking.push(format!("write `<import namespace=\"{}\"/>` in {own}", escaped(namespace)));
             }
             if !is_exported {
-                let description =
-                    quoted(&description::path_in(&holder).unwrap_or(holder).display().to_string());
-                lacking
-                    .push(format!("write `<export namespace=\"{}\"/>` in {description}", escaped(namespace)));
+                let description = quoted(&description::path_in(&holder).unwrap_or(holder).display().to_string());
+                lacking.push(format!("write `<export namespace=\"{}\"/>` in {description}", escaped(namespace)));
             }
             hints.push(format!("the contribution in {other} has it: {}", lacking.join(", and ")));
         }
@@ -159,12 +157,7 @@ impl Imports {
     }
 
     /// The contributions that that in `root` may import a namespace from, with the namespaces that they export.
-    pub(super) fn around(
-        &mut self,
-        root: &Path,
-        namespace: &str,
-        max_size: u64,
-    ) -> Vec<(PathBuf, Vec<String>)> {
+    pub(super) fn around(&mut self, root: &Path, namespace: &str, max_size: u64) -> Vec<(PathBuf, Vec<String>)> {
         let (sources, diagnostics) = (&mut Sources::new(), &mut Diagnostics::new());
         let context = &mut ReadContext { max_size, sources, diagnostics };
         _ = self.description(root, context);

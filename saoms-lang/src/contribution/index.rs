@@ -119,12 +119,7 @@ impl Index {
     }
 
     /// The file of the composite with this name in one of these namespaces, or in any, as a file in `folder` means it.
-    pub(super) fn find(
-        &mut self,
-        folder: &Path,
-        namespaces: Option<&[String]>,
-        local: &str,
-    ) -> Option<PathBuf> {
+    pub(super) fn find(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
         let wanted = (folder.to_owned(), namespaces.map(<[String]>::to_vec), local.to_owned());
         if let Some(known) = self.found.get(&wanted) {
             return known.clone();

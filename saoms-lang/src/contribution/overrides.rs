@@ -28,17 +28,14 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
     let mut key = head.next()?;
     let report = |at: Location, message: String| Diagnostic::new(&codes::OVERRIDES, at, message);
     if !KEYS.contains(&key.as_str()) {
-        let one = report(
-            key.location,
-            format!("the first column is {}, and has to be `index` or `name`", quoted(&key)),
-        );
+        let one =
+            report(key.location, format!("the first column is {}, and has to be `index` or `name`", quoted(&key)));
         diagnostics.push(match nearest(&key, KEYS) {
             Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), key.location, meant),
             None => one.help("it says which replica a line is about, the other columns are properties"),
         });
         // As the lines look.
-        let has_number =
-            lines.as_slice().first().and_then(|line| line.first()?.parse::<i64>().ok()).is_some();
+        let has_number = lines.as_slice().first().and_then(|line| line.first()?.parse::<i64>().ok()).is_some();
         let near = nearest(&key, KEYS);
         if near.is_none() && !has_number {
             // Nobody knows what they are about, or whether this is a table at all.
@@ -74,9 +71,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
             diagnostics.push(one.help(match (of.contains([';', '\t']), count > properties.len()) {
                 (true, _) => "the values of a line stand between commas",
                 (_, true) => "a value that holds a comma stands between two `\"`",
-                _ => {
-                    "a column that says nothing about a replica is an empty value: end the line with its comma"
-                }
+                _ => "a column that says nothing about a replica is an empty value: end the line with its comma",
             }));
             if !of.contains([';', '\t']) {
                 rows.push(Row { key: of, values: vec![None; properties.len()] });
@@ -175,8 +170,7 @@ fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (
     let end = end_of(inside);
     let (behind, place) = trimmed(inside, end);
     if !behind.is_empty() {
-        let one =
-            Diagnostic::new(&codes::OVERRIDES, place, format!("{} behind a closing `\"`", quoted(behind)));
+        let one = Diagnostic::new(&codes::OVERRIDES, place, format!("{} behind a closing `\"`", quoted(behind)));
         diagnostics.push(one.help("a `\"` in a value between two of them is written twice"));
     }
     let span = Span::new(start as u32 + 1, inside as u32 - 1).in_file(file);

@@ -9,9 +9,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, q
 use crate::limits::OFFERED_NAMES;
 use crate::load::description::Kind;
 use crate::load::{ReadContext, STANDARD_INPUT, load_component_type, load_file};
-use crate::model::{
-    ComponentElement, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin,
-};
+use crate::model::{ComponentElement, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
 
 /// Reads the composites that those of a contribution include or implement components with, and what those name in turn;
@@ -63,8 +61,7 @@ impl Finder {
             let at = place;
             place += 1;
             let path = PathBuf::from(context.sources.get(composite.file()).path());
-            let is_open =
-                |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
+            let is_open = |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
             let open = composite.namings().filter(is_open);
             let wanted: Vec<Wanted> = open
                 .map(|naming| {
@@ -81,9 +78,7 @@ impl Finder {
                 .collect();
             let described = described(composite);
             if wanted.is_empty() && described.is_empty()
-                || !(path.is_file()
-                    || context.sources.open().get(&path).is_some()
-                    || path == Path::new(STANDARD_INPUT))
+                || !(path.is_file() || context.sources.open().get(&path).is_some() || path == Path::new(STANDARD_INPUT))
             {
                 continue;
             }
@@ -129,8 +124,7 @@ impl Finder {
                 if let Some(found) = &own {
                     self.index.adopt(folder, found);
                 }
-                let found =
-                    own.or_else(|| self.imports.find(&mut self.index, &root, namespaces, local, context));
+                let found = own.or_else(|| self.imports.find(&mut self.index, &root, namespaces, local, context));
                 // What is wrong with a file that is called so is told there, and nowhere else.
                 let found = found.or_else(|| self.index.unread_named(folder, local));
                 let link = match found {
@@ -158,19 +152,12 @@ impl Finder {
     }
 
     /// The knowledge about a composite that is not found, named by a file in `folder`, of the contribution in `root`.
-    fn missing(
-        &mut self,
-        folder: &Path,
-        root: &Path,
-        wanted: &Wanted,
-        context: &mut ReadContext<'_>,
-    ) -> Missing {
+    fn missing(&mut self, folder: &Path, root: &Path, wanted: &Wanted, context: &mut ReadContext<'_>) -> Missing {
         let Some(left) = self.explained.checked_sub(1) else { return Missing::default() };
         self.explained = left;
         let seen = self.index.seen(folder);
-        let is_meant = |namespace: &str| {
-            wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace))
-        };
+        let is_meant =
+            |namespace: &str| wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace));
         let mut near = Vec::new();
         if self.candidates.admit(seen.heads.len()) {
             let of_namespace = seen.heads.iter().filter(|one| is_meant(&one.namespace));
@@ -233,10 +220,7 @@ fn described(composite: &Composite) -> Vec<Described> {
 
 /// The origin of a component's implementation, and the text that says which file describes it: the class, or else the
 /// whole tag.
-fn implementation<'a>(
-    component: &'a ComponentElement,
-    composite: &'a Composite,
-) -> Option<(Origin, &'a str)> {
+fn implementation<'a>(component: &'a ComponentElement, composite: &'a Composite) -> Option<(Origin, &'a str)> {
     let implementation = component.implementation.as_ref()?;
     let written = match component.class() {
         Some(class) => class.as_str(),
@@ -275,8 +259,5 @@ fn ambiguous(wanted: &Wanted, found: &Path, twins: &[PathBuf]) -> Option<Diagnos
         name(found)
     );
     let one = Diagnostic::new(&codes::COMPOSITE_REPEATED, wanted.at, message);
-    Some(
-        one.severity(Severity::Warning)
-            .help("give each its own name, or move one of them to another contribution"),
-    )
+    Some(one.severity(Severity::Warning).help("give each its own name, or move one of them to another contribution"))
 }

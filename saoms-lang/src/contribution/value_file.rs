@@ -82,11 +82,7 @@ fn wrong(root: Element<'_>) -> Option<Diagnostic> {
             namespace => format!("the namespace {}", quoted(namespace)),
         };
         let one = fault(at, format!("`values` is in {found}, and has to be in one of SCA"));
-        return Some(one.help(format!(
-            "that of {} is `{}`",
-            Version::ALL[0].label(),
-            Version::ALL[0].namespace()
-        )));
+        return Some(one.help(format!("that of {} is `{}`", Version::ALL[0].label(), Version::ALL[0].namespace())));
     }
     if let Some(span) = root.text_span() {
         let one = fault(span.in_file(at.file), "text in `values`, which holds elements".to_owned());
@@ -94,8 +90,7 @@ fn wrong(root: Element<'_>) -> Option<Diagnostic> {
     }
     let Some(first) = root.children().next() else {
         return Some(
-            fault(at, "`values` holds no value".to_owned())
-                .help("write each value as `<value>...</value>` in it"),
+            fault(at, "`values` holds no value".to_owned()).help("write each value as `<value>...</value>` in it"),
         );
     };
     let is_slip = |one: &Element<'_>| one.namespace() == root.namespace() && !is_value(*one);

@@ -18,22 +18,14 @@ use crate::source::{Sources, Span, Text};
 /// The content of the file, without white space at its ends, is the value; its place is in that file. XML with the root
 /// `values` of SCA holds values in elements (ASM50046). A file that cannot be read is reported where it is named. So
 /// are the tables that replicated components name with `overrides`.
-pub fn read_values(
-    composite: &mut Composite,
-    max_size: u64,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) {
+pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) {
     let own = Path::new(sources.get(composite.file()).path());
     let folder = own.parent().map(Path::to_owned).unwrap_or_default();
     // Many components may share a file.
     let mut known: HashMap<PathBuf, FileValue> = HashMap::new();
     let properties = composite.components.iter_mut().flat_map(|component| {
-        let of_loops = component
-            .details
-            .iter_mut()
-            .flat_map(|details| &mut details.loops)
-            .flat_map(|one| &mut one.properties);
+        let of_loops =
+            component.details.iter_mut().flat_map(|details| &mut details.loops).flat_map(|one| &mut one.properties);
         component.properties.iter_mut().chain(of_loops)
     });
     for property in properties {

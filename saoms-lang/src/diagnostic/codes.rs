@@ -181,31 +181,14 @@ pub(crate) enum Absence {
 /// The kind of thing that is absent by a diagnostic of this code.
 pub(crate) fn absence(code: &Code) -> Option<Absence> {
     const PARTS: [&Code; 7] = [
-        &PROPERTY_MISSING,
-        &VALUE_EMPTY,
-        &CONSTRUCTION,
-        &CREDENTIALS,
-        &UNKNOWN_PROPERTY,
-        &MISSING_IMPLEMENTATION,
+        &PROPERTY_MISSING, &VALUE_EMPTY, &CONSTRUCTION, &CREDENTIALS, &UNKNOWN_PROPERTY, &MISSING_IMPLEMENTATION,
         &REPLICAS,
     ];
-    const COMPOSITES: [&Code; 4] =
-        [&INCLUDE_NOT_FOUND, &COMPOSITE_NOT_FOUND, &DEPLOYABLE_NOT_FOUND, &EXCHANGE];
+    const COMPOSITES: [&Code; 4] = [&INCLUDE_NOT_FOUND, &COMPOSITE_NOT_FOUND, &DEPLOYABLE_NOT_FOUND, &EXCHANGE];
     const OTHER_NAMES: [&Code; 14] = [
-        &UNKNOWN_TARGET_SERVICE,
-        &UNKNOWN_BINDING,
-        &UNKNOWN_WIRE_SOURCE,
-        &UNKNOWN_PROMOTED,
-        &UNKNOWN_SOURCE,
-        &UNKNOWN_SETTING,
-        &UNUSED_PROPERTY,
-        &UNWIRED,
-        &PROMOTED_UNWIRED,
-        &COMPOSITE_PROPERTY_MISSING,
-        &SEVERITY_UNUSED,
-        &TOPIC_UNREAD,
-        &TOPIC_UNWRITTEN,
-        &TOPIC_NEAR,
+        &UNKNOWN_TARGET_SERVICE, &UNKNOWN_BINDING, &UNKNOWN_WIRE_SOURCE, &UNKNOWN_PROMOTED, &UNKNOWN_SOURCE,
+        &UNKNOWN_SETTING, &UNUSED_PROPERTY, &UNWIRED, &PROMOTED_UNWIRED, &COMPOSITE_PROPERTY_MISSING, &SEVERITY_UNUSED,
+        &TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR,
     ];
     match code {
         _ if PARTS.contains(&code) => Some(Absence::Part),
@@ -220,22 +203,9 @@ pub(crate) fn absence(code: &Code) -> Option<Absence> {
 /// every rule of a crate of components.
 pub fn is_judgement(code: &Code) -> bool {
     const JUDGEMENTS: &[&Code] = &[
-        &UNKNOWN_ATTRIBUTE,
-        &MISSING_TARGET_NAMESPACE,
-        &MISPLACED_TEXT,
-        &COMPOSITE_REPEATED,
-        &CALL_CYCLE,
-        &INCLUDED_TWICE,
-        &INCLUDE_LOCAL,
-        &PROMOTED_MULTIPLICITY,
-        &PROMOTED_FIXED,
-        &TYPE_AND_ELEMENT,
-        &BINDING_REPEATED,
-        &SERVICE_BINDING_URI,
-        &COMPOSITE_VALUE_TYPE,
-        &UNKNOWN_TYPE,
-        &COMPONENT_TYPE_REPEATED,
-        &COMPONENT_TYPE_MISSING,
+        &UNKNOWN_ATTRIBUTE, &MISSING_TARGET_NAMESPACE, &MISPLACED_TEXT, &COMPOSITE_REPEATED, &CALL_CYCLE,
+        &INCLUDED_TWICE, &INCLUDE_LOCAL, &PROMOTED_MULTIPLICITY, &PROMOTED_FIXED, &TYPE_AND_ELEMENT, &BINDING_REPEATED,
+        &SERVICE_BINDING_URI, &COMPOSITE_VALUE_TYPE, &UNKNOWN_TYPE, &COMPONENT_TYPE_REPEATED, &COMPONENT_TYPE_MISSING,
         &NOT_UNIQUE,
     ];
     JUDGEMENTS.contains(&code) || !ALL.contains(&code)
@@ -251,7 +221,5 @@ pub(crate) fn outlives_expansion(code: &Code) -> bool {
 
 /// True if a code is one of those that the wiring report adds.
 pub(crate) fn is_of_wiring(id: &str) -> bool {
-    [&TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR, &QUEUE, &READER_FASTER]
-        .into_iter()
-        .any(|code| code.id == id)
+    [&TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR, &QUEUE, &READER_FASTER].into_iter().any(|code| code.id == id)
 }

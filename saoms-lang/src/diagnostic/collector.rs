@@ -105,8 +105,7 @@ impl Diagnostics {
     pub(crate) fn is_full(&self, code: &'static Code, file: FileId) -> bool {
         let kept = self.counts.get(&(file, code.id)).map_or(0, |count| count.kept);
         // The first of a kind is always told.
-        kept >= CODE_DIAGNOSTICS
-            || kept > 0 && self.kept.get(&file).is_some_and(|kept| *kept >= FILE_DIAGNOSTICS)
+        kept >= CODE_DIAGNOSTICS || kept > 0 && self.kept.get(&file).is_some_and(|kept| *kept >= FILE_DIAGNOSTICS)
     }
 
     fn count(&mut self, code: &'static Code, severity: Severity, file: FileId) -> &mut Count {
@@ -124,9 +123,8 @@ impl Diagnostics {
     /// Makes errors of all warnings of one code in one file, and says why: what a file may say can still be wrong for
     /// what is to be done with it.
     pub fn escalate(&mut self, code: &'static Code, file: FileId, why: &str) {
-        let is_meant = |one: &&mut Diagnostic| {
-            one.code == code && one.location.file == file && one.severity == Severity::Warning
-        };
+        let is_meant =
+            |one: &&mut Diagnostic| one.code == code && one.location.file == file && one.severity == Severity::Warning;
         let mut kept = 0;
         for one in self.items.iter_mut().filter(is_meant) {
             one.severity = Severity::Error;
@@ -149,8 +147,7 @@ impl Diagnostics {
             let after = (!one.is_allowed()).then_some(one.severity);
             let (code, file) = (one.code.id, one.location.file);
             // Those that were not kept are as the last that was.
-            let is_last =
-                || !self.items[at + 1..].iter().any(|one| one.code.id == code && one.location.file == file);
+            let is_last = || !self.items[at + 1..].iter().any(|one| one.code.id == code && one.location.file == file);
             let beyond = self.counts.get(&(file, code)).map_or(0, |count| count.number - count.kept);
             let number = if beyond > 0 && is_last() { 1 + beyond as usize } else { 1 };
             self.recount(before, number, usize::saturating_sub);

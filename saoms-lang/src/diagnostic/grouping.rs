@@ -28,14 +28,11 @@ pub(super) fn grouped<'d>(
     for (kind, one) in kinds.iter().zip(&diagnostics).filter(|(kind, _)| is_many(kind)) {
         many.entry(kind).or_default().push(one);
     }
-    let told =
-        kinds.iter().zip(&diagnostics).filter_map(|(kind, one)| match many.get(kind).map(Vec::as_slice) {
-            None => Some((*one, None)),
-            Some([first, rest @ ..]) => {
-                std::ptr::eq(*first, *one).then(|| (*one, Some(others(rest, sources))))
-            }
-            Some([]) => None,
-        });
+    let told = kinds.iter().zip(&diagnostics).filter_map(|(kind, one)| match many.get(kind).map(Vec::as_slice) {
+        None => Some((*one, None)),
+        Some([first, rest @ ..]) => std::ptr::eq(*first, *one).then(|| (*one, Some(others(rest, sources)))),
+        Some([]) => None,
+    });
     told.collect()
 }
 

@@ -25,11 +25,7 @@ pub struct Human<'d> {
 
 impl<'d> Human<'d> {
     /// These diagnostics, in colours if asked.
-    pub fn of(
-        diagnostics: impl IntoIterator<Item = &'d Diagnostic>,
-        sources: &'d Sources,
-        colour: bool,
-    ) -> Self {
+    pub fn of(diagnostics: impl IntoIterator<Item = &'d Diagnostic>, sources: &'d Sources, colour: bool) -> Self {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         Self { told: grouped(diagnostics.into_iter().collect(), sources), sources, renderer }
     }

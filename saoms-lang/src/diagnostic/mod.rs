@@ -144,12 +144,7 @@ impl Diagnostic {
 
     /// Adds a suggestion of one edit.
     #[must_use]
-    pub fn suggest(
-        self,
-        description: impl Into<String>,
-        location: Location,
-        replacement: impl Into<String>,
-    ) -> Self {
+    pub fn suggest(self, description: impl Into<String>, location: Location, replacement: impl Into<String>) -> Self {
         self.suggest_edits(description, vec![Edit { location, replacement: replacement.into() }])
     }
 

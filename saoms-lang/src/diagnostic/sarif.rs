@@ -109,8 +109,7 @@ fn result(one: &Diagnostic, codes: &[&Code], sources: &Sources) -> Value {
         // On the command line nobody says why.
         let kind = if set.is_option { "external" } else { "inSource" };
         if one.is_allowed() {
-            let mut suppression =
-                json!({ "kind": kind, "location": { "physicalLocation": place(set.at, sources) } });
+            let mut suppression = json!({ "kind": kind, "location": { "physicalLocation": place(set.at, sources) } });
             if let Some(reason) = &set.reason {
                 suppression["justification"] = reason.as_str().into();
             }
@@ -121,9 +120,9 @@ fn result(one: &Diagnostic, codes: &[&Code], sources: &Sources) -> Value {
     }
     if !one.labels.is_empty() {
         let labels = one.labels.iter();
-        let related = labels.map(|label| {
-            json!({ "physicalLocation": place(label.location, sources), "message": message(&label.text) })
-        });
+        let related = labels.map(
+            |label| json!({ "physicalLocation": place(label.location, sources), "message": message(&label.text) }),
+        );
         result["relatedLocations"] = related.collect();
     }
     if !one.suggestions.is_empty() {
@@ -141,9 +140,9 @@ fn fix(suggestion: &Suggestion, sources: &Sources) -> Value {
             None => files.push((file, vec![replacement(edit, sources)])),
         }
     }
-    let changes = files.into_iter().map(|(file, replacements)| {
-        json!({ "artifactLocation": artifact(file, sources), "replacements": replacements })
-    });
+    let changes = files.into_iter().map(
+        |(file, replacements)| json!({ "artifactLocation": artifact(file, sources), "replacements": replacements }),
+    );
     json!({ "description": message(&suggestion.description), "artifactChanges": changes.collect::<Vec<_>>() })
 }
 

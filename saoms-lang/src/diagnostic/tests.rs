@@ -81,10 +81,7 @@ fn nothing_to_say_is_null_and_empty() {
     let one = Diagnostic::new(&codes::FILE_EMPTY, Span::empty(0).in_file(file), "empty");
     let object = &json(std::slice::from_ref(&one), &sources)["diagnostics"][0];
     assert_eq!((&object["rule"], &object["help"]), (&json!(null), &json!(null)));
-    assert_eq!(
-        (&object["labels"], &object["line"], &object["end_column"]),
-        (&json!([]), &json!(1), &json!(1))
-    );
+    assert_eq!((&object["labels"], &object["line"], &object["end_column"]), (&json!([]), &json!(1), &json!(1)));
     assert_eq!(human(&[one], &sources, false), "error[S0005]: empty\n--> none\n");
 }
 
@@ -127,9 +124,7 @@ fn of_many_alike_the_first_thousand_are_kept_and_all_counted() {
     for at in (0..1500).rev() {
         all.push(Diagnostic::new(&codes::XML_SYNTAX, Span::empty(at).in_file(file), format!("{at}")));
     }
-    all.push(
-        Diagnostic::new(&codes::XML_NAME, Span::empty(7).in_file(file), "other").severity(Severity::Warning),
-    );
+    all.push(Diagnostic::new(&codes::XML_NAME, Span::empty(7).in_file(file), "other").severity(Severity::Warning));
     assert_eq!((all.errors(), all.warnings(), all.has_errors()), (1500, 1, true));
     let sorted = all.into_sorted();
     assert_eq!(sorted.len(), 1002);
@@ -178,8 +173,7 @@ fn code_scanning_sees_the_same() {
             Edit { location: Span::empty(3).in_file(file), replacement: "y".to_owned() },
         ],
     );
-    let lost =
-        Diagnostic::new(&codes::FILE_NOT_FOUND, Span::empty(0).in_file(missing), "there is no such file");
+    let lost = Diagnostic::new(&codes::FILE_NOT_FOUND, Span::empty(0).in_file(missing), "there is no such file");
     let log = sarif(&[one, braces, lost], &sources, "1.2.3");
     assert_eq!(log["version"], "2.1.0");
     let run = &log["runs"][0];
@@ -189,15 +183,12 @@ fn code_scanning_sees_the_same() {
     for result in run["results"].as_array().unwrap() {
         assert_eq!(rules[result["ruleIndex"].as_u64().unwrap() as usize]["id"], result["ruleId"]);
     }
-    let region = |line, start, end| json!({ "startLine": line, "startColumn": start, "endLine": line, "endColumn": end });
+    let region =
+        |line, start, end| json!({ "startLine": line, "startColumn": start, "endLine": line, "endColumn": end });
     let fleet = json!({ "uri": "fleet.composite" });
     let two = json!({ "uri": "file:///tmp/two:%20a.composite" });
     let mut found = run["results"].clone();
-    found
-        .as_array_mut()
-        .unwrap()
-        .iter_mut()
-        .for_each(|one| _ = one.as_object_mut().unwrap().remove("ruleIndex"));
+    found.as_array_mut().unwrap().iter_mut().for_each(|one| _ = one.as_object_mut().unwrap().remove("ruleIndex"));
     assert_eq!(
         found,
         json!([
@@ -276,9 +267,7 @@ fn people_see_one_of_many_that_are_alike() {
     let text: String = (1..=14).map(|number| format!("<r{number:02}/>\n")).collect();
     let file = sources.add("many.composite", text);
     let at = |number: u32| Span::new((number - 1) * 7 + 1, (number - 1) * 7 + 4).in_file(file);
-    let one = |number: u32| {
-        Diagnostic::new(&codes::UNUSED_PROPERTY, at(number), format!("robot {number} is wrong"))
-    };
+    let one = |number: u32| Diagnostic::new(&codes::UNUSED_PROPERTY, at(number), format!("robot {number} is wrong"));
     let other = Diagnostic::new(&codes::UNUSED_PROPERTY, at(2), "robot 2 is right");
     let shown = |numbers: &[u32]| {
         let all: Vec<Diagnostic> = numbers.iter().map(|number| one(*number)).chain([other.clone()]).collect();
@@ -290,11 +279,7 @@ fn people_see_one_of_many_that_are_alike() {
     assert_eq!(shown(&[3, 4, 5, 6]).len(), 5, "few are shown one by one");
     assert_eq!(
         shown(&[3, 4, 5, 6, 14]),
-        [
-            "warning[S2026]: robot 3 is wrong",
-            "  = note: and 4 more like it, in lines 4, 5, 6 and 14",
-            &others
-        ]
+        ["warning[S2026]: robot 3 is wrong", "  = note: and 4 more like it, in lines 4, 5, 6 and 14", &others]
     );
     let all: Vec<u32> = (1..=14).collect();
     let lines = "  = note: and 13 more like it, in lines 2, 3, 4, 5, 6, 7, 8, 9, 10, 11 and 3 others";

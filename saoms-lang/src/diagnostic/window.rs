@@ -51,8 +51,7 @@ pub(super) fn windows<'a>(file: &SourceFile, marks: Vec<Mark<'a>>) -> Vec<Window
         let placed = Placed { mark, start: range.start, last_line };
         let near = |group: &&mut Vec<Placed<'a>>| {
             group.iter().any(|other| {
-                placed.start.line <= other.last_line + TOGETHER
-                    && other.start.line <= placed.last_line + TOGETHER
+                placed.start.line <= other.last_line + TOGETHER && other.start.line <= placed.last_line + TOGETHER
             })
         };
         match groups.iter_mut().find(near) {
@@ -79,8 +78,7 @@ fn window<'a>(file: &SourceFile, group: Vec<Placed<'a>>) -> Window<'a> {
         }
         for (range, mark) in &mut marks {
             // The part of the mark on this line; an empty mark is on the line that its place is on.
-            let from =
-                boundary(file, mark.span.start, str::floor_char_boundary).clamp(shown.start, shown.end);
+            let from = boundary(file, mark.span.start, str::floor_char_boundary).clamp(shown.start, shown.end);
             let to = boundary(file, mark.span.end, str::ceil_char_boundary).clamp(shown.start, shown.end);
             if mark.span.start <= end && mark.span.end >= start {
                 let at = |byte: u32| text.len() + (byte - shown.start) as usize;

@@ -23,8 +23,9 @@ pub fn boolean(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<bool,
 fn number(value: ExpressionValue, of: &Expression) -> Result<i64, ExpressionFault> {
     match value {
         ExpressionValue::Integer(number) => Ok(number),
-        other => Err(ExpressionError::new(format!("here is {other}, and a whole number is expected"))
-            .at(of.at.clone())),
+        other => {
+            Err(ExpressionError::new(format!("here is {other}, and a whole number is expected")).at(of.at.clone()))
+        }
     }
 }
 
@@ -81,9 +82,7 @@ fn two(
             // The right side is looked at in any case: what is wrong with it is wrong. But the left one may keep
             // numbers from it.
             match boolean(right, lookup) {
-                Err(fault) if left == decides && fault.problem.is_arithmetic => {
-                    Ok(ExpressionValue::Boolean(left))
-                }
+                Err(fault) if left == decides && fault.problem.is_arithmetic => Ok(ExpressionValue::Boolean(left)),
                 right => Ok(ExpressionValue::Boolean(if decides { left | right? } else { left & right? })),
             }
         }
@@ -106,8 +105,7 @@ fn two(
 
 /// A fault of what a text is compared with: a name that stands for nothing is probably a text without its quotes.
 fn unquoted(fault: ExpressionFault, text: &ExpressionValue, of: &Expression) -> ExpressionFault {
-    let (ExpressionValue::Text(_), Node::Name(name, _), None) = (text, &of.node, &fault.problem.instead)
-    else {
+    let (ExpressionValue::Text(_), Node::Name(name, _), None) = (text, &of.node, &fault.problem.instead) else {
         return fault;
     };
     let also = fault.problem.help.as_ref().map_or(String::new(), |help| format!("; {help}"));

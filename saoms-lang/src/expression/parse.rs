@@ -71,8 +71,7 @@ pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize)
 }
 
 /// The operators from those that bind least; `not` and the sign stand between them.
-const LEVELS: [&[&str]; 5] =
-    [&["or"], &["and"], &["==", "!=", "<", "<=", ">", ">="], &["+", "-"], &["*", "/", "%"]];
+const LEVELS: [&[&str]; 5] = [&["or"], &["and"], &["==", "!=", "<", "<=", ">", ">="], &["+", "-"], &["*", "/", "%"]];
 const COMPARISON: usize = 2;
 
 struct Parser<'t> {
@@ -130,11 +129,7 @@ impl Parser<'_> {
     }
 
     /// `not` or `-`, and what follows it.
-    fn prefix(
-        &mut self,
-        level: usize,
-        make: fn(Box<Expression>) -> Node,
-    ) -> Result<Expression, ExpressionFault> {
+    fn prefix(&mut self, level: usize, make: fn(Box<Expression>) -> Node) -> Result<Expression, ExpressionFault> {
         let start = self.tokens[self.next].1.clone();
         self.next += 1;
         self.deeper(start.clone())?;
@@ -154,11 +149,8 @@ impl Parser<'_> {
     fn operand(&mut self) -> Result<Expression, ExpressionFault> {
         let Some((token, at)) = self.tokens.get(self.next) else {
             let at = self.tokens.last().map_or(self.end..self.end, |(_, at)| at.clone());
-            let message = if self.tokens.is_empty() {
-                "an expression is expected"
-            } else {
-                "something is missing after this"
-            };
+            let message =
+                if self.tokens.is_empty() { "an expression is expected" } else { "something is missing after this" };
             return Err(ExpressionError::new(message).at(at));
         };
         let node = match token {
@@ -172,9 +164,7 @@ impl Parser<'_> {
                     return Err(problem.help("write `(not ...)`").at(at.clone()));
                 }
                 "and" | "or" => {
-                    return Err(
-                        ExpressionError::new(format!("something is missing before `{word}`")).at(at.clone())
-                    );
+                    return Err(ExpressionError::new(format!("something is missing before `{word}`")).at(at.clone()));
                 }
                 name => Node::Name(name.to_owned(), at.clone()),
             },
@@ -193,8 +183,9 @@ impl Parser<'_> {
                 return Ok(inner);
             }
             Token::Sign(sign) => {
-                return Err(ExpressionError::new(format!("something is missing before {}", quoted(sign)))
-                    .at(at.clone()));
+                return Err(
+                    ExpressionError::new(format!("something is missing before {}", quoted(sign))).at(at.clone())
+                );
             }
         };
         self.next += 1;

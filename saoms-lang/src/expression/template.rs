@@ -53,9 +53,7 @@ pub fn names(text: &str) -> Vec<String> {
         Ok(Piece::Expression(expression, _)) => Some(expression),
         _ => None,
     });
-    expressions
-        .flat_map(|one| one.names().into_iter().map(|(name, _)| name.to_owned()).collect::<Vec<_>>())
-        .collect()
+    expressions.flat_map(|one| one.names().into_iter().map(|(name, _)| name.to_owned()).collect::<Vec<_>>()).collect()
 }
 
 /// The bytes inside each `${` and `}` of a text. One that is not closed goes up to the end.
@@ -129,13 +127,10 @@ fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, ExpressionF
     match digits {
         Some(digits @ 1..=NUMBER_DIGITS) => Ok(Piece::Expression(expression, digits)),
         _ => {
-            let problem =
-                ExpressionError::new("after `:` the number of digits is expected, with a `0` before it");
+            let problem = ExpressionError::new("after `:` the number of digits is expected, with a `0` before it");
             let plain = width.parse().is_ok_and(|digits: usize| (1..=NUMBER_DIGITS).contains(&digits));
             let problem = if plain { problem.instead(format!("0{width}")) } else { problem };
-            Err(problem
-                .help("as in `${index:03}`, which makes 007 of 7")
-                .at(end + 1..inside.end.max(end + 1)))
+            Err(problem.help("as in `${index:03}`, which makes 007 of 7").at(end + 1..inside.end.max(end + 1)))
         }
     }
 }

@@ -82,8 +82,7 @@ fn conditions_are_typed() {
 
 fn rendered(text: &str) -> String {
     render(text, &mut lookup).unwrap_or_else(|faults| {
-        let shown =
-            faults.iter().map(|fault| format!("[{}] {}", &text[fault.at.clone()], fault.problem.message));
+        let shown = faults.iter().map(|fault| format!("[{}] {}", &text[fault.at.clone()], fault.problem.message));
         shown.collect::<Vec<_>>().join("; ")
     })
 }
@@ -143,8 +142,7 @@ fn depth_is_a_fault_and_no_crash() {
 }
 
 /// Parts of expressions, so that many of them can be read.
-const PIECES: [&str; 12] =
-    ["robots", "site", "nobody", "(", ")", " ", "not ", "-", " + ", " == ", " and ", "'north'"];
+const PIECES: [&str; 12] = ["robots", "site", "nobody", "(", ")", " ", "not ", "-", " + ", " == ", " and ", "'north'"];
 
 proptest! {
     #[test]

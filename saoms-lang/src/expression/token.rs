@@ -107,15 +107,11 @@ fn number(rest: &str, at: usize) -> Result<(Token, usize), ExpressionFault> {
     if let Some(digits) = behind.strip_prefix('.') {
         let all = length + 1 + digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
         let message = format!("{} is no whole number", quoted(&rest[..all]));
-        return Err(ExpressionError::new(message)
-            .help("expressions calculate with whole numbers")
-            .at(at..at + all));
+        return Err(ExpressionError::new(message).help("expressions calculate with whole numbers").at(at..at + all));
     }
     match rest[..length].parse() {
         Ok(number) => Ok((Token::Integer(number), length)),
-        Err(_) => {
-            Err(ExpressionError::new(format!("{} is too large", quoted(&rest[..length]))).at(at..at + length))
-        }
+        Err(_) => Err(ExpressionError::new(format!("{} is too large", quoted(&rest[..length]))).at(at..at + length)),
     }
 }
 
@@ -124,11 +120,9 @@ fn odd(rest: &str, first: char, at: usize) -> ExpressionFault {
         let problem = ExpressionError::new(format!("there is no {}", quoted(written))).instead(meant);
         return problem.at(at..at + written.len());
     }
-    if let Some(inside) =
-        rest.strip_prefix("${").and_then(|rest| rest.split_once('}')).map(|(inside, _)| inside)
-    {
-        let problem = ExpressionError::new("an expression stands here by itself, without `${` and `}`")
-            .instead(inside.trim());
+    if let Some(inside) = rest.strip_prefix("${").and_then(|rest| rest.split_once('}')).map(|(inside, _)| inside) {
+        let problem =
+            ExpressionError::new("an expression stands here by itself, without `${` and `}`").instead(inside.trim());
         return problem.at(at..at + inside.len() + 3);
     }
     if first == '$' {

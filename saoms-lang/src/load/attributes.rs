@@ -60,13 +60,7 @@ impl Loader<'_> {
         self.report(if known.name == "value" { one.help(inside) } else { one });
     }
 
-    fn unknown(
-        &mut self,
-        element: Element<'_>,
-        attribute: Attribute<'_>,
-        kind: &'static Kind,
-        free: &[&'static str],
-    ) {
+    fn unknown(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind, free: &[&'static str]) {
         let name = attribute.name();
         let location = attribute.name_span().in_file(element.document().file());
         if attribute.namespace() == SAOMS_NAMESPACE {
@@ -138,9 +132,7 @@ impl Loader<'_> {
                 let description = format!("replace {} with {}", quoted(attribute.name()), quoted(&meant));
                 one.suggest(description, location, meant)
             }
-            None if kind.has(name, self.version) && element.attribute(name).is_some() => {
-                one.help(given_already(name))
-            }
+            None if kind.has(name, self.version) && element.attribute(name).is_some() => one.help(given_already(name)),
             None if kind.has(name, self.version) => one.suggest("remove the prefix", location, name),
             None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
             None => one.help(format!("of SAOMS it has {}", names.join(", "))),
@@ -264,8 +256,7 @@ impl Loader<'_> {
             "true" | "1" => true,
             "false" | "0" => false,
             other => {
-                let message =
-                    format!("{} is {} and has to be `true` or `false`", quoted(name), quoted(other));
+                let message = format!("{} is {} and has to be `true` or `false`", quoted(name), quoted(other));
                 self.value_fault(attribute, message, meant_boolean(other));
                 return None;
             }
@@ -287,8 +278,7 @@ impl Loader<'_> {
             "n" => Some("0..n"),
             other => names.into_iter().find(|name| *name == other),
         };
-        let message =
-            format!("`multiplicity` is {} and has to be `0..1`, `1..1`, `0..n` or `1..n`", quoted(&text));
+        let message = format!("`multiplicity` is {} and has to be `0..1`, `1..1`, `0..n` or `1..n`", quoted(&text));
         self.value_fault(attribute, message, meant);
         None
     }
@@ -361,9 +351,7 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
     let (text, file) = (element.document().text(), element.document().file());
     let (start, end) = match element.local_name() {
         // However an empty one is written, there is nothing to do for it first.
-        "component" if element.children().next().is_some() => {
-            (element.span().start, element.start_tag_span().end)
-        }
+        "component" if element.children().next().is_some() => (element.span().start, element.start_tag_span().end),
         "implementation.java" | "implementation.rust" => (element.span().start, element.span().end),
         _ => return one,
     };
@@ -450,9 +438,7 @@ fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
         }
         ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
         // In a component it may be the property that is called so.
-        ("property", "name") => {
-            written == "id" && element.parent().is_some_and(|around| around.parent().is_none())
-        }
+        ("property", "name") => written == "id" && element.parent().is_some_and(|around| around.parent().is_none()),
         ("wire", "source") => written == "from",
         ("wire", "target") => written == "to",
         _ => false,

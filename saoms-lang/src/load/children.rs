@@ -15,8 +15,7 @@ use crate::syntax::Element;
 /// Elements that SCA 1.0 has, and 1.1 has no longer.
 const ONLY_1_0: &[&str] = &["operation"];
 /// Elements that SCA 1.1 added.
-const ONLY_1_1: &[&str] =
-    &["requires", "policySetAttachment", "documentation", "extensions", "externalAttachment"];
+const ONLY_1_1: &[&str] = &["requires", "policySetAttachment", "documentation", "extensions", "externalAttachment"];
 
 /// Elements of SCA that the model does not keep.
 const NOT_KEPT: [&str; 5] = ["operation", "requires", "policySetAttachment", "documentation", "extensions"];
@@ -90,9 +89,7 @@ impl Loader<'_> {
             }
             match family {
                 Family::Foreign | Family::Nobody => {}
-                Family::Sca if NOT_KEPT.contains(&name) && kind.children.contains(&name) => {
-                    self.check_not_kept(child)
-                }
+                Family::Sca if NOT_KEPT.contains(&name) && kind.children.contains(&name) => self.check_not_kept(child),
                 Family::Own if name == SEVERITY.name && SEVERITY_PARENTS.contains(&kind.name) => {
                     self.severity(child, parent);
                 }
@@ -154,8 +151,7 @@ impl Loader<'_> {
         if is_misplaced {
             let message = format!("{} cannot stand in {place}", quoted(element.name()));
             let one = Diagnostic::new(code, location, message);
-            if name == "implementation.composite" && vocabulary::children(parent).any(|one| one == "include")
-            {
+            if name == "implementation.composite" && vocabulary::children(parent).any(|one| one == "include") {
                 let edits = renaming(element, element.prefix(), "include");
                 self.report(one.suggest_edits(format!("replace {} with `include`", quoted(name)), edits));
                 return Some("include");
@@ -172,22 +168,17 @@ impl Loader<'_> {
         // Of `implementation.python` nobody means all but the last letters.
         let slip = match name.split_once('.') {
             Some((kind, variant)) if known.iter().any(|one| one.split('.').next() == Some(kind)) => {
-                let variants =
-                    known.iter().filter(|one| one.split_once('.').is_some_and(|(of, _)| of == kind));
+                let variants = known.iter().filter(|one| one.split_once('.').is_some_and(|(of, _)| of == kind));
                 let meant = nearest(variant, variants.clone().filter_map(|one| Some(one.split_once('.')?.1)));
                 meant.and_then(|meant| {
-                    variants
-                        .copied()
-                        .find(|one| one.ends_with(meant) && one.len() == kind.len() + 1 + meant.len())
+                    variants.copied().find(|one| one.ends_with(meant) && one.len() == kind.len() + 1 + meant.len())
                 })
             }
             _ => nearest(name, known.iter().copied()),
         };
         let word = word(name).filter(|meant| known.contains(meant));
         self.report(match word.or(slip) {
-            None if parent.has(name, self.version) && is_attribute_as_element(element) => {
-                as_attribute(one, element)
-            }
+            None if parent.has(name, self.version) && is_attribute_as_element(element) => as_attribute(one, element),
             Some(meant) => {
                 let description = format!("replace {} with {}", quoted(name), quoted(meant));
                 one.suggest_edits(description, renaming(element, element.prefix(), meant))
@@ -217,11 +208,9 @@ impl Loader<'_> {
             let family = self.family(child);
             let name = child.local_name();
             // Formats and selectors are made by those who make bindings.
-            let is_made = |known: &&str| {
-                matches!(*known, "wireFormat." | "operationSelector.") && name.starts_with(*known)
-            };
-            let is_known =
-                vocabulary::children(kind).any(|known| known == name) || kind.children.iter().any(is_made);
+            let is_made =
+                |known: &&str| matches!(*known, "wireFormat." | "operationSelector.") && name.starts_with(*known);
+            let is_known = vocabulary::children(kind).any(|known| known == name) || kind.children.iter().any(is_made);
             if family == Family::Own && name == SEVERITY.name && SEVERITY_PARENTS.contains(&kind.name) {
                 self.severity(child, element);
                 continue;
@@ -255,13 +244,7 @@ impl Loader<'_> {
     }
 
     /// Reports the second of two elements of which there can be one.
-    pub(super) fn repeated(
-        &mut self,
-        element: Element<'_>,
-        first: Location,
-        parent: &'static Kind,
-        what: &str,
-    ) {
+    pub(super) fn repeated(&mut self, element: Element<'_>, first: Location, parent: &'static Kind, what: &str) {
         let message = format!("{} has a second {what}", quoted(parent.name));
         let one = Diagnostic::new(&codes::REPEATED_ELEMENT, element.name_location(), message);
         self.report(one.label(first, format!("the first {what}")));
@@ -271,9 +254,7 @@ impl Loader<'_> {
     pub(super) fn no_text(&mut self, element: Element<'_>) {
         let Some(span) = element.text_span() else { return };
         let location = span.in_file(element.document().file());
-        if element.has_damaged_content()
-            || self.diagnostics.skip(&codes::MISPLACED_TEXT, Severity::Error, location)
-        {
+        if element.has_damaged_content() || self.diagnostics.skip(&codes::MISPLACED_TEXT, Severity::Error, location) {
             return;
         }
         let message = format!("text in {}, which holds no text", quoted(element.name()));
@@ -304,8 +285,7 @@ impl Loader<'_> {
         let help = format!(
             "write `<{prefix}:{name} .../>`, and `xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
         );
-        let description =
-            format!("replace {} with {}", quoted(element.name()), quoted(&format!("{prefix}:{name}")));
+        let description = format!("replace {} with {}", quoted(element.name()), quoted(&format!("{prefix}:{name}")));
         self.report(one.help(help).suggest_edits(description, edits));
     }
 
@@ -326,9 +306,7 @@ impl Loader<'_> {
             let description = format!("replace {} with {}", quoted(name), quoted(&whole));
             one = one.suggest_edits(description, renaming(element, Some(prefix), name));
         } else {
-            one = one.help(
-                "elements of SCA are in the namespace of the composite, extensions in one of their own",
-            );
+            one = one.help("elements of SCA are in the namespace of the composite, extensions in one of their own");
         }
         self.report(one);
     }

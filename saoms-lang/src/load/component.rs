@@ -53,9 +53,7 @@ impl Loader<'_> {
                 (Family::Sca, "reference") => {
                     component.references.push(loader.reference(child, &COMPONENT_REFERENCE));
                 }
-                (Family::Sca | Family::Own | Family::Foreign, name)
-                    if name.starts_with("implementation.") =>
-                {
+                (Family::Sca | Family::Own | Family::Foreign, name) if name.starts_with("implementation.") => {
                     let made = loader.implementation(child, family, name);
                     if let Some(first) = &component.implementation {
                         loader.repeated(child, first.origin.tag, &COMPONENT, "implementation");
@@ -129,16 +127,11 @@ impl Loader<'_> {
             }
             (Family::Sca, _) if !is_defined(element) => {
                 let meant = self.unexpected(element, &COMPONENT, family)?;
-                let is_read = matches!(
-                    meant,
-                    "implementation.java" | "implementation.rust" | "implementation.composite"
-                );
+                let is_read =
+                    matches!(meant, "implementation.java" | "implementation.rust" | "implementation.composite");
                 return is_read.then(|| self.implementation(element, family, meant))?;
             }
-            _ => ImplementationKind::Other {
-                kind: variant(element, "implementation."),
-                is_sca: family == Family::Sca,
-            },
+            _ => ImplementationKind::Other { kind: variant(element, "implementation."), is_sca: family == Family::Sca },
         };
         Some(Implementation { origin: Origin::of(element), kind })
     }
@@ -160,8 +153,7 @@ impl Loader<'_> {
             "" => "a component has no implementation".to_owned(),
             name => format!("the component {} has no implementation", quoted(name)),
         };
-        let help =
-            "write `<implementation.java class=\"...\"/>` or `<implementation.rust class=\"...\"/>` in it";
+        let help = "write `<implementation.java class=\"...\"/>` or `<implementation.rust class=\"...\"/>` in it";
         let one = Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message);
         self.report(one.severity(severity).help(help));
     }

@@ -13,11 +13,7 @@ use crate::syntax::{self, Parse};
 
 /// Makes the model of a component type that was read before. `None` when its root is no `componentType` of SCA, or when
 /// the text is no well-formed XML: what can be read is judged, and what is missing may be there.
-pub fn load_component_type(
-    file: FileId,
-    sources: &Sources,
-    diagnostics: &mut Diagnostics,
-) -> Option<ComponentType> {
+pub fn load_component_type(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<ComponentType> {
     let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
     let document = Arc::new(document);
     let root = document.root();

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use super::children::Family;
-use super::vocabulary::{
-    COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INCLUDE, WIRE,
-};
+use super::vocabulary::{COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INCLUDE, WIRE};
 use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Composite, Include, Origin, WireDetails, WireElement};
@@ -67,10 +65,7 @@ impl Loader<'_> {
     fn target_namespace(&mut self, root: Element<'_>) -> Option<Text> {
         let found = self.optional(root, "targetNamespace").filter(|uri| !uri.is_empty());
         let misspelt = root.attributes().any(|one| one.name().eq_ignore_ascii_case("targetNamespace"));
-        if found.is_none()
-            && !root.has_damaged_tag()
-            && (!misspelt || root.attribute("targetNamespace").is_some())
-        {
+        if found.is_none() && !root.has_damaged_tag() && (!misspelt || root.attribute("targetNamespace").is_some()) {
             let message = format!("{} has no `targetNamespace`", quoted(root.name()));
             let one = Diagnostic::new(&codes::MISSING_TARGET_NAMESPACE, root.name_location(), message)
                 .help("other composites refer to this one by its namespace and name");

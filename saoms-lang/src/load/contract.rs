@@ -2,8 +2,7 @@
 
 use super::children::{Family, is_defined, meant_name, variant};
 use super::vocabulary::{
-    BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST,
-    INTERFACE_WSDL, Kind,
+    BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, Kind,
 };
 use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -33,8 +32,7 @@ impl Loader<'_> {
         if targets.is_empty()
             && let Some(attribute) = element.attribute("target")
         {
-            let one =
-                Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), "`target` names nothing");
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), "`target` names nothing");
             let one = one.severity(Severity::Warning).help("name a component, or leave `target` out");
             // The schema lets the list be empty.
             self.report(Diagnostic { rule: None, ..one });
@@ -44,11 +42,7 @@ impl Loader<'_> {
         ReferenceElement { origin: Origin::of(element), name, targets, details, contract }
     }
 
-    fn reference_details(
-        &mut self,
-        element: Element<'_>,
-        promote: Vec<Text>,
-    ) -> Option<Box<ReferenceDetails>> {
+    fn reference_details(&mut self, element: Element<'_>, promote: Vec<Text>) -> Option<Box<ReferenceDetails>> {
         boxed(ReferenceDetails {
             promote,
             multiplicity: self.multiplicity(element),
@@ -100,13 +94,7 @@ impl Loader<'_> {
         boxed(contract)
     }
 
-    fn interface(
-        &mut self,
-        element: Element<'_>,
-        family: Family,
-        parent: &'static Kind,
-        contract: &mut Contract,
-    ) {
+    fn interface(&mut self, element: Element<'_>, family: Family, parent: &'static Kind, contract: &mut Contract) {
         if let Some(first) = &contract.interface {
             return self.repeated(element, first.origin.tag, parent, "interface");
         }

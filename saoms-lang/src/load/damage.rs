@@ -13,8 +13,7 @@ pub(super) fn add(document: &Document, diagnostics: &mut Diagnostics) {
         let mut damaged = part.descendants().filter(|one| one.is_damaged()).peekable();
         if damaged.peek().is_some() {
             let others = damaged.any(has_names);
-            let hidden =
-                HiddenNames { composites: false, components: others && may_hide_component(part), others };
+            let hidden = HiddenNames { composites: false, components: others && may_hide_component(part), others };
             diagnostics.add_damage(part.span().in_file(document.file()), hidden);
         }
     }
@@ -24,9 +23,7 @@ pub(super) fn add(document: &Document, diagnostics: &mut Diagnostics) {
 /// it.
 fn has_names(element: Element<'_>) -> bool {
     match element.local_name() {
-        "property" => {
-            element.has_damaged_tag() && element.parent().is_some_and(|one| one.id() == ElementId::ROOT)
-        }
+        "property" => element.has_damaged_tag() && element.parent().is_some_and(|one| one.id() == ElementId::ROOT),
         "value" | "documentation" => false,
         name => !name.contains('.'),
     }
@@ -50,7 +47,5 @@ fn has_readable_name(component: Element<'_>) -> bool {
     let mut names = component.written_attributes().filter(|one| one.name() == "name");
     let (Some(name), None) = (names.next(), names.next()) else { return false };
     let behind = &component.document().text()[name.span().end as usize..];
-    component.attribute("name").is_some()
-        && name.is_closed()
-        && behind.starts_with([' ', '\t', '\r', '\n', '/', '>'])
+    component.attribute("name").is_some() && name.is_closed() && behind.starts_with([' ', '\t', '\r', '\n', '/', '>'])
 }

@@ -13,8 +13,7 @@ use crate::source::{FileId, Location, Sources, Text};
 use crate::syntax::{self, Element, Parse};
 
 /// The places of the description of a contribution in its folder: the author's, or else a tool's.
-pub(crate) const DESCRIPTIONS: [&str; 3] =
-    ["META-INF/sca-contribution.xml", "sca-contribution.xml", GENERATED];
+pub(crate) const DESCRIPTIONS: [&str; 3] = ["META-INF/sca-contribution.xml", "sca-contribution.xml", GENERATED];
 /// The description of a contribution by a tool, beside the author's (SCA Assembly 1.1, 10.2.2).
 pub(crate) const GENERATED: &str = "META-INF/sca-contribution-generated.xml";
 /// The kinds of imports and exports that are known beside those of namespaces.
@@ -115,8 +114,7 @@ impl Description {
         // What is wrong with it is told once, however often it is read.
         let shown = made.path.display().to_string();
         let is_it = |file: FileId| sources.get(file).path() == shown;
-        let (mut untold, is_told) =
-            (Diagnostics::new(), diagnostics.iter().any(|one| is_it(one.location.file)));
+        let (mut untold, is_told) = (Diagnostics::new(), diagnostics.iter().any(|one| is_it(one.location.file)));
         let diagnostics = if is_told { &mut untold } else { &mut **diagnostics };
         let Some(file) = read(&made.path, *max_size, sources, diagnostics) else {
             made.is_faulty = true;
@@ -196,14 +194,7 @@ impl Description {
     }
 
     /// Adds what is imported or exported; warns of what is said twice.
-    fn exchange(
-        &mut self,
-        kind: Kind,
-        at: Location,
-        what: &str,
-        child: Element<'_>,
-        loader: &mut Loader<'_>,
-    ) {
+    fn exchange(&mut self, kind: Kind, at: Location, what: &str, child: Element<'_>, loader: &mut Loader<'_>) {
         let location = child.attribute("location").map(|one| one.trimmed());
         // The addresses of contributions elsewhere are no folders.
         let location = location.filter(|location| !location.contains(':'));

@@ -48,19 +48,15 @@ fn ends_with(name: &str, ending: Option<&str>) -> bool {
 }
 
 fn listed(names: &[&str], shown_as: &Path) -> String {
-    let paths: Vec<String> =
-        names.iter().map(|name| quoted(&shown_as.join(name).display().to_string())).collect();
+    let paths: Vec<String> = names.iter().map(|name| quoted(&shown_as.join(name).display().to_string())).collect();
     paths.join(", ")
 }
 
 /// The names in a folder, in order; empty when it cannot be read.
 fn names(folder: &Path) -> Vec<String> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-    let mut names: Vec<String> = entries
-        .take(FOLDER_ENTRIES)
-        .flatten()
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
+    let mut names: Vec<String> =
+        entries.take(FOLDER_ENTRIES).flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
     names.sort_unstable();
     names
 }

@@ -48,8 +48,7 @@ impl Loader<'_> {
         };
         // Most properties have a name, and a text inside, alone.
         let is_plain = element.written_attributes().count() <= 1 && values.is_empty() && content.is_empty();
-        let details =
-            if is_plain { None } else { boxed(self.details(element, kind, inside, values, content)) };
+        let details = if is_plain { None } else { boxed(self.details(element, kind, inside, values, content)) };
         Property { origin: Origin::of(element), name, simple, is_attribute, details }
     }
 
@@ -104,8 +103,7 @@ impl Loader<'_> {
     fn is_slip(&self, name: &str) -> bool {
         let structural = [&COMPOSITE, &COMPONENT].into_iter().flat_map(|kind| kind.children);
         let is_structural = |known: &&str| *known == name || known.ends_with('.') && name.starts_with(known);
-        structural.into_iter().any(is_structural)
-            || (self.version.is_1_1() && nearest(name, ["value"]).is_some())
+        structural.into_iter().any(is_structural) || (self.version.is_1_1() && nearest(name, ["value"]).is_some())
     }
 }
 

@@ -32,12 +32,7 @@ impl ReadContext<'_> {
 /// file or it is no text in UTF-8.
 ///
 /// The file is in `sources` in either case: diagnostics have to name it.
-pub fn read(
-    path: &Path,
-    max_size: u64,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) -> Option<FileId> {
+pub fn read(path: &Path, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<FileId> {
     let max_size = max_size.min(ADDRESSABLE_BYTES);
     add(path, bytes(path, max_size, sources.open()), max_size, sources, diagnostics)
 }
@@ -94,22 +89,14 @@ fn add(
 ///
 /// # Errors
 /// The message for a file that does not exist or is no text in UTF-8.
-pub(crate) fn value(
-    path: &Path,
-    max_size: u64,
-    named: Location,
-    open: &OpenTexts,
-) -> Result<String, Box<Diagnostic>> {
+pub(crate) fn value(path: &Path, max_size: u64, named: Location, open: &OpenTexts) -> Result<String, Box<Diagnostic>> {
     let max_size = max_size.min(ADDRESSABLE_BYTES);
     let bytes = named_bytes(path, max_size, open).map_err(|failure| {
         let mut one = failure.diagnostic(path, max_size, named, &VALUE);
         if one.code == &codes::FILE_NOT_FOUND {
             let shown = path.display().to_string();
             if shown.contains('\\') {
-                one.help.insert(
-                    0,
-                    format!("folders stand before `/`: write {}", quoted(&shown.replace('\\', "/"))),
-                );
+                one.help.insert(0, format!("folders stand before `/`: write {}", quoted(&shown.replace('\\', "/"))));
             } else {
                 one.help.insert(0, format!("it is looked for as {}", quoted(&shown)));
             }
@@ -151,8 +138,7 @@ struct Expected {
 
 const COMPOSITE: Expected =
     Expected { kind: "XML text", help: "a composite is an XML text in UTF-8", ending: Some(".composite") };
-const VALUE: Expected =
-    Expected { kind: "text", help: "the value of a property is a text in UTF-8", ending: None };
+const VALUE: Expected = Expected { kind: "text", help: "the value of a property is a text in UTF-8", ending: None };
 
 /// The reason why there are no bytes.
 enum Failure {
@@ -168,11 +154,7 @@ impl Failure {
     fn diagnostic(self, path: &Path, max_size: u64, location: Location, expected: &Expected) -> Diagnostic {
         match self {
             Self::Directory => {
-                let one = Diagnostic::new(
-                    &codes::FILE_IS_DIRECTORY,
-                    location,
-                    "a directory, where a file is expected",
-                );
+                let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, location, "a directory, where a file is expected");
                 with_help(one, missing::inside(path, expected.ending))
             }
             Self::Irregular => {
@@ -185,8 +167,7 @@ impl Failure {
                     Some(size) => format!("the file has {size} bytes, and the limit is {max_size} bytes"),
                     None => format!("the file has more than the limit of {max_size} bytes"),
                 };
-                Diagnostic::new(&codes::FILE_TOO_LARGE, location, message)
-                    .help("the limit is set with `--max-size`")
+                Diagnostic::new(&codes::FILE_TOO_LARGE, location, message).help("the limit is set with `--max-size`")
             }
             Self::Io(error) if error.kind() == io::ErrorKind::NotFound && fs::read_link(path).is_ok() => {
                 let target = fs::read_link(path).unwrap_or_default();
@@ -196,8 +177,7 @@ impl Failure {
             }
             Self::Io(error) if error.raw_os_error() == Some(libc::ELOOP) => {
                 let message = "this link leads back to itself";
-                Diagnostic::new(&codes::FILE_NOT_FOUND, location, message)
-                    .help("let it lead to a file, or remove it")
+                Diagnostic::new(&codes::FILE_NOT_FOUND, location, message).help("let it lead to a file, or remove it")
             }
             Self::Io(error) if error.kind() == io::ErrorKind::NotFound => {
                 let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
@@ -292,10 +272,9 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
         let declared = encoding::declared(&bytes).filter(|name| !name.eq_ignore_ascii_case("UTF-8"));
         let byte = bytes.get(at).copied().unwrap_or_default();
         let (message, help) = match declared {
-            Some(name) => (
-                format!("the file is declared to be in {}, and UTF-8 is expected", quoted(&name)),
-                convert(&name),
-            ),
+            Some(name) => {
+                (format!("the file is declared to be in {}, and UTF-8 is expected", quoted(&name)), convert(&name))
+            }
             None => (
                 format!("the byte 0x{byte:02X} here is no UTF-8"),
                 format!("if the file is in Windows-1252 or Latin-1, {}", convert("WINDOWS-1252")),

@@ -11,8 +11,7 @@ impl Loader<'_> {
     /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged
     /// with it.
     pub(super) fn similar_namespaces(&mut self, document: &Document) {
-        let near =
-            document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
+        let near = document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
         let near: Vec<(&str, &str)> = near.filter_map(|one| Some((one, meant(one)?))).collect();
         if near.is_empty() {
             return;
@@ -28,11 +27,8 @@ impl Loader<'_> {
         for (written, meant) in near {
             let Some(first) = declared.get(written).filter(|_| used.contains(written)) else { continue };
             let at = first.value_span().in_file(document.file());
-            let message = format!(
-                "what is in the namespace {} is passed over: it is nearly {}",
-                quoted(written),
-                quoted(meant)
-            );
+            let message =
+                format!("what is in the namespace {} is passed over: it is nearly {}", quoted(written), quoted(meant));
             let one = Diagnostic::new(&codes::NAMESPACE_NEAR, at, message);
             self.report(one.suggest(format!("replace it with {}", quoted(meant)), at, meant));
         }
@@ -47,10 +43,7 @@ fn meant(written: &str) -> Option<&'static str> {
     let of_sca = Version::ALL.map(Version::namespace).into_iter().find(|known| {
         // Drafts and other versions have numbers of their own.
         let is_other_version = known.len() == written.len()
-            && known
-                .bytes()
-                .zip(written.bytes())
-                .all(|(a, b)| a == b || a.is_ascii_digit() && b.is_ascii_digit());
+            && known.bytes().zip(written.bytes()).all(|(a, b)| a == b || a.is_ascii_digit() && b.is_ascii_digit());
         is_slip(written, known) && !is_other_version
     });
     of_sca.or_else(|| is_slip(written, SAOMS_NAMESPACE).then_some(SAOMS_NAMESPACE))

@@ -221,9 +221,8 @@ impl Contribution {
         let named = self.by_name.get(local)?;
         match namespaces {
             Some(namespaces) => {
-                let of = |namespace: &String| {
-                    named.iter().find(|place| self.composites[**place].namespace() == namespace)
-                };
+                let of =
+                    |namespace: &String| named.iter().find(|place| self.composites[**place].namespace() == namespace);
                 namespaces.iter().find_map(of).copied()
             }
             None => named.first().copied(),
@@ -251,9 +250,6 @@ impl Contribution {
         let is_wanted = candidates.admit(self.given);
         let near = is_wanted.then(|| nearest(local, known.filter(|known| *known != local))).flatten();
         let prefix = name.as_str().strip_suffix(local).unwrap_or_default();
-        Missing {
-            near: near.map(|near| format!("{prefix}{near}")).into_iter().collect(),
-            searched: Vec::new(),
-        }
+        Missing { near: near.map(|near| format!("{prefix}{near}")).into_iter().collect(), searched: Vec::new() }
     }
 }

@@ -22,8 +22,8 @@ pub use component::{ComponentDetails, ComponentElement, Implementation, Implemen
 pub use component_type::ComponentType;
 pub use composite::{Composite, Include, WireDetails, WireElement};
 pub use contract::{
-    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceDetails,
-    ReferenceElement, ServiceElement,
+    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceDetails, ReferenceElement,
+    ServiceElement,
 };
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
 pub use looping::LoopElement;

@@ -133,8 +133,7 @@ impl Project {
             }
         }
         let together = Member { inputs, is_deployable: true, is_exported: false };
-        let mut fleets: Vec<Member> =
-            Some(together).filter(|one| !one.inputs.is_empty()).into_iter().collect();
+        let mut fleets: Vec<Member> = Some(together).filter(|one| !one.inputs.is_empty()).into_iter().collect();
         for folder in folders {
             let Input::Path(path) = folder else { continue };
             let found = finder.load_folder(path, self.max_size, sources, diagnostics);

@@ -45,8 +45,7 @@ fn unclear(folder: &Path, fleets: &[FolderFleet], sources: &mut Sources) -> Diag
     let file = sources.add(folder.display().to_string(), "");
     let message = format!("a directory with {} fleets, and one is asked for", fleets.len());
     let firsts = fleets.iter().filter_map(|fleet| fleet.files.first());
-    let mut names: Vec<String> =
-        firsts.take(OFFERED).map(|path| quoted(&path.display().to_string())).collect();
+    let mut names: Vec<String> = firsts.take(OFFERED).map(|path| quoted(&path.display().to_string())).collect();
     if fleets.len() > OFFERED {
         names.push(format!("{} more", fleets.len() - OFFERED));
     }

@@ -39,12 +39,7 @@ pub struct Loaded {
 type Check<T> = fn(&Contribution, &Registry, &Options, &Sources, &mut Diagnostics) -> Option<T>;
 
 /// Reads a file of at most `max_size` bytes, or standard input where the path is [`INPUT`].
-pub fn read(
-    path: &Path,
-    max_size: u64,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) -> Option<FileId> {
+pub fn read(path: &Path, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<FileId> {
     if path == Path::new(INPUT) {
         return read_from(io::stdin().lock(), STANDARD_INPUT, max_size, sources, diagnostics);
     }
@@ -70,9 +65,8 @@ impl Project {
         let settings = self.settings.iter();
         let settings = settings.filter_map(|text| Setting::parse(SET, text, sources, diagnostics)).collect();
         let severities = self.severities.iter();
-        let severities = severities
-            .filter_map(|text| SeveritySetting::parse(SEVERITY, text, sources, diagnostics))
-            .collect();
+        let severities =
+            severities.filter_map(|text| SeveritySetting::parse(SEVERITY, text, sources, diagnostics)).collect();
         Options {
             settings,
             severities,
@@ -113,20 +107,14 @@ impl Project {
         if let Some(libraries) = libraries {
             libraries::open_named(&mut contribution, libraries.as_ref(), &sources, &mut registry);
         }
-        let variables =
-            Variable::read(&contribution, |name| (self.environment)(name), &mut sources, &mut diagnostics);
+        let variables = Variable::read(&contribution, |name| (self.environment)(name), &mut sources, &mut diagnostics);
         let options = Options { variables, ..options };
         let is_part = self.is_part;
         Loaded { contribution, registry, sources, problems, diagnostics, options, is_part }
     }
 
     /// The composite in a text, with the values in files beside it.
-    fn composite(
-        &self,
-        file: FileId,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Composite> {
+    fn composite(&self, file: FileId, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
         let mut composite = load_file(file, sources, diagnostics)?;
         if !self.in_memory {
             read_values(&mut composite, self.max_size, sources, diagnostics);

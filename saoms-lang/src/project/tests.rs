@@ -7,10 +7,7 @@ const HEAD: &str = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sc
 
 fn codes(project: &Project) -> Vec<String> {
     let found = project.compile(&Registry::new());
-    found
-        .reported()
-        .map(|one| format!("{} {}", one.code.id, found.sources.get(one.location.file).path()))
-        .collect()
+    found.reported().map(|one| format!("{} {}", one.code.id, found.sources.get(one.location.file).path())).collect()
 }
 
 #[test]
@@ -24,15 +21,13 @@ fn a_project_without_a_fault_compiles_to_an_assembly() {
 
 #[test]
 fn settings_are_read_before_composites() {
-    let project =
-        Project::new().text("a", format!("{HEAD} name=\"a\"><x/></composite>")).set("speed").severity("x");
+    let project = Project::new().text("a", format!("{HEAD} name=\"a\"><x/></composite>")).set("speed").severity("x");
     assert_eq!(codes(&project), ["S2027 --set", "S2048 --severity", "S1004 a"]);
 }
 
 #[test]
 fn the_environment_is_empty_unless_it_is_given() {
-    let text =
-        format!("{HEAD} name=\"a\"><property name=\"p\" mustSupply=\"true\" saoms:env=\"P\"/></composite>");
+    let text = format!("{HEAD} name=\"a\"><property name=\"p\" mustSupply=\"true\" saoms:env=\"P\"/></composite>");
     let project = Project::new().text("a", text);
     assert!(project.compile(&Registry::new()).has_errors());
     let given = project.environment(|name| (name == "P").then(|| "1".into()));

@@ -216,10 +216,7 @@ pub struct InterfaceDeclaration {
 }
 
 /// The service that the host serves for every component of a periodic class.
-#[expect(
-    clippy::expect_used,
-    reason = "the declaration is a constant, which every test of the checker reads"
-)]
+#[expect(clippy::expect_used, reason = "the declaration is a constant, which every test of the checker reads")]
 static TASK_SERVICE: LazyLock<ServiceDeclaration> = LazyLock::new(|| ServiceDeclaration {
     name: "TaskInterface".to_owned(),
     // Proof: the macro writes the text while `saoms-api` compiles, and no input reaches it; any test that registers a
@@ -257,8 +254,7 @@ impl ServiceDeclaration {
 
 fn property_kind<'de, D: Deserializer<'de>>(from: D) -> Result<PropertyKind, D::Error> {
     let name = String::deserialize(from)?;
-    PropertyKind::from_name(&name)
-        .ok_or_else(|| D::Error::custom(format!("`{name}` is no type of properties")))
+    PropertyKind::from_name(&name).ok_or_else(|| D::Error::custom(format!("`{name}` is no type of properties")))
 }
 
 fn topic_kind<'de, D: Deserializer<'de>>(from: D) -> Result<TopicKind, D::Error> {

@@ -83,12 +83,9 @@ impl fmt::Display for RegistryError {
                 };
                 match (&first.origin, &second.origin) {
                     (None, None) => out.write_str(&what),
-                    _ => write!(
-                        out,
-                        "{what}: {} and {}; use one of them, or rename one",
-                        first.place(),
-                        second.place()
-                    ),
+                    _ => {
+                        write!(out, "{what}: {} and {}; use one of them, or rename one", first.place(), second.place())
+                    }
                 }
             }
         }

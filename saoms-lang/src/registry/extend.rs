@@ -156,13 +156,9 @@ mod tests {
             change(&mut declaration);
             read(&declaration).unwrap_err()
         };
-        let malformed = |what: &str| {
-            format!("the declaration of class `b.Cart` is malformed: it extends `a.Cart`, and {what}")
-        };
-        assert_eq!(
-            refused(|class| class["publishes"][0] = topic("ONE", "Z")),
-            malformed("has another topic `ONE`")
-        );
+        let malformed =
+            |what: &str| format!("the declaration of class `b.Cart` is malformed: it extends `a.Cart`, and {what}");
+        assert_eq!(refused(|class| class["publishes"][0] = topic("ONE", "Z")), malformed("has another topic `ONE`"));
         assert_eq!(
             refused(|class| class["kind"] = json!("passive")),
             malformed("would never be executed: what extends a periodic class is `periodic`")
@@ -179,8 +175,7 @@ mod tests {
     fn no_line_of_classes_is_too_long_to_be_read() {
         let mut declaration = base();
         for _ in 0..40 {
-            declaration =
-                json!({"contract": 1, "class": "b.Cart", "kind": "periodic", "extends": declaration});
+            declaration = json!({"contract": 1, "class": "b.Cart", "kind": "periodic", "extends": declaration});
         }
         assert!(read(&declaration).unwrap_err().contains("extends more than 32 classes"));
     }

@@ -25,13 +25,11 @@ use saoms_api::rule::{Code, FleetRule};
 
 pub use class::{Provider, RegisteredClass};
 pub use declaration::{
-    Alias, ClassDeclaration, ClassKind, ClassTopic, InterfaceDeclaration, PropertyDeclaration,
-    ReferenceDeclaration, ServiceDeclaration,
+    Alias, ClassDeclaration, ClassKind, ClassTopic, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
+    ServiceDeclaration,
 };
 pub use error::{Holder, RegistryError};
-pub use looping::{
-    DeclaredEntry, DefaultLoops, KnowledgeDeclaration, LoopDeclaration, LoopProvider, RegisteredLoop,
-};
+pub use looping::{DeclaredEntry, DefaultLoops, KnowledgeDeclaration, LoopDeclaration, LoopProvider, RegisteredLoop};
 pub use rule::{RegisteredRule, RuleProvider};
 pub use team::{Team, TeamFault};
 
@@ -145,8 +143,7 @@ impl Registry {
     pub fn add(&mut self, registration: Registration) -> Result<(), RegistryError> {
         let before = (!registration.loops().is_empty()).then(|| self.loops.clone());
         let loops = registration.loops().iter().try_for_each(|one| self.add_loop(*one));
-        let added =
-            loops.and_then(|()| self.add_provided(registration.declaration(), Arc::new(registration)));
+        let added = loops.and_then(|()| self.add_provided(registration.declaration(), Arc::new(registration)));
         if let (Err(_), Some(before)) = (&added, before) {
             self.loops = before;
         }
@@ -189,15 +186,10 @@ impl Registry {
     ///
     /// # Errors
     /// As [`Registry::add`].
-    pub fn add_provided(
-        &mut self,
-        declaration: &str,
-        provider: Arc<dyn Provider>,
-    ) -> Result<(), RegistryError> {
+    pub fn add_provided(&mut self, declaration: &str, provider: Arc<dyn Provider>) -> Result<(), RegistryError> {
         let classes = read::class(declaration, &provider)?;
         for (place, class) in classes.iter().enumerate() {
-            let holder =
-                |class: &RegisteredClass| Holder::new("class", &class.declaration.name, class.origin());
+            let holder = |class: &RegisteredClass| Holder::new("class", &class.declaration.name, class.origin());
             let again = classes[..place].iter().find(|other| other.name == class.name);
             if let Some(first) = self.holder(&class.name).or(again.map(holder)) {
                 let (name, second) = (class.name.clone(), holder(class));

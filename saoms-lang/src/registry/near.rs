@@ -30,9 +30,7 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
         // A package that names share makes all of them alike: of those in one what follows it counts.
         let package = name.strip_suffix(last).unwrap_or_default();
         let is_like = |known: &&str| {
-            known
-                .strip_prefix(package)
-                .is_none_or(|simple| package.is_empty() || nearest(last, [simple]).is_some())
+            known.strip_prefix(package).is_none_or(|simple| package.is_empty() || nearest(last, [simple]).is_some())
         };
         all.retain(is_like);
     }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use serde::de::DeserializeOwned;
 
 use super::{
-    ClassDeclaration, LoopDeclaration, LoopProvider, Provider, RegisteredClass, RegisteredLoop,
-    RegistryError, error, extend, validate,
+    ClassDeclaration, LoopDeclaration, LoopProvider, Provider, RegisteredClass, RegisteredLoop, RegistryError, error,
+    extend, validate,
 };
 
 /// The part that every version of a declaration has.

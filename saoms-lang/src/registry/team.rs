@@ -150,13 +150,7 @@ impl<'a> Team<'a> {
     }
 
     /// A loop changes an entry, which is an effector or not.
-    fn own(
-        &self,
-        at: usize,
-        entry: &'a str,
-        owners: &mut HashMap<&'a str, usize>,
-        faults: &mut Vec<TeamFault<'a>>,
-    ) {
+    fn own(&self, at: usize, entry: &'a str, owners: &mut HashMap<&'a str, usize>, faults: &mut Vec<TeamFault<'a>>) {
         if !self.entries.get(entry).is_some_and(|(entry, _)| entry.effector) {
             return;
         }

@@ -75,8 +75,7 @@ fn a_class_is_found_by_all_its_names_with_their_presets() {
     assert_eq!((reach.kind, reach.exclusive_max.as_deref()), (PropertyKind::Float, Some("1.0")));
     assert_eq!(reach.expected(), "a number from 0.0 to below 1.0 [m]");
     assert_eq!(patience.min.as_deref(), Some("1ms"));
-    let offered: Vec<_> =
-        declaration.offers().map(|service| (service.name.as_str(), service.is_of_host())).collect();
+    let offered: Vec<_> = declaration.offers().map(|service| (service.name.as_str(), service.is_of_host())).collect();
     assert_eq!(offered, [("TaskInterface", true)]);
 }
 
@@ -139,15 +138,11 @@ fn a_malformed_declaration_is_refused_with_its_class() {
         refused(|eye| eye["contract"] = json!(2)),
         "class `a.Eye` was built for contract 2, this program has contract 1: build both from one version"
     );
-    assert!(
-        refused(|eye| eye["kind"] = json!("sometimes")).contains("`a.Eye` is malformed: unknown variant")
-    );
+    assert!(refused(|eye| eye["kind"] = json!("sometimes")).contains("`a.Eye` is malformed: unknown variant"));
     assert!(refused(|eye| eye["properties"][0]["type"] = json!("colour")).contains("`colour` is no type"));
     assert_eq!(
         refused(|eye| eye["properties"][1]["default"] = json!("7")),
-        malformed(
-            "the default of property `reach`: `7` is out of range: expected a number from 0.0 to below 1.0 [m]"
-        )
+        malformed("the default of property `reach`: `7` is out of range: expected a number from 0.0 to below 1.0 [m]")
     );
     assert_eq!(
         refused(|eye| eye["properties"][2]["min"] = json!("soon")),
@@ -172,10 +167,7 @@ fn a_malformed_declaration_is_refused_with_its_class() {
         malformed("property `number` of type complex has the wrong inner properties")
     );
     let error = read_text("{ this is no JSON, and longer than can be shown");
-    assert!(
-        error
-            .starts_with("the declaration of class `{ this is no JSON, and longer than can b` is malformed:")
-    );
+    assert!(error.starts_with("the declaration of class `{ this is no JSON, and longer than can b` is malformed:"));
 }
 
 fn loops() -> Value {
@@ -247,8 +239,7 @@ fn loops_of_a_class_have_to_fit_together() {
         refused_loops(|_, driver, _| driver["knowledge"] = json!("c.Boat")),
         not_together("`c.Driver` works on another knowledge")
     );
-    let reference =
-        |interface: &str| json!([{"name": "gps", "interface": {"name": interface, "operations": []}}]);
+    let reference = |interface: &str| json!([{"name": "gps", "interface": {"name": interface, "operations": []}}]);
     assert_eq!(
         refused_loops(|class, driver, saver| {
             driver["references"] = reference("a.Gps");
@@ -258,9 +249,7 @@ fn loops_of_a_class_have_to_fit_together() {
         not_together("`c.Saver` and `c.Driver` have different references `gps`")
     );
     assert_eq!(
-        refused_loops(
-            |_, _, saver| saver["properties"] = json!([{"name": "x", "type": "float", "required": true}])
-        ),
+        refused_loops(|_, _, saver| saver["properties"] = json!([{"name": "x", "type": "float", "required": true}])),
         of_class("its loop `c.Saver` has to be given `x`")
     );
     assert_eq!(

@@ -77,22 +77,14 @@ fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {
     for property in all {
         let name = &property.name;
         if (property.kind == PropertyKind::Complex) == property.properties.is_empty() {
-            return Err(format!(
-                "property `{name}` of type {} has the wrong inner properties",
-                property.kind.name()
-            ));
+            return Err(format!("property `{name}` of type {} has the wrong inner properties", property.kind.name()));
         }
         if let Some(default) = &property.default {
-            property
-                .check(default)
-                .map_err(|message| format!("the default of property `{name}`: {message}"))?;
+            property.check(default).map_err(|message| format!("the default of property `{name}`: {message}"))?;
         }
         for bound in [&property.min, &property.max, &property.exclusive_max].into_iter().flatten() {
             if saoms_api::host::declaration::parse_scalar(property.kind, bound).is_none() {
-                return Err(format!(
-                    "the bound `{bound}` of property `{name}` is no {}",
-                    property.kind.name()
-                ));
+                return Err(format!("the bound `{bound}` of property `{name}` is no {}", property.kind.name()));
             }
         }
         properties(&property.properties)?;

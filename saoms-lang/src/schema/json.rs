@@ -43,12 +43,8 @@ fn read(kind: &Type, reader: &mut Reader<'_>) -> Result<Value, DecodeError> {
         Type::Bool => boolean(reader)?.into(),
         Type::Number(number) => match scalar(*number, reader)? {
             // All integers are of 64 bits or less.
-            Scalar::Integer(value) => {
-                i64::try_from(value).map_or_else(|_| (value as u64).into(), Value::from)
-            }
-            Scalar::Float(value) => {
-                JsonNumber::from_f64(value).map_or_else(|| value.to_string().into(), Value::Number)
-            }
+            Scalar::Integer(value) => i64::try_from(value).map_or_else(|_| (value as u64).into(), Value::from),
+            Scalar::Float(value) => JsonNumber::from_f64(value).map_or_else(|| value.to_string().into(), Value::Number),
         },
         Type::String => reader.string()?.into(),
         Type::Enumeration(number, values) => constant(*number, values, reader)?.into(),
@@ -62,8 +58,7 @@ fn read(kind: &Type, reader: &mut Reader<'_>) -> Result<Value, DecodeError> {
 
 fn write_message(schema: &Schema, value: &Value, writer: &mut Writer) -> Result<(), SchemaError> {
     let Some(object) = value.as_object() else { return Err(wrong(value, "an object")) };
-    if let Some(unknown) = object.keys().find(|name| !schema.fields.iter().any(|field| field.name == **name))
-    {
+    if let Some(unknown) = object.keys().find(|name| !schema.fields.iter().any(|field| field.name == **name)) {
         let names: Vec<&str> = schema.fields.iter().map(|field| field.name.as_str()).collect();
         return Err(SchemaError(format!(
             "`{}` has no field `{unknown}`; its fields are: {}",

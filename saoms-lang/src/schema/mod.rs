@@ -134,8 +134,7 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
         #[serde(rename = "type")]
         kind: Value,
     }
-    let shape =
-        Shape::deserialize(value).map_err(|error| SchemaError(format!("a schema of a message: {error}")))?;
+    let shape = Shape::deserialize(value).map_err(|error| SchemaError(format!("a schema of a message: {error}")))?;
     let Some(deepest) = deepest.checked_sub(1) else {
         return Err(SchemaError(format!("message `{}` is nested more than {DEEPEST} deep", shape.name)));
     };
@@ -162,21 +161,16 @@ fn kind(value: &Value, deepest: usize) -> Result<Type, SchemaError> {
         };
     }
     if let Some(element) = value.get("sequence") {
-        let deepest = deepest
-            .checked_sub(1)
-            .ok_or_else(|| SchemaError(format!("it is nested more than {DEEPEST} deep")))?;
+        let deepest =
+            deepest.checked_sub(1).ok_or_else(|| SchemaError(format!("it is nested more than {DEEPEST} deep")))?;
         return Ok(Type::Sequence(Box::new(kind(element, deepest)?)));
     }
     if let Some(number) = value.get("enumeration") {
-        let number =
-            number.as_str().and_then(Number::of).filter(|number| !number.is_float()).ok_or_else(unknown)?;
+        let number = number.as_str().and_then(Number::of).filter(|number| !number.is_float()).ok_or_else(unknown)?;
         let values = value.get("values").and_then(Value::as_object).ok_or_else(unknown)?;
         let values = values.iter().map(|(name, value)| {
-            let value = value
-                .as_i64()
-                .map(i128::from)
-                .or_else(|| value.as_u64().map(i128::from))
-                .ok_or_else(unknown)?;
+            let value =
+                value.as_i64().map(i128::from).or_else(|| value.as_u64().map(i128::from)).ok_or_else(unknown)?;
             Ok((name.clone(), value))
         });
         return Ok(Type::Enumeration(number, values.collect::<Result<_, SchemaError>>()?));
@@ -240,9 +234,7 @@ impl Type {
             Type::Bool => 1,
             Type::Number(number) | Type::Enumeration(number, _) => number.size(),
             Type::String | Type::Sequence(_) => 4,
-            Type::Message(schema) => {
-                schema.fields.iter().map(|field| field.kind.least_size()).sum::<usize>().max(1)
-            }
+            Type::Message(schema) => schema.fields.iter().map(|field| field.kind.least_size()).sum::<usize>().max(1),
         }
     }
 }

@@ -23,15 +23,9 @@ fn skip(kind: &Type, reader: &mut Reader<'_>) -> Result<(), DecodeError> {
             let count = reader.length(element.least_size())?;
             match **element {
                 // Any bits are a number: nothing to look at one by one.
-                Type::Number(number) if number.size() == 8 => {
-                    reader.scalars::<8, ()>(count, |_| ()).map(drop)
-                }
-                Type::Number(number) if number.size() == 4 => {
-                    reader.scalars::<4, ()>(count, |_| ()).map(drop)
-                }
-                Type::Number(number) if number.size() == 2 => {
-                    reader.scalars::<2, ()>(count, |_| ()).map(drop)
-                }
+                Type::Number(number) if number.size() == 8 => reader.scalars::<8, ()>(count, |_| ()).map(drop),
+                Type::Number(number) if number.size() == 4 => reader.scalars::<4, ()>(count, |_| ()).map(drop),
+                Type::Number(number) if number.size() == 2 => reader.scalars::<2, ()>(count, |_| ()).map(drop),
                 Type::Number(_) => reader.scalars::<1, ()>(count, |_| ()).map(drop),
                 _ => (0..count).try_for_each(|_| skip(element, reader)),
             }

@@ -24,9 +24,8 @@ fn value(kind: &Type, chance: &mut Chance, writer: &mut Writer) {
         Type::Bool => writer.scalar([u8::from(chance.chance(0.5))]),
         Type::Number(number) => scalar(*number, chance, writer),
         Type::String => {
-            let text: String = (0..chance.below(5))
-                .map(|_| chance.pick(&['a', ' ', '7', 'ü', '\0']).unwrap_or(&'a'))
-                .collect();
+            let text: String =
+                (0..chance.below(5)).map(|_| chance.pick(&['a', ' ', '7', 'ü', '\0']).unwrap_or(&'a')).collect();
             writer.string(&text);
         }
         Type::Enumeration(number, values) => {

@@ -70,9 +70,7 @@ proptest! {
 
 #[test]
 fn json_is_what_people_expect() {
-    let value = schema()
-        .decode(&cdr::encode(&All { kind: Kind::Takeoff, half: f32::NAN, ..All::default() }))
-        .unwrap();
+    let value = schema().decode(&cdr::encode(&All { kind: Kind::Takeoff, half: f32::NAN, ..All::default() })).unwrap();
     assert_eq!(value["kind"], "TAKEOFF");
     assert_eq!(value["block"], json!({"x": 0, "y": 0}));
     assert_eq!(value["half"], "NaN");
@@ -101,8 +99,7 @@ fn a_schema_that_is_none_is_refused() {
         assert!(Schema::parse(text).is_err(), "{text}");
     }
     let deep = (0..40).fold("\"int8\"".to_owned(), |inner, _| format!("{{\"sequence\":{inner}}}"));
-    let error =
-        Schema::parse(&format!(r#"{{"name":"A","fields":[{{"name":"x","type":{deep}}}]}}"#)).unwrap_err();
+    let error = Schema::parse(&format!(r#"{{"name":"A","fields":[{{"name":"x","type":{deep}}}]}}"#)).unwrap_err();
     assert!(error.to_string().contains("32 deep"), "{error}");
 }
 

@@ -131,10 +131,7 @@ impl<'a> Attribute<'a> {
 
     /// The words of a value that is a list, each with its own place.
     pub fn words(self) -> impl Iterator<Item = Text> + use<'a> {
-        self.raw_value()
-            .split(value::is_space)
-            .filter(|word| !word.is_empty())
-            .map(move |word| self.located(word))
+        self.raw_value().split(value::is_space).filter(|word| !word.is_empty()).map(move |word| self.located(word))
     }
 
     /// The same, where blanks between `${` and `}` do not separate.

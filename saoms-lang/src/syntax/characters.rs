@@ -28,13 +28,11 @@ pub(super) fn survey(text: &[u8]) -> Survey {
 
 /// The first forbidden character at or behind `from`.
 fn next_forbidden(text: &[u8], from: usize) -> Option<usize> {
-    let is_forbidden =
-        |at: &usize| is_control(text[*at]) || matches!(text[*at..], [0xef, 0xbf, 0xbe | 0xbf, ..]);
+    let is_forbidden = |at: &usize| is_control(text[*at]) || matches!(text[*at..], [0xef, 0xbf, 0xbe | 0xbf, ..]);
     // Without a branch for each byte, the compiler makes vector instructions of it.
     let rows = (from..text.len()).step_by(ROW).map(|start| start..text.len().min(start + ROW));
     let is_suspect = |byte: &u8| is_control(*byte) | (*byte == 0xef);
-    let suspects =
-        rows.filter(|row| text[row.clone()].iter().fold(false, |all, byte| all | is_suspect(byte)));
+    let suspects = rows.filter(|row| text[row.clone()].iter().fold(false, |all, byte| all | is_suspect(byte)));
     suspects.flatten().find(is_forbidden)
 }
 

@@ -128,9 +128,8 @@ impl Document {
     pub(super) fn declaration(&self, element: ElementId, prefix: &str) -> Option<usize> {
         let all = self.declared.0.get_or_init(|| {
             let many = self.elements().filter(|element| element.count_of_attributes() > MANY_ATTRIBUTES);
-            let declared = |element: Element<'_>| {
-                element.declared_prefixes().map(|(prefix, at)| (prefix.into(), at)).collect()
-            };
+            let declared =
+                |element: Element<'_>| element.declared_prefixes().map(|(prefix, at)| (prefix.into(), at)).collect();
             many.map(|element| (element.id(), declared(element))).collect()
         });
         all.get(&element)?.get(prefix).copied()

@@ -4,9 +4,7 @@ use std::borrow::Cow;
 
 use super::Attribute;
 use super::document::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, Node, XMLNS};
-use super::token::{
-    BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, Token, TokenKind, UNNAMED, UNSURE_TEXT,
-};
+use super::token::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, Token, TokenKind, UNNAMED, UNSURE_TEXT};
 use super::value;
 use crate::source::{Location, Span};
 
@@ -173,8 +171,7 @@ impl<'a> Element<'a> {
 
     fn raw_attributes(self) -> &'a [super::attribute::RawAttribute] {
         let Document { elements, attributes, .. } = self.document;
-        let end =
-            elements.get(self.id.0 as usize + 1).map_or(attributes.len(), |next| next.attributes as usize);
+        let end = elements.get(self.id.0 as usize + 1).map_or(attributes.len(), |next| next.attributes as usize);
         &attributes[self.node().attributes as usize..end]
     }
 
@@ -206,9 +203,7 @@ impl<'a> Element<'a> {
     /// The attribute of this name in no namespace.
     #[inline]
     pub fn attribute(self, name: &str) -> Option<Attribute<'a>> {
-        let is_it = |one: &Attribute<'_>| {
-            one.raw.namespace == NO_NAMESPACE && one.raw.name_len as usize == name.len()
-        };
+        let is_it = |one: &Attribute<'_>| one.raw.namespace == NO_NAMESPACE && one.raw.name_len as usize == name.len();
         self.written_attributes().find(|one| is_it(one) && one.is_sure() && one.name() == name)
     }
 
@@ -241,10 +236,7 @@ impl<'a> Element<'a> {
     /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the
     /// attributes.
     pub(super) fn declared_prefixes(self) -> impl Iterator<Item = (&'a str, usize)> {
-        let all = self
-            .written_attributes()
-            .enumerate()
-            .filter(|(_, one)| one.raw.namespace == XMLNS && one.is_sure());
+        let all = self.written_attributes().enumerate().filter(|(_, one)| one.raw.namespace == XMLNS && one.is_sure());
         all.map(move |(at, one)| {
             let (before, local) = split(one.name());
             (before.map_or("", |_| local), at)

@@ -29,13 +29,7 @@ impl<'a> Namespaces<'a> {
     pub(super) fn new() -> Self {
         let names: Vec<Box<str>> = vec!["".into(), XML_NAMESPACE.into(), XMLNS_NAMESPACE.into()];
         let numbers = names.iter().cloned().zip(0..).collect();
-        Self {
-            names,
-            numbers,
-            default: NO_NAMESPACE,
-            bound: HashMap::from([("xml", 1)]),
-            replaced: Vec::new(),
-        }
+        Self { names, numbers, default: NO_NAMESPACE, bound: HashMap::from([("xml", 1)]), replaced: Vec::new() }
     }
 
     /// The number of declarations in scope, for [`Namespaces::leave`].

@@ -72,8 +72,7 @@ fn single_dashes(inside: &str, start: u32, input: Input<'_>) -> Vec<Edit> {
 
 /// The kind of markup that starts with `<!` or `<?`; that of its start alone is known at the end of a text, too.
 pub(super) fn kind(rest: &str) -> Option<TokenKind> {
-    let kinds =
-        [("<!--", TokenKind::Comment), ("<![CDATA[", TokenKind::Section), ("<?", TokenKind::Instruction)];
+    let kinds = [("<!--", TokenKind::Comment), ("<![CDATA[", TokenKind::Section), ("<?", TokenKind::Instruction)];
     if starts_doctype(rest) {
         return Some(TokenKind::Doctype);
     }
@@ -122,9 +121,8 @@ pub(super) fn starts_doctype(text: &str) -> bool {
 /// The fault of what is between `<?xml` and `?>`: version, then encoding, then standalone.
 fn declaration(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
     let help = "as in `<?xml version=\"1.0\" encoding=\"UTF-8\"?>`";
-    let fault = |from: u32, to: u32, message: String| {
-        Some(input.fault(&codes::XML_DECLARATION, from, to, message).help(help))
-    };
+    let fault =
+        |from: u32, to: u32, message: String| Some(input.fault(&codes::XML_DECLARATION, from, to, message).help(help));
     let mut at = start;
     let mut expected: &[&str] = &["version", "encoding", "standalone"];
     loop {

@@ -19,8 +19,7 @@ pub(super) enum BadReference {
 /// Checks the reference whose `&` is at byte `at`; gives the byte behind its `;`.
 pub(super) fn check(input: Input<'_>, at: u32) -> Result<u32, BadReference> {
     let after = &input.text[at as usize + 1..];
-    let length =
-        after.bytes().take_while(|&byte| byte.is_ascii_alphanumeric() || b"#_-.:".contains(&byte)).count();
+    let length = after.bytes().take_while(|&byte| byte.is_ascii_alphanumeric() || b"#_-.:".contains(&byte)).count();
     if after.as_bytes().get(length) != Some(&b';') || length == 0 {
         return Err(BadReference::Ampersand(at));
     }
@@ -54,8 +53,7 @@ impl BadReference {
         let (whole, inside) = (quoted(written), &written[1..written.len() - 1]);
         if inside.starts_with('#') {
             let message = format!("{whole} is no character that XML allows");
-            let help =
-                "a character reference is `&#` and a decimal, or `&#x` and a hexadecimal number, then `;`";
+            let help = "a character reference is `&#` and a decimal, or `&#x` and a hexadecimal number, then `;`";
             return input.fault(&codes::XML_ENTITY, span.start, span.end, message).help(help);
         }
         let message = format!("{whole} is no entity that is known here");

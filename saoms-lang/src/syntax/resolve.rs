@@ -15,12 +15,8 @@ use crate::diagnostic::codes;
 
 /// Binds all prefixes; gives the namespaces by number.
 pub(super) fn resolve<'a>(lexer: &mut Lexer<'a>) -> Namespaces<'a> {
-    let mut resolver = Resolver {
-        input: lexer.input,
-        namespaces: Namespaces::new(),
-        unbound: HashSet::new(),
-        scopes: Vec::new(),
-    };
+    let mut resolver =
+        Resolver { input: lexer.input, namespaces: Namespaces::new(), unbound: HashSet::new(), scopes: Vec::new() };
     for element in 0..lexer.elements.len() {
         resolver.element(lexer, element);
     }
@@ -51,8 +47,7 @@ impl<'a> Resolver<'a> {
             lexer.elements[element].namespace = self.namespaces.default();
             return;
         }
-        let end =
-            lexer.elements.get(element + 1).map_or(lexer.attributes.len(), |next| next.attributes as usize);
+        let end = lexer.elements.get(element + 1).map_or(lexer.attributes.len(), |next| next.attributes as usize);
         let range = attributes as usize..end;
         let depth = self.namespaces.depth();
         for at in range.clone() {
@@ -98,13 +93,7 @@ impl<'a> Resolver<'a> {
     }
 
     /// Finds the namespaces of attributes with prefixes, and two of one namespace and name.
-    fn attributes(
-        &mut self,
-        lexer: &mut Lexer<'a>,
-        token: usize,
-        range: std::ops::Range<usize>,
-        root_end: u32,
-    ) {
+    fn attributes(&mut self, lexer: &mut Lexer<'a>, token: usize, range: std::ops::Range<usize>, root_end: u32) {
         let input = self.input;
         let mut seen: HashMap<(u32, &str), usize> = HashMap::new();
         for at in range {

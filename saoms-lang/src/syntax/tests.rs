@@ -35,15 +35,11 @@ fn a_tree_knows_its_places() {
     let document = tree(text);
     let slice = |span: Span| &text[span.start as usize..span.end as usize];
     let root = document.root();
-    assert_eq!(
-        (root.name(), root.prefix(), root.local_name(), root.namespace()),
-        ("a:r", Some("a"), "r", "u")
-    );
+    assert_eq!((root.name(), root.prefix(), root.local_name(), root.namespace()), ("a:r", Some("a"), "r", "u"));
     assert_eq!(slice(root.name_span()), "a:r");
     assert_eq!(slice(root.start_tag_span()), "<a:r xmlns:a = \"u\" a:x='1'\n y=\"2\">");
     assert_eq!(slice(root.content_span()), "<b/> t <c>u</c >");
-    let attributes: Vec<_> =
-        root.attributes().map(|one| (one.name(), one.namespace(), one.value())).collect();
+    let attributes: Vec<_> = root.attributes().map(|one| (one.name(), one.namespace(), one.value())).collect();
     assert_eq!(attributes, [("a:x", "u", "1".into()), ("y", "", "2".into())]);
     let y = root.attribute("y").unwrap();
     assert_eq!((slice(y.span()), slice(y.name_span()), slice(y.value_span())), ("y=\"2\"", "y", "2"));
@@ -62,9 +58,8 @@ fn a_tree_knows_its_places() {
 
 #[test]
 fn values_are_normalised_as_xml_says() {
-    let document = tree(
-        "<a v='1\t2\r\n3\n4&#10;5&lt;&#x3C;&quot;é'>x\r\ny\rz&amp;<!--c--><![CDATA[<&amp;>]]><?p?>w</a>",
-    );
+    let document =
+        tree("<a v='1\t2\r\n3\n4&#10;5&lt;&#x3C;&quot;é'>x\r\ny\rz&amp;<!--c--><![CDATA[<&amp;>]]><?p?>w</a>");
     assert_eq!(document.root().attribute("v").unwrap().value(), "1 2 3 4\n5<<\"é");
     assert_eq!(document.root().text(), "x\ny\nz&<&amp;>w");
 }
@@ -84,8 +79,7 @@ fn text_has_a_place_without_the_blanks_and_comments_around_it() {
 
 #[test]
 fn prefixes_hold_where_they_are_declared() {
-    let document =
-        tree("<a xmlns='d' xmlns:p='1'><p:b xmlns:p='2' xmlns=''><c p:x=''/></p:b><p:d xml:lang='en'/></a>");
+    let document = tree("<a xmlns='d' xmlns:p='1'><p:b xmlns:p='2' xmlns=''><c p:x=''/></p:b><p:d xml:lang='en'/></a>");
     let all: Vec<_> = document.elements().map(|one| (one.local_name(), one.namespace())).collect();
     assert_eq!(all, [("a", "d"), ("b", "2"), ("c", ""), ("d", "1")]);
     let c = document.elements().nth(2).unwrap();
@@ -364,10 +358,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
 
 #[test]
 fn a_fault_before_a_forbidden_character_comes_first() {
-    assert_eq!(
-        fault("<a>\u{1}</a>"),
-        "1:4 [\u{1}] S0108 the character U+0001 is not allowed in XML | remove it"
-    );
+    assert_eq!(fault("<a>\u{1}</a>"), "1:4 [\u{1}] S0108 the character U+0001 is not allowed in XML | remove it");
     assert_eq!(
         fault("<a b='\u{ffff}'/>"),
         "1:7 [\u{ffff}] S0108 the character U+FFFF is not allowed in XML | remove it"
@@ -440,8 +431,7 @@ fn a_tree_goes_on_behind_faults() {
 #[track_caller]
 fn is_lossless(text: &str) {
     let Parse { document, faults } = parse(FileId(0), &Arc::new(text.into()));
-    let tokens: String =
-        document.tokens().map(|(_, span)| &text[span.start as usize..span.end as usize]).collect();
+    let tokens: String = document.tokens().map(|(_, span)| &text[span.start as usize..span.end as usize]).collect();
     assert_eq!(tokens, text);
     for (_, span) in document.tokens() {
         assert!(!span.is_empty() || text.is_empty() || document.root().name().is_empty(), "{text:?}");
@@ -460,13 +450,8 @@ fn is_lossless(text: &str) {
             assert_eq!(child.parent().map(Element::id), Some(element.id()), "{text:?}");
             assert!(child.id() > element.id(), "{text:?}");
         }
-        let _ = (
-            element.text(),
-            element.trimmed_text(),
-            element.text_span(),
-            element.end_name_span(),
-            element.namespace(),
-        );
+        let _ =
+            (element.text(), element.trimmed_text(), element.text_span(), element.end_name_span(), element.namespace());
     }
     for fault in &faults {
         assert!(fault.location.span.end as usize <= text.len(), "{text:?}");
@@ -491,46 +476,10 @@ fn any_part_of_a_text_keeps_every_byte() {
 }
 
 const PIECES: [&str; 40] = [
-    "<composite>",
-    "</composite>",
-    "<component name='a'>",
-    "<component",
-    "</component>",
-    "<property name='p'>",
-    "</property>",
-    "<property>",
-    "</properti>",
-    "<wire source='",
-    "<",
-    ">",
-    "/>",
-    "</",
-    "'",
-    "\"",
-    "=",
-    " ",
-    "\n",
-    "a",
-    "b='1'",
-    "b=2",
-    "&",
-    "&amp;",
-    "&x;",
-    "<!--",
-    "-->",
-    "<![CDATA[",
-    "]]>",
-    "<?p",
-    "?>",
-    "<!DOCTYPE",
-    "[",
-    "p:",
-    "xmlns:p='u'",
-    "\u{2028}",
-    "\u{1}",
-    "<!x>",
-    "ä",
-    "\u{201c}",
+    "<composite>", "</composite>", "<component name='a'>", "<component", "</component>", "<property name='p'>",
+    "</property>", "<property>", "</properti>", "<wire source='", "<", ">", "/>", "</", "'", "\"", "=", " ", "\n", "a",
+    "b='1'", "b=2", "&", "&amp;", "&x;", "<!--", "-->", "<![CDATA[", "]]>", "<?p", "?>", "<!DOCTYPE", "[", "p:",
+    "xmlns:p='u'", "\u{2028}", "\u{1}", "<!x>", "ä", "\u{201c}",
 ];
 
 proptest! {

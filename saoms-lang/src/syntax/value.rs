@@ -150,14 +150,12 @@ pub(super) fn trim(text: &str) -> &str {
 
 /// The pieces of text between comments and instructions; the flag says that a piece is a CDATA section's inside.
 fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, bool)> {
-    const MARKUP: [(&str, &str, bool); 3] =
-        [("<![CDATA[", "]]>", true), ("<!--", "-->", false), ("<?", "?>", false)];
+    const MARKUP: [(&str, &str, bool); 3] = [("<![CDATA[", "]]>", true), ("<!--", "-->", false), ("<?", "?>", false)];
     let mut at = 0;
     std::iter::from_fn(move || {
         while at < stretch.len() {
             let rest = &stretch[at..];
-            let Some((open, close, keep)) = MARKUP.into_iter().find(|(open, ..)| rest.starts_with(open))
-            else {
+            let Some((open, close, keep)) = MARKUP.into_iter().find(|(open, ..)| rest.starts_with(open)) else {
                 let next = rest.bytes().skip(1).position(|byte| byte == b'<');
                 let length = next.map_or(rest.len(), |length| length + 1);
                 at += length;

@@ -90,10 +90,7 @@ impl NewElement {
         // What is declared stands first, in order.
         attributes.sort_by(|(one, _), (other, _)| {
             let key = |name: &str| {
-                (
-                    !name.starts_with("xmlns"),
-                    if name.starts_with("xmlns") { name.to_owned() } else { String::new() },
-                )
+                (!name.starts_with("xmlns"), if name.starts_with("xmlns") { name.to_owned() } else { String::new() })
             };
             key(one).cmp(&key(other))
         });

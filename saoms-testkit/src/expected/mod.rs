@@ -40,15 +40,13 @@ pub fn expect_diagnostics(path: impl AsRef<Path>) {
     if files.is_empty() {
         panic!("there are no files `*.composite` in `{}`", path.display());
     }
-    let differences: String =
-        files.iter().filter_map(|file| Fleet::of_file(file).differences().err()).collect();
+    let differences: String = files.iter().filter_map(|file| Fleet::of_file(file).differences().err()).collect();
     if !differences.is_empty() {
         panic!("{differences}{HINT}");
     }
 }
 
-const HINT: &str =
-    "- is expected and not found, + is found and not expected; UPDATE_EXPECT=1 writes what is found";
+const HINT: &str = "- is expected and not found, + is found and not expected; UPDATE_EXPECT=1 writes what is found";
 
 /// The composites in a folder and below, sorted.
 fn composites(folder: &Path) -> Vec<std::path::PathBuf> {
@@ -153,14 +151,11 @@ impl Fleet {
 
     /// Rewrites the comments; `true` if the files expect exactly the found diagnostics then.
     fn update(&self, texts: &[Checked]) -> bool {
-        let files: Vec<&Checked> = texts
-            .iter()
-            .filter(|one| !one.differences().is_empty() && Path::new(&one.path).is_file())
-            .collect();
+        let files: Vec<&Checked> =
+            texts.iter().filter(|one| !one.differences().is_empty() && Path::new(&one.path).is_file()).collect();
         for placement in Placement::ALL {
-            let written = files
-                .iter()
-                .all(|file| fs::write(&file.path, rewritten(&file.text, &file.found, placement)).is_ok());
+            let written =
+                files.iter().all(|file| fs::write(&file.path, rewritten(&file.text, &file.found, placement)).is_ok());
             if written && self.texts().iter().all(|one| one.differences().is_empty()) {
                 return true;
             }

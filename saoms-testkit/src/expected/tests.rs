@@ -80,11 +80,7 @@ fn a_comment_says_as_much_as_matters() {
         assert_eq!(of(right), "", "{right}");
     }
     for wrong in [
-        "",
-        "<!--~ warning S3004 -->",
-        "<!--~ S3004 other -->",
-        "<!--~^ S3004 -->",
-        "<!--~ S3004 --><!--~ S3004 -->",
+        "", "<!--~ warning S3004 -->", "<!--~ S3004 other -->", "<!--~^ S3004 -->", "<!--~ S3004 --><!--~ S3004 -->",
         "<!--~ -->",
     ] {
         assert_ne!(of(wrong), "", "{wrong}");
@@ -94,8 +90,7 @@ fn a_comment_says_as_much_as_matters() {
 #[test]
 fn comments_go_behind_the_line_or_where_the_next_can_stand() {
     let text = "<a>\n  <b x='>\n'\n  />\n  <p>one\n two</p>\n</a>";
-    let out =
-        written(text, &[(2, "in a tag"), (5, "in text"), (7, "at the end"), (7, "again")], Placement::Behind);
+    let out = written(text, &[(2, "in a tag"), (5, "in text"), (7, "at the end"), (7, "again")], Placement::Behind);
     assert_eq!(
         out,
         "<a>\n  <b x='>\n'\n  />\n  <!--~^3 error S1 in a tag -->\n  <p>one\n two</p>\n <!--~^2 error S1 in text -->\n</a>\n\
@@ -122,10 +117,7 @@ fn broken_texts_have_their_comments_at_an_end() {
         "<?xml version='1.0'?>\n<a>\n<b\n<!--~^ error S1 no end -->\n"
     );
     let start = written(text, &[(3, "no end"), (2, "or here")], Placement::Start);
-    assert_eq!(
-        start,
-        "<?xml version='1.0'?>\n<!--~v2 error S1 or here -->\n<!--~v2 error S1 no end -->\n<a>\n<b"
-    );
+    assert_eq!(start, "<?xml version='1.0'?>\n<!--~v2 error S1 or here -->\n<!--~v2 error S1 no end -->\n<a>\n<b");
     let lines: Vec<u32> = comments(&start).iter().map(|one| one.expectation.line).collect();
     assert_eq!(lines, [4, 5]);
 }

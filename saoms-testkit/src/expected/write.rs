@@ -71,8 +71,7 @@ fn without_comments(text: &str) -> (String, Vec<u32>) {
     for Comment { at: comment, .. } in comments(text) {
         let start = text[..comment.start].rfind('\n').map_or(0, |end| end + 1);
         let end = text[comment.end..].find('\n').map_or(text.len(), |end| comment.end + end + 1);
-        let is_alone =
-            text[start..comment.start].trim().is_empty() && text[comment.end..end].trim().is_empty();
+        let is_alone = text[start..comment.start].trim().is_empty() && text[comment.end..end].trim().is_empty();
         if is_alone && start >= at {
             bare.push_str(&text[at..start]);
             let first = lines(&text[..start]) + 1;

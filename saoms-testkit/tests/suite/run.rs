@@ -40,10 +40,7 @@ fn what_is_not_so_is_told_with_what_is() {
     let told = failure(|| drop(robot.to("sings")));
     assert!(told.starts_with("Robot7 did not do `sings`; it did\n  0.") && told.contains("more"), "{told}");
     let told = failure(|| drop(collects.clone().before(&takes)));
-    assert!(
-        told.contains("collects luggage 1") && told.contains(" is not before `Robot7 takes luggage 1 "),
-        "{told}"
-    );
+    assert!(told.contains("collects luggage 1") && told.contains(" is not before `Robot7 takes luggage 1 "), "{told}");
     let told = failure(|| drop(takes.clone().after(Duration::from_secs(50))));
     assert!(told.ends_with(" is not after 50.000 s"), "{told}");
     let told = failure(|| robot.never_to("takes luggage"));
@@ -60,13 +57,9 @@ fn an_expanded_fleet_is_held_to_a_file() {
     let path = folder.path().join("hall.composite");
     let fleet = Fleet::of_file("../composites/hall.composite");
     let told = failure(|| fleet.expect_expanded(&path));
-    assert!(
-        told.contains("hall.composite` says:\n+ <composite ") && told.contains("UPDATE_EXPECT=1"),
-        "{told}"
-    );
+    assert!(told.contains("hall.composite` says:\n+ <composite ") && told.contains("UPDATE_EXPECT=1"), "{told}");
     let (_, text) = told.split_once("says:\n").unwrap();
-    let lines: String =
-        text.lines().filter_map(|line| Some(line.strip_prefix("+ ")?.to_owned() + "\n")).collect();
+    let lines: String = text.lines().filter_map(|line| Some(line.strip_prefix("+ ")?.to_owned() + "\n")).collect();
     std::fs::write(&path, lines).unwrap();
     fleet.expect_expanded(&path);
 }

@@ -98,14 +98,12 @@ mod tests {
     #[test]
     fn what_allows_a_code_stands_in_the_innermost_element_that_can_hold_it() {
         const SAID: &str = "<s:severity code=\"S4001\" level=\"allow\" reason=\"\"/>";
-        let (titles, text) = allow(&composite(
-            "  <component name=\"R\">\n    <property name=\"|ID\">1</property>\n  </component>",
-        ));
+        let (titles, text) =
+            allow(&composite("  <component name=\"R\">\n    <property name=\"|ID\">1</property>\n  </component>"));
         let whole = "Allow S4001 in this composite, with a reason";
         assert_eq!(titles, ["Allow S4001 in component `R`, with a reason", whole]);
-        let expected = format!(
-            "  <component name=\"R\">\n    {SAID}\n    <property name=\"ID\">1</property>\n  </component>"
-        );
+        let expected =
+            format!("  <component name=\"R\">\n    {SAID}\n    <property name=\"ID\">1</property>\n  </component>");
         assert_eq!(text, composite(&expected));
         let (titles, text) = allow(&composite("  <wire |source=\"a\" target=\"b\" />"));
         assert_eq!(titles, ["Allow S4001 in this wire, with a reason", whole]);

@@ -5,9 +5,7 @@ use std::fmt::Write;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::diagnostic::Code;
 use saoms_lang::load::vocabulary::{Kind, Known, children};
-use saoms_lang::registry::{
-    ClassDeclaration, ClassTopic, PropertyDeclaration, RegisteredClass, RegisteredLoop,
-};
+use saoms_lang::registry::{ClassDeclaration, ClassTopic, PropertyDeclaration, RegisteredClass, RegisteredLoop};
 
 /// A class, all about it.
 pub(crate) fn class(class: &RegisteredClass) -> String {
@@ -32,8 +30,7 @@ pub(crate) fn class(class: &RegisteredClass) -> String {
     list(&mut text, "References", declaration.references.iter().map(|one| one.name.as_str()));
     for (value, names) in declaration.loops.all() {
         let property = declaration.loops.property.as_deref().unwrap_or_default();
-        let title =
-            value.map_or_else(|| "Loops".to_owned(), |value| format!("Loops where {property} is `{value}`"));
+        let title = value.map_or_else(|| "Loops".to_owned(), |value| format!("Loops where {property} is `{value}`"));
         list(&mut text, &title, names.iter().map(String::as_str));
     }
     text

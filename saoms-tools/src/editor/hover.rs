@@ -27,8 +27,7 @@ pub fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)> {
         return table::hover(scene, byte);
     }
     match file.cursor(byte) {
-        Cursor::ElementName { element: Some(element), name, .. }
-        | Cursor::EndTag { element: Some(element), name } => {
+        Cursor::ElementName { element: Some(element), name, .. } | Cursor::EndTag { element: Some(element), name } => {
             let text = match file.kind(element.id()) {
                 Some(kind) => describe::element(kind),
                 None => other(element.local_name())?.to_owned(),
@@ -38,13 +37,10 @@ pub fn hover(scene: &Scene, byte: usize) -> Option<(String, Range<usize>)> {
         Cursor::AttributeName { element, name } => {
             let (kind, written) = (file.kind(element.id())?, &file.text[name.clone()]);
             let of_sca = kind.attributes.iter().find(|known| known.name == written);
-            let own =
-                || own_attributes(kind).find(|known| written.contains(':') && known.name == local(written));
+            let own = || own_attributes(kind).find(|known| written.contains(':') && known.name == local(written));
             Some((describe::attribute(of_sca.or_else(own)?), name))
         }
-        Cursor::AttributeValue { element, attribute, value } => {
-            value_of(scene, element, attribute.name(), value, byte)
-        }
+        Cursor::AttributeValue { element, attribute, value } => value_of(scene, element, attribute.name(), value, byte),
         Cursor::Text { parent: Some(element) } => {
             let inside = element.text_place()?;
             let is_value = element.local_name() == "value";
@@ -81,9 +77,7 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             Some(match one.multiplicity {
                 None => format!("**{name}**, a service of `{class}` with the interface `{interface}`"),
                 Some(multiplicity) => {
-                    format!(
-                        "**{name}**, a reference of `{class}`, `{multiplicity}`, for the interface `{interface}`"
-                    )
+                    format!("**{name}**, a reference of `{class}`, `{multiplicity}`, for the interface `{interface}`")
                 }
             })
         }
@@ -99,10 +93,8 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             Some(format!("**{name}**, a composite of `{namespace}`\n\n{count}, in `{path}`"))
         }
         Symbol::Loop { .. } => {
-            let component =
-                scene.component_around(scene.file().document.innermost(start as u32 + 1)?.id())?;
-            let one =
-                component.loops.iter().find(|one| one.name.at.start <= start && start <= one.name.at.end)?;
+            let component = scene.component_around(scene.file().document.innermost(start as u32 + 1)?.id())?;
+            let one = component.loops.iter().find(|one| one.name.at.start <= start && start <= one.name.at.end)?;
             let class = scene.class_of_loop((0, component), one)?;
             Some(describe::looping(scene.registry.get_loop(&class)?))
         }

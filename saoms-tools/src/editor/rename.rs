@@ -69,9 +69,7 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
             // One of several replicas keeps its index.
             let new = replica(&old, written, name);
             let new = new.ok_or_else(|| {
-                format!(
-                    "`{written}` is one of the replicas `{old}`: the new name has to hold the same expression"
-                )
+                format!("`{written}` is one of the replicas `{old}`: the new name has to hold the same expression")
             })?;
             Ok((place, new))
         })
@@ -131,11 +129,9 @@ fn taken(scene: &Scene, symbol: &Symbol, name: &str) -> Result<(), String> {
             let mut all = scene.unit_of(*file).iter().flat_map(|file| &named(file).components);
             all.any(|known| is_meant(&known.name.text))
         }
-        Symbol::Parameter { file, .. } => scene
-            .unit_of(*file)
-            .iter()
-            .flat_map(|file| &named(file).properties)
-            .any(|known| known.text == name),
+        Symbol::Parameter { file, .. } => {
+            scene.unit_of(*file).iter().flat_map(|file| &named(file).properties).any(|known| known.text == name)
+        }
         Symbol::Promoted { file, .. } => {
             let all = |file| named(file).services.iter().chain(&named(file).references);
             scene.unit_of(*file).iter().flat_map(all).any(|known| known.text == name)
@@ -178,9 +174,8 @@ fn named_among_others(scene: &Scene, symbol: &Symbol, old: &str) -> Result<(), S
 /// several.
 fn shared(scene: &Scene, one: &Occurrence) -> Result<(), String> {
     let outline = &scene.files[one.at.file].outline;
-    let is_here = |end: &End| {
-        end.is_outer && end.component.at.start <= one.at.start && one.at.end <= end.component.at.end
-    };
+    let is_here =
+        |end: &End| end.is_outer && end.component.at.start <= one.at.start && one.at.end <= end.component.at.end;
     if !outline.ends.iter().any(is_here) {
         return Ok(());
     }

@@ -34,9 +34,9 @@ pub fn selections(file: &File, at: usize) -> Vec<Range<usize>> {
     // Each holds the one before: of two that touch at the byte the one behind it counts.
     let mut nested: Vec<Range<usize>> = Vec::new();
     for range in all {
-        let is_wider = nested.last().is_none_or(|last| {
-            range.start <= last.start && last.end <= range.end && range.len() > last.len()
-        });
+        let is_wider = nested
+            .last()
+            .is_none_or(|last| range.start <= last.start && last.end <= range.end && range.len() > last.len());
         if is_wider {
             nested.push(range);
         }

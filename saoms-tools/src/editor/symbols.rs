@@ -133,13 +133,7 @@ fn value(file: &File, properties: &[Named], name: &str) -> Option<String> {
     Some(value.lines().next().unwrap_or_default().chars().take(40).collect())
 }
 
-fn symbol(
-    file: &File,
-    name: &Named,
-    kind: SymbolKind,
-    detail: &str,
-    children: Vec<DocumentSymbol>,
-) -> DocumentSymbol {
+fn symbol(file: &File, name: &Named, kind: SymbolKind, detail: &str, children: Vec<DocumentSymbol>) -> DocumentSymbol {
     DocumentSymbol {
         name: name.text.clone(),
         detail: detail.to_owned(),

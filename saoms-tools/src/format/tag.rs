@@ -12,10 +12,8 @@ pub(super) fn start(element: Element<'_>, is_empty: bool, width: usize, depth: u
     let columns = Lines::columns(depth);
     // A line end counts once, however it is written: it may become another one.
     let length = |text: &str| text.chars().count() - text.matches("\r\n").count();
-    let attributes: usize = element
-        .written_attributes()
-        .map(|one| " =\"\"".len() + length(one.name()) + length(one.raw_value()))
-        .sum();
+    let attributes: usize =
+        element.written_attributes().map(|one| " =\"\"".len() + length(one.name()) + length(one.raw_value())).sum();
     let fits = columns + 1 + length(element.name()) + attributes + close.len() <= width;
     lines.push("<");
     lines.push(element.name());

@@ -18,9 +18,7 @@ fn test(text: &str, expected: Expect) {
 
 /// The content of a composite.
 fn composite(content: &str) -> String {
-    format!(
-        "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c'>{content}</composite>"
-    )
+    format!("<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c'>{content}</composite>")
 }
 
 #[test]

@@ -14,9 +14,7 @@ pub fn dot(diagram: &Diagram) -> Picture<'_> {
 
 fn draw(diagram: &Diagram, out: &mut Sink<'_>) {
     let _ = writeln!(out, "digraph {} {{\n  rankdir=LR;", quoted(&diagram.name));
-    out.push_str(
-        "  node [fontname=\"Helvetica\", fontsize=11];\n  edge [fontname=\"Helvetica\", fontsize=9];\n",
-    );
+    out.push_str("  node [fontname=\"Helvetica\", fontsize=11];\n  edge [fontname=\"Helvetica\", fontsize=9];\n");
     open("composite", &diagram.name, out);
     composite(diagram, "", out);
     if let Some(note) = left_out(diagram) {
@@ -67,10 +65,8 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     for (id, ports, color) in ports {
         for (place, port) in ports.iter().enumerate() {
             let name = quoted(&port.name);
-            let _ = writeln!(
-                out,
-                "  {prefix}{id}{place} [shape=cds, style=filled, fillcolor=\"{color}\", label={name}];"
-            );
+            let _ =
+                writeln!(out, "  {prefix}{id}{place} [shape=cds, style=filled, fillcolor=\"{color}\", label={name}];");
         }
     }
     if is_inside {
@@ -82,21 +78,17 @@ fn composite(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
 fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
     for link in &diagram.links {
         let from = match link.from {
-            DiagramEnd::Component { component, port } => {
-                match diagram.components[component].references[port].inside {
-                    Some(place) => format!("{prefix}c{component}_r{place}"),
-                    None => format!("{prefix}c{component}:r{port}:e"),
-                }
-            }
+            DiagramEnd::Component { component, port } => match diagram.components[component].references[port].inside {
+                Some(place) => format!("{prefix}c{component}_r{place}"),
+                None => format!("{prefix}c{component}:r{port}:e"),
+            },
             DiagramEnd::Composite(place) => format!("{prefix}s{place}"),
         };
         let to = match link.to {
-            DiagramEnd::Component { component, port } => {
-                match diagram.components[component].services[port].inside {
-                    Some(place) => format!("{prefix}c{component}_s{place}"),
-                    None => format!("{prefix}c{component}:s{port}:w"),
-                }
-            }
+            DiagramEnd::Component { component, port } => match diagram.components[component].services[port].inside {
+                Some(place) => format!("{prefix}c{component}_s{place}"),
+                None => format!("{prefix}c{component}:s{port}:w"),
+            },
             DiagramEnd::Composite(place) => format!("{prefix}r{place}"),
         };
         let style = if link.kind == LinkKind::Promotion { " [style=dashed]" } else { "" };
@@ -117,8 +109,7 @@ fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
 
 fn record(component: &DiagramComponent) -> String {
     let column = |id: &str, ports: &[Port]| {
-        let fields =
-            ports.iter().enumerate().map(|(place, port)| format!("<{id}{place}> {}", field(&port.name)));
+        let fields = ports.iter().enumerate().map(|(place, port)| format!("<{id}{place}> {}", field(&port.name)));
         fields.collect::<Vec<_>>().join("|")
     };
     let mut middle = field(&component.label());

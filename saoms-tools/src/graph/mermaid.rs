@@ -85,8 +85,7 @@ fn edges(diagram: &Diagram, prefix: &str, out: &mut Sink<'_>) {
             LinkKind::Promotion => "-.->",
         };
         let names: Vec<&str> = [source, target].into_iter().filter(|name| !name.is_empty()).collect();
-        let label =
-            if names.is_empty() { String::new() } else { format!("|{}|", quoted(&names.join(" → "))) };
+        let label = if names.is_empty() { String::new() } else { format!("|{}|", quoted(&names.join(" → "))) };
         let _ = writeln!(out, "  {prefix}{from} {arrow}{label} {prefix}{to}");
     }
     for (place, topic) in diagram.topics.iter().enumerate() {

@@ -85,12 +85,7 @@ impl Ports {
     }
 
     /// The service that is meant where only its component is named: the first with this interface, or else the first.
-    pub(super) fn meant(
-        &mut self,
-        diagram: &mut Diagram,
-        component: usize,
-        interface: Option<&str>,
-    ) -> usize {
+    pub(super) fn meant(&mut self, diagram: &mut Diagram, component: usize, interface: Option<&str>) -> usize {
         let services = &diagram.components[component].services;
         let meant = if services.len() < FEW {
             let fits = |port: &Port| interface.is_some() && port.interface.as_deref() == interface;

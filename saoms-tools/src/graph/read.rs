@@ -50,17 +50,11 @@ pub(super) struct View<'c> {
 }
 
 impl<'c> View<'c> {
-    fn of(
-        contribution: &'c Contribution,
-        census: &'c Occurrences,
-        around: Vec<Origin>,
-        places: Vec<usize>,
-    ) -> Self {
+    fn of(contribution: &'c Contribution, census: &'c Occurrences, around: Vec<Origin>, places: Vec<usize>) -> Self {
         let all = contribution.composites();
         let autowire = |place: usize, around: bool| all[place].autowire.map_or(around, |one| one.value);
         let mut seen: HashSet<usize> = places.iter().copied().collect();
-        let mut places: Vec<(usize, bool)> =
-            places.into_iter().map(|place| (place, autowire(place, false))).collect();
+        let mut places: Vec<(usize, bool)> = places.into_iter().map(|place| (place, autowire(place, false))).collect();
         let mut at = 0;
         while let Some(&(place, around)) = places.get(at) {
             let includes = all[place].includes.iter();
@@ -93,9 +87,7 @@ impl<'c> View<'c> {
             .composites
             .iter()
             .flat_map(|(composite, autowire)| composite.components.iter().map(move |one| (*autowire, one)));
-        all.filter(|(_, component)| {
-            self.census.range(&self.around, component.origin).is_none_or(|(_, most)| most > 0)
-        })
+        all.filter(|(_, component)| self.census.range(&self.around, component.origin).is_none_or(|(_, most)| most > 0))
     }
 
     pub(super) fn wires(&self) -> impl Iterator<Item = &'c WireElement> {
@@ -163,10 +155,8 @@ impl Reader<'_> {
             component.replicas = self.census.range(&self.around, one.origin);
         }
         let named = one.implementation.as_ref().and_then(|one| self.contribution.link(one.origin));
-        let is_composite = one
-            .implementation
-            .as_ref()
-            .is_some_and(|one| matches!(one.kind, ImplementationKind::Composite { .. }));
+        let is_composite =
+            one.implementation.as_ref().is_some_and(|one| matches!(one.kind, ImplementationKind::Composite { .. }));
         if is_composite && !matches!(named, Some(Link::To(_))) {
             component.state = State::NotFound;
         }
@@ -198,17 +188,13 @@ impl Reader<'_> {
 }
 
 /// The registered class of a component.
-pub(super) fn class_of<'r>(
-    component: &model::ComponentElement,
-    registry: &'r Registry,
-) -> Option<&'r RegisteredClass> {
+pub(super) fn class_of<'r>(component: &model::ComponentElement, registry: &'r Registry) -> Option<&'r RegisteredClass> {
     registry.get(component.class()?).map(AsRef::as_ref)
 }
 
 fn component(component: &model::ComponentElement, registry: &Registry) -> DiagramComponent {
     let class = class_of(component, registry);
-    let mut services: Vec<Port> =
-        component.services.iter().map(|one| port(&one.name, one.interface())).collect();
+    let mut services: Vec<Port> = component.services.iter().map(|one| port(&one.name, one.interface())).collect();
     let mut references: Vec<Port> = component.references.iter().map(reference).collect();
     if let Some(class) = class {
         // What the host serves for every component is drawn where it is named.

@@ -5,9 +5,7 @@ use std::fmt::Write as _;
 
 use super::diagram::{Diagram, DiagramComponent, DiagramSetting, DiagramTopic, LinkKind, Port, State};
 use super::layout::measure::{CHEVRON, CHIP_HEIGHT, CHIP_SIZE, Chip, LABEL, NAME_SIZE, SMALL_SIZE};
-use super::layout::{
-    LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, border, heading, layout,
-};
+use super::layout::{LEGEND, Layout, Line, LineKind, Mark, Placed, Point, Rail, Rect, border, heading, layout};
 use super::picture::{Picture, Sink};
 use super::text::{left_out, width, xml};
 
@@ -105,8 +103,7 @@ impl Out<'_, '_> {
         });
         let _ = writeln!(self.text, "<path class=\"{class}\" d=\"{}\"/>", path.collect::<String>());
         for dot in &line.dots {
-            let _ =
-                writeln!(self.text, "<circle cx=\"{}\" cy=\"{}\" r=\"2.5\" fill=\"#33475b\"/>", dot.x, dot.y);
+            let _ = writeln!(self.text, "<circle cx=\"{}\" cy=\"{}\" r=\"2.5\" fill=\"#33475b\"/>", dot.x, dot.y);
         }
     }
 
@@ -207,8 +204,7 @@ impl Out<'_, '_> {
     /// A port with its name as it is shown; the whole name is in the tooltip.
     fn port_as(&mut self, class: &str, at: Point, port: &Port, shown: &str, label: Point, anchor: &str) {
         self.text.push_str("<g>");
-        let about: Vec<&str> =
-            [Some(port.name.as_str()), port.interface.as_deref()].into_iter().flatten().collect();
+        let about: Vec<&str> = [Some(port.name.as_str()), port.interface.as_deref()].into_iter().flatten().collect();
         self.title(Some(&about.join("\n")));
         self.chevron(class, at);
         if !shown.is_empty() {
@@ -252,11 +248,8 @@ impl Out<'_, '_> {
         let shown = topic.names.iter().take(MOST_NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
         let more = if topic.names.len() > MOST_NAMES { ", ..." } else { "" };
         self.title(Some(&format!("{shown}{more}\n{} topic of {}", topic.kind.name(), topic.message)));
-        let _ = write!(
-            self.text,
-            "<path class=\"rail\" stroke=\"{color}\" d=\"M{},{middle}H{}\"/>",
-            rail.from, rail.to
-        );
+        let _ =
+            write!(self.text, "<path class=\"rail\" stroke=\"{color}\" d=\"M{},{middle}H{}\"/>", rail.from, rail.to);
         let _ = write!(
             self.text,
             "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"8\" fill=\"#fff\" stroke=\"{color}\" stroke-width=\"1.5\"/>"
@@ -301,12 +294,10 @@ impl Out<'_, '_> {
             out.label("small", Point { x: x + 24, y: y + 4 }, text, SMALL_SIZE, "start");
             x += 24 + width(text, SMALL_SIZE, false) + 16;
         };
-        let has_ports =
-            |ports: fn(&DiagramComponent) -> bool| diagram.any(&|one| one.components.iter().any(ports));
+        let has_ports = |ports: fn(&DiagramComponent) -> bool| diagram.any(&|one| one.components.iter().any(ports));
         let has = |kind: LinkKind| diagram.any(&|one| one.links.iter().any(|link| link.kind == kind));
-        let has_properties = |one: &Diagram| {
-            !one.properties.is_empty() || one.components.iter().any(|one| !one.properties.is_empty())
-        };
+        let has_properties =
+            |one: &Diagram| !one.properties.is_empty() || one.components.iter().any(|one| !one.properties.is_empty());
         if has_ports(|one| !one.services.is_empty()) {
             entry(self, "service", &|out, x| out.chevron("service", Point { x: x + 9, y }));
         }

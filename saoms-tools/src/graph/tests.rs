@@ -7,8 +7,7 @@ use saoms_lang::registry::Registry;
 
 fn diagram(content: &str) -> Diagram {
     let namespace = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
-    let text =
-        format!("<composite xmlns='{namespace}' name='c' targetNamespace='urn:c'{content}</composite>");
+    let text = format!("<composite xmlns='{namespace}' name='c' targetNamespace='urn:c'{content}</composite>");
     drawn(&Project::new().text("c.composite", text))
 }
 
@@ -74,9 +73,8 @@ fn a_wire_that_replaces_targets_is_drawn_in_their_place() {
 
 #[test]
 fn what_is_named_and_not_there_is_missing() {
-    let diagram = diagram(
-        "><component name='A'><reference name='r' target='B/s'/></component><wire source='C/x' target='A'/>",
-    );
+    let diagram =
+        diagram("><component name='A'><reference name='r' target='B/s'/></component><wire source='C/x' target='A'/>");
     let found: Vec<_> = diagram.components.iter().map(|one| (&*one.name, one.state)).collect();
     assert_eq!(found, [("A", State::Known), ("B", State::Missing), ("C", State::Missing)]);
     assert!(svg(&diagram).to_string().contains("the composite has no such component"));
@@ -186,15 +184,9 @@ fn names_are_escaped() {
     );
     let drawn = svg(&diagram).to_string();
     let document = roxmltree::Document::parse(&drawn).unwrap();
-    let name = document
-        .descendants()
-        .find(|node| node.attribute("class") == Some("name") && node.text() != Some("c"));
+    let name = document.descendants().find(|node| node.attribute("class") == Some("name") && node.text() != Some("c"));
     assert_eq!(name.unwrap().text(), Some(&*diagram.components[0].name));
-    assert!(
-        dot(&diagram).to_string().contains(r#"label="\<a\> & \"b\" \| \{c\} \\ # ]]\nx""#),
-        "{}",
-        dot(&diagram)
-    );
+    assert!(dot(&diagram).to_string().contains(r#"label="\<a\> & \"b\" \| \{c\} \\ # ]]\nx""#), "{}", dot(&diagram));
     assert!(mermaid(&diagram).to_string().contains("#60;a#62; #38; #34;b#34; #124; {c} #92; #35; ]]<br/>x"));
 }
 

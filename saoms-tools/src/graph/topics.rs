@@ -23,8 +23,7 @@ pub(super) fn of(view: &View<'_>) -> Vec<DiagramTopic> {
 /// renaming, with the same ends, each of which stands for several components; so do all where the composite
 /// `is_repeated`.
 pub(super) fn join(diagram: &mut Diagram, is_repeated: bool) {
-    let is_several =
-        |end: &usize| is_repeated || diagram.components[*end].replicas.is_some_and(|(_, most)| most > 1);
+    let is_several = |end: &usize| is_repeated || diagram.components[*end].replicas.is_some_and(|(_, most)| most > 1);
     let mut all: Vec<DiagramTopic> = Vec::with_capacity(diagram.topics.len());
     // By what they are the same in; `names` has the one before renaming until here.
     let mut places: HashMap<Sameness, usize> = HashMap::new();

@@ -133,11 +133,8 @@ impl Linker<'_> {
                 let drawn = most.min(left);
                 let offered = all.iter().filter(|(offering, _)| *offering != component);
                 for &(component, port) in offered.take(drawn) {
-                    let link = DiagramLink {
-                        kind: LinkKind::Wire,
-                        from,
-                        to: DiagramEnd::Component { component, port },
-                    };
+                    let link =
+                        DiagramLink { kind: LinkKind::Wire, from, to: DiagramEnd::Component { component, port } };
                     if self.seen.insert(link) {
                         self.diagram.links.push(link);
                     }
@@ -207,9 +204,7 @@ impl Linker<'_> {
         let (component, name) = self.split(uri)?;
         let port = match (name, self.diagram.components[component].references.len()) {
             (None, 1..) => 0,
-            (name, _) => {
-                self.ports.named(self.diagram, component, Side::References, &name.unwrap_or_default())
-            }
+            (name, _) => self.ports.named(self.diagram, component, Side::References, &name.unwrap_or_default()),
         };
         Some(DiagramEnd::Component { component, port })
     }

@@ -21,10 +21,7 @@ pub(super) fn of_components(registry: &Registry, version: Version) -> Vec<NewEle
     let tests = classes.flat_map(|class| of_class(class.declaration(), registry));
     tests
         .map(|(test, doc)| {
-            NewElement::new("xs:assert")
-                .with("test", test)
-                .with("xpathDefaultNamespace", version.namespace())
-                .doc(&doc)
+            NewElement::new("xs:assert").with("test", test).with("xpathDefaultNamespace", version.namespace()).doc(&doc)
         })
         .collect()
 }
@@ -83,18 +80,15 @@ fn of_value(property: &PropertyDeclaration) -> Option<String> {
     }
     let number = |pattern: &str, number: String, bound: &dyn Fn(&str) -> Option<String>| {
         let bounds = [(&property.min, "ge"), (&property.max, "le"), (&property.exclusive_max, "lt")];
-        let bounds = bounds
-            .into_iter()
-            .filter_map(|(text, is)| Some(format!("{number} {is} {}", bound(text.as_ref()?)?)));
+        let bounds =
+            bounds.into_iter().filter_map(|(text, is)| Some(format!("{number} {is} {}", bound(text.as_ref()?)?)));
         let bounds: Vec<String> = bounds.collect();
         let then = if bounds.is_empty() { "true()".to_owned() } else { bounds.join(" and ") };
         format!("(if (matches($v, {})) then {then} else false())", quoted(pattern))
     };
     match property.kind {
         PropertyKind::Boolean => Some("$v = ('true', 'false', '1', '0')".to_owned()),
-        PropertyKind::Integer => {
-            Some(number(INTEGER, "xs:integer($v)".to_owned(), &|text| Some(text.to_owned())))
-        }
+        PropertyKind::Integer => Some(number(INTEGER, "xs:integer($v)".to_owned(), &|text| Some(text.to_owned()))),
         PropertyKind::Float => Some(number(FLOAT, "xs:double($v)".to_owned(), &|text| Some(text.to_owned()))),
         PropertyKind::Duration => {
             let nanos = |text: &str| parse_duration(text).ok().map(|bound| bound.as_nanos().to_string());

@@ -69,11 +69,8 @@ pub fn schemas(registry: &Registry, xsd: Xsd) -> Vec<XsdSchema> {
         let text = sca::schema(version, assertions).document();
         XsdSchema { file: file(version), namespace: version.namespace(), text }
     });
-    let own = XsdSchema {
-        file: OWN_FILE,
-        namespace: SAOMS_NAMESPACE,
-        text: own::schema(&Words::of(registry)).document(),
-    };
+    let own =
+        XsdSchema { file: OWN_FILE, namespace: SAOMS_NAMESPACE, text: own::schema(&Words::of(registry)).document() };
     sca.into_iter().chain([own]).collect()
 }
 

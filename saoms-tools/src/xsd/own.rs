@@ -23,12 +23,9 @@ pub(super) const DEFAULTS: [(&str, &str); 2] = [("if", "true"), ("from", "1")];
 pub(super) fn schema(words: &Words) -> NewElement {
     let own = [&LOOP, &SEVERITY, &IMPLEMENTATION_RUST, &INTERFACE_RUST];
     // Several elements can have an attribute.
-    let attributes: BTreeMap<&str, &Known> =
-        OWN_ATTRIBUTES.iter().map(|(_, known)| (known.name, known)).collect();
+    let attributes: BTreeMap<&str, &Known> = OWN_ATTRIBUTES.iter().map(|(_, known)| (known.name, known)).collect();
     let attributes = attributes.into_values().map(|known| {
-        let node = NewElement::new("xs:attribute")
-            .with("name", known.name)
-            .with("type", type_of(known.holds, false));
+        let node = NewElement::new("xs:attribute").with("name", known.name).with("type", type_of(known.holds, false));
         let default = DEFAULTS.iter().find(|(name, _)| *name == known.name);
         let node = default.into_iter().fold(node, |node, (_, value)| node.with("default", *value));
         node.doc(known.doc)
@@ -131,8 +128,7 @@ fn simple() -> [NewElement; 4] {
             .named("Given", "A text that is not empty."),
         restricted("xs:token", Multiplicity::ALL.map(multiplicity))
             .named("Multiplicity", "How many targets a reference takes."),
-        restricted("xs:token", SeverityLevel::ALL.map(level))
-            .named("Level", "How bad diagnostics of a code are."),
+        restricted("xs:token", SeverityLevel::ALL.map(level)).named("Level", "How bad diagnostics of a code are."),
     ]
 }
 

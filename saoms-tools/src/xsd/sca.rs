@@ -7,9 +7,9 @@ use super::own::{any, type_of};
 use super::{OWN_FILE, root};
 use saoms_lang::load::vocabulary::{
     BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
-    COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE,
-    IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, Kind,
-    LOOP, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS, WIRE, children, other, own_attributes,
+    COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE, IMPLEMENTATION_JAVA,
+    IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, Kind, LOOP, OWN_ELEMENTS, SEVERITY,
+    SEVERITY_PARENTS, WIRE, children, other, own_attributes,
 };
 use saoms_lang::model::{SAOMS_NAMESPACE, Version};
 
@@ -41,10 +41,7 @@ const OTHER_ROOTS: &[(&str, &str)] = &[
         "componentType",
         "What the implementation of the same name offers and takes. What is inside is not described here.",
     ),
-    (
-        "contribution",
-        "What a folder of composites imports and exports. What is inside is not described here.",
-    ),
+    ("contribution", "What a folder of composites imports and exports. What is inside is not described here."),
     ("definitions", "Policies. What is inside is not described here."),
 ];
 
@@ -79,15 +76,13 @@ const FOREIGN: &[&str] = &[
 /// The schema of a version, with these assertions over components.
 pub(super) fn schema(version: Version, assertions: Vec<NewElement>) -> NewElement {
     let doc = format!("The language of composites of {}. Written by `saoms schema`.", version.label());
-    let own =
-        NewElement::new("xs:import").with("namespace", SAOMS_NAMESPACE).with("schemaLocation", OWN_FILE);
-    let roots = OTHER_ROOTS.iter().map(|(name, doc)| {
-        NewElement::new("xs:element").with("name", *name).with("type", "sca:Open").doc(doc)
-    });
+    let own = NewElement::new("xs:import").with("namespace", SAOMS_NAMESPACE).with("schemaLocation", OWN_FILE);
+    let roots = OTHER_ROOTS
+        .iter()
+        .map(|(name, doc)| NewElement::new("xs:element").with("name", *name).with("type", "sca:Open").doc(doc));
     let mut root = root(version.namespace(), &doc).with("xmlns:sca", version.namespace());
     if !assertions.is_empty() {
-        root =
-            root.with("xmlns:vc", "http://www.w3.org/2007/XMLSchema-versioning").with("vc:minVersion", "1.1");
+        root = root.with("xmlns:vc", "http://www.w3.org/2007/XMLSchema-versioning").with("vc:minVersion", "1.1");
     }
     let has_assertions = !assertions.is_empty();
     let others = TYPES.iter().filter(|(_, kind)| !std::ptr::eq(*kind, &COMPONENT));
@@ -135,18 +130,13 @@ fn element(name: &str, kind: Option<&Kind>) -> NewElement {
             .child(NewElement::new("xs:selector").with("xpath", format!("sca:{what}")))
             .children(by.iter().map(|path| NewElement::new("xs:field").with("xpath", *path)))
     });
-    NewElement::new("xs:element")
-        .with("name", name)
-        .with("type", format!("sca:{type_name}"))
-        .doc(doc)
-        .children(unique)
+    NewElement::new("xs:element").with("name", name).with("type", format!("sca:{type_name}")).doc(doc).children(unique)
 }
 
 /// The type of an element. Other namespaces are open, as far as XSD can say so; that of SAOMS has what is known alone.
 fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> NewElement {
     let node = NewElement::new("xs:complexType").with("name", name_of(kind));
-    let is_property =
-        [&COMPONENT_PROPERTY, &COMPOSITE_PROPERTY].into_iter().any(|one| std::ptr::eq(one, kind));
+    let is_property = [&COMPONENT_PROPERTY, &COMPOSITE_PROPERTY].into_iter().any(|one| std::ptr::eq(one, kind));
     let node = if is_property {
         // A value can have elements of any namespace, and say types (`xsi:type`) that no schema here knows.
         node.with("mixed", "true").child(holding([skipped("xs:any")]))
@@ -155,12 +145,11 @@ fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> NewEl
             true => NewElement::new("xs:element").with("ref", format!("sca:{name}")),
             false => element(name, kind.child(name)),
         });
-        let own =
-            own_children(kind).map(|name| NewElement::new("xs:element").with("ref", format!("saoms:{name}")));
+        let own = own_children(kind).map(|name| NewElement::new("xs:element").with("ref", format!("saoms:{name}")));
         let others: Vec<NewElement> = match has_assertions {
             true => {
-                let any = NewElement::new("xs:any")
-                    .with("notNamespace", format!("##targetNamespace {SAOMS_NAMESPACE}"));
+                let any =
+                    NewElement::new("xs:any").with("notNamespace", format!("##targetNamespace {SAOMS_NAMESPACE}"));
                 own.chain([any.with("processContents", "lax")]).collect()
             }
             // Beside the wildcard, XSD 1.0 would find elements of SAOMS ambiguous.
@@ -168,17 +157,15 @@ fn complex(kind: &'static Kind, version: Version, has_assertions: bool) -> NewEl
         };
         node.child(holding(parts.chain(others)))
     };
-    let own = own_attributes(kind)
-        .map(|known| NewElement::new("xs:attribute").with("ref", format!("saoms:{}", known.name)));
+    let own =
+        own_attributes(kind).map(|known| NewElement::new("xs:attribute").with("ref", format!("saoms:{}", known.name)));
     // The schema of SCA 1.0 lets any attribute pass.
     let others = NewElement::new("xs:anyAttribute");
     let others = match (version.is_1_1(), has_assertions) {
         (true, true) => others.with("notNamespace", format!("##targetNamespace ##local {SAOMS_NAMESPACE}")),
         (false, true) => others.with("notNamespace", SAOMS_NAMESPACE),
         (true, false) => others.with("namespace", FOREIGN.join(" ")),
-        (false, false) => {
-            others.with("namespace", format!("##targetNamespace ##local {}", FOREIGN.join(" ")))
-        }
+        (false, false) => others.with("namespace", format!("##targetNamespace ##local {}", FOREIGN.join(" "))),
     };
     node.children(attributes(kind, version)).children(own).child(others.with("processContents", "lax"))
 }
@@ -197,9 +184,8 @@ fn own_children(kind: &'static Kind) -> impl Iterator<Item = &'static str> {
 pub(super) fn attributes(kind: &'static Kind, version: Version) -> impl Iterator<Item = NewElement> {
     kind.of(version).map(move |known| {
         let is_required = known.required || known.name == "targetNamespace" && version.is_1_1();
-        let node = NewElement::new("xs:attribute")
-            .with("name", known.name)
-            .with("type", type_of(known.holds, known.required));
+        let node =
+            NewElement::new("xs:attribute").with("name", known.name).with("type", type_of(known.holds, known.required));
         let node = if is_required { node.with("use", "required") } else { node };
         node.doc(known.doc)
     })

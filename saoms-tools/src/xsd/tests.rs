@@ -77,10 +77,7 @@ fn classes_properties_and_values_are_names_with_what_there_is_to_say_about_them(
         properties["brightness"],
         "example.Lamp: a number from 0.5 to 10.0 [lx], `5.0` unless given. More than <nothing> & \"less\" than the sun."
     );
-    assert_eq!(
-        properties["shining"],
-        "example.Lamp: `steady` or `blinking`, has to be given. The way it shines."
-    );
+    assert_eq!(properties["shining"], "example.Lamp: `steady` or `blinking`, has to be given. The way it shines.");
     for task in TaskProperties::declarations() {
         assert!(properties[&task.name].starts_with("every periodic class: "), "{}", task.name);
     }
@@ -94,14 +91,11 @@ fn shapes<'a>(document: &'a Document<'_>) -> HashMap<&'a str, Shape<'a>> {
     let types = document.root_element().children().filter(|node| node.tag_name().name() == "complexType");
     let named = |node: Node<'a, '_>, tag: &str| {
         let all = node.descendants().filter(|inner| inner.tag_name().name() == tag);
-        let name = |inner: Node<'a, '_>| {
-            inner.attribute("name").or_else(|| inner.attribute("ref")?.strip_prefix("sca:"))
-        };
+        let name =
+            |inner: Node<'a, '_>| inner.attribute("name").or_else(|| inner.attribute("ref")?.strip_prefix("sca:"));
         all.filter_map(name).collect::<Vec<_>>()
     };
-    types
-        .map(|node| (node.attribute("name").unwrap(), (named(node, "element"), named(node, "attribute"))))
-        .collect()
+    types.map(|node| (node.attribute("name").unwrap(), (named(node, "element"), named(node, "attribute")))).collect()
 }
 
 fn compare(kind: &'static Kind, version: Version, shapes: &HashMap<&str, Shape<'_>>) {
@@ -110,12 +104,7 @@ fn compare(kind: &'static Kind, version: Version, shapes: &HashMap<&str, Shape<'
     assert_eq!(*attributes, known, "{} of {}", kind.name, version.label());
     for name in children(kind) {
         // Properties take elements of any name.
-        assert!(
-            elements.contains(&name) || name == "value",
-            "{name} in {} of {}",
-            kind.name,
-            version.label()
-        );
+        assert!(elements.contains(&name) || name == "value", "{name} in {} of {}", kind.name, version.label());
         if let Some(child) = kind.child(name) {
             compare(child, version, shapes);
         }

@@ -109,9 +109,7 @@ fn say(all: &mut Said, name: &str, text: String, of: &str) {
 /// A line for each thing that is said.
 fn joined(all: Said) -> Names {
     let line = |(text, whose): (String, Vec<String>)| format!("{}: {text}", whose.join(", "));
-    all.into_iter()
-        .map(|(name, said)| (name, said.into_iter().map(line).collect::<Vec<_>>().join("\n")))
-        .collect()
+    all.into_iter().map(|(name, said)| (name, said.into_iter().map(line).collect::<Vec<_>>().join("\n"))).collect()
 }
 
 fn add(text: &mut String, line: &str) {

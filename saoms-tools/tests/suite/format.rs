@@ -50,9 +50,8 @@ fn element(node: Node<'_, '_>) -> String {
 
 /// Whether it is white space that separates the parts of an element, or all that an element of SCA holds.
 fn is_between(node: Node<'_, '_>) -> bool {
-    let is_blank = |node: Node<'_, '_>| {
-        node.text().is_some_and(|text| text.trim_matches([' ', '\t', '\r', '\n']).is_empty())
-    };
+    let is_blank =
+        |node: Node<'_, '_>| node.text().is_some_and(|text| text.trim_matches([' ', '\t', '\r', '\n']).is_empty());
     let Some(parent) = node.parent().filter(|_| is_blank(node)) else { return false };
     let is_sca = parent.tag_name().namespace().is_some_and(|uri| uri.contains("/sca/"));
     let has_text = WITH_TEXT.contains(&parent.tag_name().name());
@@ -114,11 +113,7 @@ fn content() -> impl Strategy<Value = String> {
     piece.prop_recursive(4, 24, 5, |inner| {
         let names = select(vec!["component", "property", "value", "p:a", "documentation"]);
         let attributes = select(vec![
-            "",
-            " name = 'a'",
-            " p:x=\"'\"\n y='2' xmlns=''",
-            " xml:space='preserve'",
-            " xmlns:q='u' q:z='&#10;'",
+            "", " name = 'a'", " p:x=\"'\"\n y='2' xmlns=''", " xml:space='preserve'", " xmlns:q='u' q:z='&#10;'",
         ]);
         (names, attributes, proptest::collection::vec(inner, 0..6))
             .prop_map(|(name, attributes, inner)| format!("<{name}{attributes}>{}</{name}>", inner.concat()))

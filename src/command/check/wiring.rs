@@ -65,8 +65,7 @@ impl fmt::Display for Wiring<'_> {
 
 impl fmt::Display for Group<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let every =
-            self.period.map_or_else(String::new, |period| format!(" every {}", format_duration(period)));
+        let every = self.period.map_or_else(String::new, |period| format!(" every {}", format_duration(period)));
         match self.paths[..] {
             [only] => write!(out, "{only} ({}{every})", self.class),
             [first, .., last] => {

@@ -9,8 +9,7 @@ use clap::Args;
 use saoms_api::Properties;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::registry::{
-    ClassTopic, InterfaceDeclaration, PropertyDeclaration, RegisteredClass, RegisteredLoop, RegisteredRule,
-    Registry,
+    ClassTopic, InterfaceDeclaration, PropertyDeclaration, RegisteredClass, RegisteredLoop, RegisteredRule, Registry,
 };
 use serde_json::{Value, json};
 
@@ -56,10 +55,8 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
     match arguments.format {
         Format::Json => {
             let classes: Vec<Value> = chosen.into_iter().map(as_json).collect();
-            let loops: Vec<Value> = loops
-                .into_iter()
-                .map(|one| serde_json::from_str(one.declaration_json()).unwrap_or_default())
-                .collect();
+            let loops: Vec<Value> =
+                loops.into_iter().map(|one| serde_json::from_str(one.declaration_json()).unwrap_or_default()).collect();
             let rules: Vec<Value> = match arguments.name {
                 Some(_) => Vec::new(),
                 None => registry.rules().iter().map(rules::as_json).collect(),
@@ -92,13 +89,7 @@ fn listed(classes: &[&RegisteredClass], loops: &[&RegisteredLoop], rules: &[Regi
     let mut text = String::new();
     for class in classes {
         let declaration = class.declaration();
-        let _ = writeln!(
-            text,
-            "{:width$}  {:8}  {}",
-            class.name(),
-            kind(class),
-            first_sentence(&declaration.doc)
-        );
+        let _ = writeln!(text, "{:width$}  {:8}  {}", class.name(), kind(class), first_sentence(&declaration.doc));
         if !declaration.also.is_empty() {
             let names: Vec<&str> = declaration.also.iter().map(|alias| alias.name.as_str()).collect();
             for line in wrapped(&format!("also {}", names.join(", ")), 100) {
@@ -166,8 +157,7 @@ fn described(class: &RegisteredClass) -> String {
     loops::of_class(declaration, &mut text);
     if !class.is_alias() {
         let names = declaration.also.iter().map(|alias| {
-            let values: Vec<String> =
-                alias.preset.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            let values: Vec<String> = alias.preset.iter().map(|(name, value)| format!("{name}={value}")).collect();
             format!("  {}  {}\n", alias.name, values.join(" "))
         });
         section(&mut text, "Also known as", names.collect());

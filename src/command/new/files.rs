@@ -17,9 +17,8 @@ pub(super) struct Names {
 impl Names {
     pub(super) fn of(package: &str) -> Result<Names, String> {
         let starts = package.starts_with(|first: char| first.is_ascii_lowercase());
-        let fits = package
-            .chars()
-            .all(|sign| sign.is_ascii_lowercase() || sign.is_ascii_digit() || "-_".contains(sign));
+        let fits =
+            package.chars().all(|sign| sign.is_ascii_lowercase() || sign.is_ascii_digit() || "-_".contains(sign));
         let class: String = package
             .split(['-', '_'])
             .filter_map(|word| {
@@ -29,23 +28,16 @@ impl Names {
             .collect();
         // Keywords of Rust cannot be names of libraries.
         const WORDS: &[&str] = &[
-            "as", "box", "crate", "do", "dyn", "else", "enum", "fn", "for", "if", "impl", "in", "let",
-            "loop", "match", "mod", "move", "mut", "pub", "ref", "self", "static", "struct", "super", "test",
-            "trait", "type", "use", "where", "while", "async", "await", "break", "const", "continue", "core",
-            "std", "alloc", "extern", "false", "true", "return", "unsafe", "abstract", "become", "final",
-            "macro", "override", "priv", "try", "typeof", "unsized", "virtual", "yield", "gen",
+            "as", "box", "crate", "do", "dyn", "else", "enum", "fn", "for", "if", "impl", "in", "let", "loop", "match",
+            "mod", "move", "mut", "pub", "ref", "self", "static", "struct", "super", "test", "trait", "type", "use",
+            "where", "while", "async", "await", "break", "const", "continue", "core", "std", "alloc", "extern",
+            "false", "true", "return", "unsafe", "abstract", "become", "final", "macro", "override", "priv", "try",
+            "typeof", "unsized", "virtual", "yield", "gen",
         ];
         // A crate cannot depend on another one of its own name.
         const CRATES: &[&str] = &[
-            "saoms",
-            "saoms-abi",
-            "saoms-api",
-            "saoms-components",
-            "saoms-core",
-            "saoms-derive",
-            "saoms-lang",
-            "saoms-testkit",
-            "saoms-tools",
+            "saoms", "saoms-abi", "saoms-api", "saoms-components", "saoms-core", "saoms-derive", "saoms-lang",
+            "saoms-testkit", "saoms-tools",
         ];
         if !starts || !fits {
             return Err(format!(

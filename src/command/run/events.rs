@@ -93,8 +93,7 @@ impl Events {
             Ok(count) => handle.count("events.taken", count),
             Err(problem) => {
                 handle.count("events.ignored", 1);
-                handle
-                    .note(Level::Error, format!("line {} of the events is ignored: {problem}", self.number));
+                handle.note(Level::Error, format!("line {} of the events is ignored: {problem}", self.number));
             }
         }
     }
@@ -116,8 +115,7 @@ impl Events {
                 Err(fault) => problem = problem.or(Some(fault)),
             }
         }
-        Err(problem
-            .map_or_else(|| "no class of this program takes events".to_owned(), |one| shown(line, &one)))
+        Err(problem.map_or_else(|| "no class of this program takes events".to_owned(), |one| shown(line, &one)))
     }
 }
 
@@ -152,7 +150,8 @@ mod tests {
             instead: Some("luggage".to_owned()),
             help: Some("look".to_owned()),
         };
-        let expected = "found `lugäge`; did you mean `luggage`?\n    at 6s lugäge [2J (3,1)\n          ^^^^^^\n    = help: look";
+        let expected =
+            "found `lugäge`; did you mean `luggage`?\n    at 6s lugäge [2J (3,1)\n          ^^^^^^\n    = help: look";
         assert_eq!(shown(line, &fault), expected);
     }
 

@@ -153,9 +153,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let picture = picture.map(|(path, paths)| Arc::new(PictureFile::new(path, title(arguments), paths)));
     // At the end, they write in this order.
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, &assembly))];
-    observers.extend(
-        arguments.journal.as_deref().map(|path| Arc::new(JournalFile::new(path)) as Arc<dyn Observer>),
-    );
+    observers.extend(arguments.journal.as_deref().map(|path| Arc::new(JournalFile::new(path)) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.

@@ -26,9 +26,7 @@ pub(super) fn are_writable(arguments: &RunArguments) -> bool {
         .collect();
     for (place, (what, _, path)) in files.iter().enumerate() {
         let Some(path) = path else { continue };
-        for (other, option, _) in
-            files[place + 1..].iter().filter(|(_, _, other)| other.as_ref() == Some(path))
-        {
+        for (other, option, _) in files[place + 1..].iter().filter(|(_, _, other)| other.as_ref() == Some(path)) {
             problems.push(format!(
                 "error: the {what} and the {other} cannot both be written to `{}`\n  = help: give `{option}` another file\n",
                 path.display()
@@ -36,16 +34,11 @@ pub(super) fn are_writable(arguments: &RunArguments) -> bool {
         }
     }
     if arguments.journal.as_deref() == Some(Path::new("-")) {
-        let problem =
-            "error: the journal cannot be written to standard output, which is for the lines of the run\n";
+        let problem = "error: the journal cannot be written to standard output, which is for the lines of the run\n";
         problems.push(format!("{problem}  = help: give `--journal` a file\n"));
     }
     if !problems.is_empty() {
-        eprint(&format!(
-            "{}\n{}: nothing was started\n",
-            problems.concat(),
-            counted(problems.len(), "error")
-        ));
+        eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
     }
     problems.is_empty()
 }

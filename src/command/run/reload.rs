@@ -64,8 +64,7 @@ impl Reload {
             asked: Instant::now(),
             handle: handle.clone(),
         };
-        let spawned =
-            thread::Builder::new().name("saoms-reload".to_owned()).spawn(move || watcher.watch(&ended));
+        let spawned = thread::Builder::new().name("saoms-reload".to_owned()).spawn(move || watcher.watch(&ended));
         if let Err(error) = spawned {
             handle.note(Level::Warning, format!("libraries are not watched: {error}"));
         }
@@ -106,8 +105,7 @@ fn stamp(path: &Path) -> Option<Stamp> {
 impl Watcher {
     fn watch(mut self, ended: &Receiver<()>) {
         while ended.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
-            let changed: Vec<PathBuf> =
-                self.files.iter_mut().filter_map(|(path, known)| known.look(path)).collect();
+            let changed: Vec<PathBuf> = self.files.iter_mut().filter_map(|(path, known)| known.look(path)).collect();
             if !changed.is_empty() {
                 self.reload(&changed);
             }

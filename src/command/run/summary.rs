@@ -55,8 +55,7 @@ fn journal(journal: &Journal) -> String {
         );
     }
     if journal.lost > 0 {
-        let _ =
-            writeln!(text, "\njournal: {} of {} records are not in the file", journal.lost, journal.records);
+        let _ = writeln!(text, "\njournal: {} of {} records are not in the file", journal.lost, journal.records);
     }
     text
 }
@@ -90,8 +89,7 @@ fn problem_lines(components: &[ComponentReport]) -> String {
 
 fn table(components: &[ComponentReport]) -> String {
     let shown = &components[..components.len().min(ROWS)];
-    let name_width =
-        shown.iter().map(|one| one.name.chars().count()).max().unwrap_or(0).max("component".len());
+    let name_width = shown.iter().map(|one| one.name.chars().count()).max().unwrap_or(0).max("component".len());
     let class_width = shown.iter().map(|one| one.class.chars().count()).max().unwrap_or(0).max("class".len());
     let mut text = format!(
         "{:name_width$}  {:class_width$}  executions  missed  late us p50/p99/max  restarts  dropped\n",
@@ -132,8 +130,7 @@ mod tests {
         let quiet = ComponentReport { name: "Quiet".to_owned(), executions: 9, ..ComponentReport::default() };
         assert_eq!(problem_lines(std::slice::from_ref(&quiet)), "");
         let late = ComponentReport { name: "Late".to_owned(), deadline_misses: 2, ..quiet.clone() };
-        let weak =
-            ComponentReport { name: "Weak".to_owned(), failures: 1, slow: 1, ..ComponentReport::default() };
+        let weak = ComponentReport { name: "Weak".to_owned(), failures: 1, slow: 1, ..ComponentReport::default() };
         assert_eq!(
             problem_lines(&[quiet, late.clone(), weak]),
             "\nLate: 2 executions ended after the deadline\nWeak: 1 failure, 1 execution took longer than the budget\n"

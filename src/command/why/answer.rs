@@ -13,12 +13,7 @@ const SHOWN: usize = 40;
 const LAST: usize = 8;
 
 /// The answer: actions, the reasons for them, and the knowledge at that time.
-pub(super) fn human(
-    component: &str,
-    asked: Option<Time>,
-    why: &Why<'_>,
-    document: &JournalDocument,
-) -> String {
+pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, document: &JournalDocument) -> String {
     let Some(time) = why.time else { return nothing(component, asked, document) };
     let mut text = match asked.filter(|asked| *asked != time) {
         Some(asked) => {
@@ -57,9 +52,7 @@ fn nothing(component: &str, asked: Option<Time>, document: &JournalDocument) -> 
             format!("{component} had done nothing by {asked}: its journal begins at {}\n", first.time())
         }
         _ => {
-            format!(
-                "{component} wrote nothing to the journal in this run: no loop of it found a reason to act\n"
-            )
+            format!("{component} wrote nothing to the journal in this run: no loop of it found a reason to act\n")
         }
     }
 }
@@ -74,11 +67,8 @@ struct Row<'a> {
 /// The number of reasons of a chain that are shown: up to the first record, that one included, which an earlier chain
 /// goes through as well.
 fn shown_anew(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> usize {
-    let told: HashSet<Cause> = earlier
-        .iter()
-        .flat_map(|chain| chain.acts.iter().chain(&chain.reasons))
-        .map(|one| one.id())
-        .collect();
+    let told: HashSet<Cause> =
+        earlier.iter().flat_map(|chain| chain.acts.iter().chain(&chain.reasons)).map(|one| one.id()).collect();
     let all = chain.reasons.len();
     let common = chain.reasons.iter().position(|reason| told.contains(&reason.id()));
     // The line that replaces the omitted ones has to save at least one line.

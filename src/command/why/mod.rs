@@ -98,8 +98,7 @@ fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
 /// Advice about records that are missing.
 fn advice(document: &JournalDocument) -> String {
     if document.is_report {
-        "A report holds the newest records of each component: run with `--journal FILE` to keep all of them"
-            .to_owned()
+        "A report holds the newest records of each component: run with `--journal FILE` to keep all of them".to_owned()
     } else {
         format!("Of this run {} records are not in the file", document.journal.lost)
     }
@@ -114,9 +113,8 @@ fn document(path: &Path) -> Result<JournalDocument, String> {
         std::fs::read(path)
     };
     let bytes = bytes.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        format!("`{name}` is not text: byte {} is no UTF-8", error.utf8_error().valid_up_to() + 1)
-    })?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| format!("`{name}` is not text: byte {} is no UTF-8", error.utf8_error().valid_up_to() + 1))?;
     read(&text).map_err(|error| match error {
         JournalReadError::NoJournal => {
             format!("`{name}` holds no journal: write the report anew with `saoms run --report FILE`")
@@ -153,8 +151,7 @@ fn unknown(components: &[ComponentName], component: &str) -> String {
     let ids = components.iter().filter_map(|one| one.id.as_deref());
     let endings = components.iter().filter_map(|one| one.name.rsplit('/').next());
     let like = nearest_few(component, names.clone().chain(ids).chain(endings), 3);
-    let quoted =
-        |names: Vec<&str>| names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let quoted = |names: Vec<&str>| names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let help = match like[..] {
         [] if components.is_empty() => "it had none at all".to_owned(),
         [] if components.len() > 12 => {

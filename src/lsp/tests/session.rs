@@ -37,16 +37,12 @@ fn open(text: &str) -> Event {
 
 fn change(version: i32, text: &str) -> Event {
     let document = json!({ "uri": URI, "version": version });
-    notification(
-        "textDocument/didChange",
-        json!({ "textDocument": document, "contentChanges": [{ "text": text }] }),
-    )
+    notification("textDocument/didChange", json!({ "textDocument": document, "contentChanges": [{ "text": text }] }))
 }
 
 fn fixes(id: i32) -> Event {
     let everywhere = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } });
-    let params =
-        json!({ "textDocument": { "uri": URI }, "range": everywhere, "context": { "diagnostics": [] } });
+    let params = json!({ "textDocument": { "uri": URI }, "range": everywhere, "context": { "diagnostics": [] } });
     ask(id, "textDocument/codeAction", params)
 }
 
@@ -92,8 +88,7 @@ fn session(events: Vec<Event>) -> (Vec<String>, Exit) {
 }
 
 const WRONG: &str = "<component name=\"A\"><implementation.java class=\"saoms.Robto\"/></component>";
-const RIGHT: &str =
-    "<component name=\"A\"><implementation.java class=\"resources.robotEnvironment.GPS\"/></component>";
+const RIGHT: &str = "<component name=\"A\"><implementation.java class=\"resources.robotEnvironment.GPS\"/></component>";
 
 #[test]
 fn fixes_are_those_of_the_text_as_it_is() {

@@ -62,10 +62,7 @@ fn facts(assembly: &Assembly) -> Vec<String> {
         let loops = one.loops.iter().map(|one| (&one.name, one.class.name(), &one.values));
         let loops: Vec<_> = loops.collect();
         let (class, library) = (one.class.name(), &one.library);
-        format!(
-            "{} {class} {library:?} {:?} {:?} {:?} {loops:?}",
-            one.path, one.values, one.task, one.references
-        )
+        format!("{} {class} {library:?} {:?} {:?} {:?} {loops:?}", one.path, one.values, one.task, one.references)
     };
     assembly.components.iter().map(fact).collect()
 }
@@ -75,8 +72,7 @@ fn mended(input: &Input, fleet: &Compilation, settings: Settings, registry: &Reg
     let Input::Text(text) = input else { return };
     let is_here = |file: FileId| fleet.sources.get(file).path() == "x";
     let all = fleet.diagnostics.iter().flat_map(|one| one.suggestions.iter().map(move |way| (one, way)));
-    let all: Vec<_> =
-        all.filter(|(_, way)| way.edits.iter().all(|edit| is_here(edit.location.file))).collect();
+    let all: Vec<_> = all.filter(|(_, way)| way.edits.iter().all(|edit| is_here(edit.location.file))).collect();
     let Some((one, way)) = all.get(text.len() % all.len().max(1)) else { return };
     let edited = edited(text, &way.edits);
     let context = || format!("{way:?} for {one:?}\n{text}\nbecame\n{edited}\n");
@@ -87,15 +83,13 @@ fn mended(input: &Input, fleet: &Compilation, settings: Settings, registry: &Reg
         // Of these the first is told, and of a text whose tags do not fit what stands before that is seen: the same may
         // be wrong again further on.
         let start = |one: &Diagnostic| one.location.span.start as usize;
-        let is_further = |next: &Diagnostic| {
-            start(next) > start(one) || edited.len() - start(next) < text.len() - start(one)
-        };
+        let is_further =
+            |next: &Diagnostic| start(next) > start(one) || edited.len() - start(next) < text.len() - start(one);
         let alike = |fleet: &Compilation| {
             let alike = fleet.diagnostics.iter().filter(|next| kind(next) == kind(one));
             alike.filter(|next| !is_further(next)).count()
         };
-        let here =
-            fleet.diagnostics.iter().filter(|next| kind(next) == kind(one) && start(next) <= start(one));
+        let here = fleet.diagnostics.iter().filter(|next| kind(next) == kind(one) && start(next) <= start(one));
         assert!(alike(&after) < here.count(), "{}{}", context(), after.text());
         return;
     }

@@ -14,8 +14,7 @@ use saoms_lang::assembly::TaskProperties;
 use saoms_lang::check::{Occurrences, Options};
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes, human, json, sarif};
 use saoms_lang::expression::{
-    ExpressionError, ExpressionFault, ExpressionValue, boolean, has_expression, integer, names, parse,
-    pattern, render,
+    ExpressionError, ExpressionFault, ExpressionValue, boolean, has_expression, integer, names, parse, pattern, render,
 };
 use saoms_lang::load::{MAX_SIZE, load_file, read_from};
 use saoms_lang::model::{Composite, Contribution};
@@ -87,8 +86,7 @@ pub(crate) fn expression(bytes: &[u8]) {
         "is" => Ok(ExpressionValue::Boolean(true)),
         _ => Err(ExpressionError::new("there is none")),
     };
-    let is_inside =
-        |fault: ExpressionFault| assert!(text.get(fault.at.clone()).is_some(), "{fault:?} in {text:?}");
+    let is_inside = |fault: ExpressionFault| assert!(text.get(fault.at.clone()).is_some(), "{fault:?} in {text:?}");
     match parse(text) {
         Ok(one) => {
             one.names().into_iter().for_each(|(name, at)| assert_eq!(text.get(at), Some(name), "{text:?}"));
@@ -168,8 +166,7 @@ fn meaning(document: &Document) -> Vec<String> {
     let mut elements = document.elements();
     let element = |element: syntax::Element<'_>| {
         let attributes = element.written_attributes();
-        let attributes: Vec<_> =
-            attributes.map(|one| (one.name().to_owned(), one.value().into_owned())).collect();
+        let attributes: Vec<_> = attributes.map(|one| (one.name().to_owned(), one.value().into_owned())).collect();
         let text = element.has_text().then(|| element.text().into_owned());
         format!("{} {attributes:?} {text:?}", element.name())
     };

@@ -29,10 +29,7 @@ fn built() -> &'static Path {
         let cargo = |arguments: &[&str]| {
             let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
                 .args(arguments)
-                .envs([
-                    ("CARGO_TARGET_DIR", folder.join("target").as_os_str()),
-                    ("CARGO_NET_OFFLINE", "true".as_ref()),
-                ])
+                .envs([("CARGO_TARGET_DIR", folder.join("target").as_os_str()), ("CARGO_NET_OFFLINE", "true".as_ref())])
                 .current_dir(&sources)
                 .output()
                 .unwrap();
@@ -62,8 +59,7 @@ fn copy_of_api(folder: &Path) {
     let (_, package) = workspace.split_once("[workspace.package]").unwrap();
     let (package, _) = package.split_once("\n[workspace.lints").unwrap();
     let package = package.replace("version = \"0.1.0\" }", "version = \"0.1.99\" }");
-    let members =
-        "[workspace]\nmembers = [\"saoms-abi\", \"saoms-api\", \"saoms-derive\"]\n\n[workspace.package]";
+    let members = "[workspace]\nmembers = [\"saoms-abi\", \"saoms-api\", \"saoms-derive\"]\n\n[workspace.package]";
     write(&folder.join("Cargo.toml"), &format!("{members}{package}\n"));
     for name in ["saoms-abi", "saoms-api", "saoms-derive"] {
         copy(&root().join(name).join("src"), &folder.join(name).join("src"), &str::to_owned);

@@ -48,9 +48,7 @@ fn acts(at: &str, does: &str) -> String {
 #[test]
 fn a_panic_in_execute_receive_or_shutdown_is_a_failure_of_its_component() {
     for at in ["execute", "receive", "shutdown"] {
-        for (does, expected) in
-            [("panic", format!("no more of {at}")), ("nasty", "without a message".to_owned())]
-        {
+        for (does, expected) in [("panic", format!("no more of {at}")), ("nasty", "without a message".to_owned())] {
             assert_fails(&beside_honest(&acts(at, does)), &["panicked", &expected]);
         }
     }
@@ -63,11 +61,7 @@ fn a_panic_in_a_constructor_or_initialize_starts_nothing() {
             let run = second(&(honest() + &acts(at, does)), &libraries());
             assert_eq!(run.code, Some(code), "{}", run.text);
             assert!(run.text.contains("panicked") && run.text.contains("Bad"), "{}", run.text);
-            assert!(
-                run.text.contains("nothing was started") || run.text.contains("nothing runs"),
-                "{}",
-                run.text
-            );
+            assert!(run.text.contains("nothing was started") || run.text.contains("nothing runs"), "{}", run.text);
         }
     }
 }
@@ -142,8 +136,7 @@ fn a_topic_that_is_not_declared_is_refused() {
 
 #[test]
 fn a_component_that_blocks_holds_up_nobody_else() {
-    let components =
-        component("Quick", "good.Sender", "").replace(">100<", ">5<") + &acts("receive", "block");
+    let components = component("Quick", "good.Sender", "").replace(">100<", ">5<") + &acts("receive", "block");
     let run = fleet(&components, &libraries(), &["--for", "800ms"]);
     assert_eq!(run.code, Some(0), "{}", run.text);
     assert!(run.component("Bad")["slow"].as_u64() >= Some(1), "{}", run.report);
@@ -152,8 +145,7 @@ fn a_component_that_blocks_holds_up_nobody_else() {
 
 #[test]
 fn a_component_that_never_returns_is_left_behind_and_named() {
-    let components =
-        component("Quick", "good.Sender", "").replace(">100<", ">5<") + &acts("receive", "never");
+    let components = component("Quick", "good.Sender", "").replace(">100<", ">5<") + &acts("receive", "never");
     let run = fleet(&components, &libraries(), &["--for", "400ms", "--grace", "100ms"]);
     assert_eq!(run.code, Some(1), "{}", run.text);
     assert!(run.reasons().contains("Bad"), "{}\n{}", run.reasons(), run.text);

@@ -94,9 +94,7 @@ fn a_class_has_to_be_in_the_library_that_is_named() {
     fs::copy(library("good"), twice.path().join("other/libgood.so")).unwrap();
     refused(
         twice.path(),
-        &[
-            "class `good.Sender` is there twice: in plugin `fleet/libgood.so` and in plugin `fleet/../other/libgood.so`",
-        ],
+        &["class `good.Sender` is there twice: in plugin `fleet/libgood.so` and in plugin `fleet/../other/libgood.so`"],
     );
 }
 

@@ -13,17 +13,8 @@ use super::run::{component, in_folder, property, saoms};
 /// What a fleet with a component of `good` says when this library is named.
 fn refused_with(path: &Path, components: &str) -> String {
     let folder = in_folder(components);
-    let arguments = [
-        "run",
-        "t.composite",
-        "--virtual",
-        "--for",
-        "1s",
-        "--report",
-        "-",
-        "--plugin",
-        path.to_str().unwrap(),
-    ];
+    let arguments =
+        ["run", "t.composite", "--virtual", "--for", "1s", "--report", "-", "--plugin", path.to_str().unwrap()];
     let run = saoms(folder.path(), &arguments);
     assert_eq!(run.code, Some(2), "{}", run.text);
     assert!(!run.text.contains("\"components\""), "something ran:\n{}", run.text);
@@ -113,10 +104,7 @@ fn a_library_for_another_machine() {
 
 #[test]
 fn a_library_without_metadata_or_with_damaged_ones() {
-    assert_says(
-        &refused(&from_c("bare", None, &[])),
-        &["bare.so` is a library without a section", "plugin!"],
-    );
+    assert_says(&refused(&from_c("bare", None, &[])), &["bare.so` is a library without a section", "plugin!"]);
     for (name, from, to, expected) in [
         ("brace.so", "{\"saoms\"", b"x\"saoms\"".as_slice(), "expected value at line 1 column 1"),
         ("bytes.so", "\"plugin\"", b"\"\xff\xfe\xfd\xfc\xfb\xfa\"", "they are no text"),
@@ -137,15 +125,9 @@ fn a_library_without_metadata_or_with_damaged_ones() {
 fn a_library_for_an_older_or_newer_boundary() {
     let expected = ["this program has version 1", "build the plugin with saoms-api"];
     let path = said("older.so", "\"abi\":1", b"\"abi\":0");
-    assert_says(
-        &refused(&path),
-        &[&["was built for the older version 0 of the boundary"], &expected[..]].concat(),
-    );
+    assert_says(&refused(&path), &[&["was built for the older version 0 of the boundary"], &expected[..]].concat());
     let path = said("newer.so", "\"abi\":1", b"\"abi\":9");
-    assert_says(
-        &refused(&path),
-        &[&["was built for the newer version 9 of the boundary"], &expected[..]].concat(),
-    );
+    assert_says(&refused(&path), &[&["was built for the newer version 9 of the boundary"], &expected[..]].concat());
 }
 
 #[test]
@@ -176,8 +158,7 @@ fn a_name_that_is_registered_twice() {
 
 #[test]
 fn a_constructor_that_fails() {
-    let refused =
-        |library: PathBuf, class: &str, values: &str| refused_with(&library, &component("A", class, values));
+    let refused = |library: PathBuf, class: &str, values: &str| refused_with(&library, &component("A", class, values));
     let limits = property("limits", "none");
     assert_says(&refused(library("good"), "good.Sender", &limits), &["S3014", "expected `least to most`"]);
     let at = property("at", "new");

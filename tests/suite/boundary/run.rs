@@ -19,8 +19,7 @@ pub(crate) struct Run {
 
 impl Run {
     fn of(output: &Output, report: Value) -> Run {
-        let text =
-            format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
         Run { code: output.status.code(), text, report }
     }
 

@@ -50,8 +50,7 @@ fn what_a_library_offers_is_listed_and_runs_not() {
     let folder = tempfile::tempdir().unwrap();
     let good = library("good");
     let run = saoms(folder.path(), &["components", "--plugin", good.to_str().unwrap()]);
-    for expected in
-        ["good.Sender", "Sends a reading in each period", "X0001  one-sender  A fleet has several senders"]
+    for expected in ["good.Sender", "Sends a reading in each period", "X0001  one-sender  A fleet has several senders"]
     {
         assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
     }

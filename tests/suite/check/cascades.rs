@@ -23,12 +23,10 @@ const ONE: usize = 95;
 /// The bytes of a well-formed text that are markup, by what they are.
 fn markup(document: &Document) -> Vec<(&'static str, Vec<usize>)> {
     let elements = || document.elements();
-    let spans =
-        |all: Vec<Span>| all.into_iter().flat_map(|span| span.start as usize..span.end as usize).collect();
+    let spans = |all: Vec<Span>| all.into_iter().flat_map(|span| span.start as usize..span.end as usize).collect();
     let tags: Vec<Span> =
         elements().flat_map(|one| [Some(one.start_tag_span()), one.end_tag_span()]).flatten().collect();
-    let values: Vec<Span> =
-        elements().flat_map(Element::written_attributes).map(|one| one.value_span()).collect();
+    let values: Vec<Span> = elements().flat_map(Element::written_attributes).map(|one| one.value_span()).collect();
     let slash = |one: Element<'_>| match one.end_tag_span() {
         Some(tag) => tag.start as usize + 1,
         None => one.start_tag_span().end as usize - 2,
@@ -72,8 +70,7 @@ fn one_slip_gives_few_diagnostics() {
                 for is_twice in [false, true] {
                     let letter = if is_twice { &text[at..=at].repeat(2) } else { "" };
                     let slip = format!("{}{letter}{}", &text[..at], &text[at + 1..]);
-                    let told: Vec<String> =
-                        check(&slip).into_iter().filter(|one| !before.contains(one)).collect();
+                    let told: Vec<String> = check(&slip).into_iter().filter(|one| !before.contains(one)).collect();
                     *counts.entry(told.len()).or_default() += 1;
                     // A `>` more is text, which a value may be.
                     let is_text = what == ">" && is_twice;

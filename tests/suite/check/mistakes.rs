@@ -101,11 +101,7 @@ macro_rules! files {
 #[test]
 fn in_one_composite() {
     let files = files!("depot": "depot.composite");
-    hold(
-        &files,
-        include_str!("../../mistakes/depot/mistakes.txt"),
-        &expect_file!["../../mistakes/depot/mistakes.txt"],
-    );
+    hold(&files, include_str!("../../mistakes/depot/mistakes.txt"), &expect_file!["../../mistakes/depot/mistakes.txt"]);
 }
 
 #[test]

@@ -27,8 +27,8 @@ fn every_rule_is_documented_with_an_example() {
         let _ = write!(part, "\n## {id} {name}\n\n*{severity}.* {meaning}\n\n```text\n{shown}```\n");
         let _ = writeln!(rows, "| {id} | {name} | {meaning} |  |  |");
     }
-    let is_kept = [("docs/diagnostics.md", part, "\n## S5"), ("docs/rules.md", rows, "| S5")].map(
-        |(page, part, start)| {
+    let is_kept =
+        [("docs/diagnostics.md", part, "\n## S5"), ("docs/rules.md", rows, "| S5")].map(|(page, part, start)| {
             let path = root().join(page);
             let text = fs::read_to_string(&path).unwrap();
             let (before, behind) = around(&text, start);
@@ -37,13 +37,8 @@ fn every_rule_is_documented_with_an_example() {
                 fs::write(path, &right).unwrap();
             }
             text == right || env::var_os("UPDATE_EXPECT").is_some()
-        },
-    );
-    assert_eq!(
-        is_kept,
-        [true, true],
-        "docs/diagnostics.md or docs/rules.md is out of date: run with UPDATE_EXPECT=1"
-    );
+        });
+    assert_eq!(is_kept, [true, true], "docs/diagnostics.md or docs/rules.md is out of date: run with UPDATE_EXPECT=1");
 }
 
 /// What a page has before the part about rules over whole fleets, and behind it.
@@ -52,8 +47,7 @@ fn around<'t>(text: &'t str, start: &str) -> (&'t str, &'t str) {
         return text.find(start).map_or((text, ""), |at| (&text[..at], ""));
     }
     // The rows of a table, behind the last of the codes of the core.
-    let mut rows =
-        text.split_inclusive('\n').filter(|line| line.starts_with("| S") && !line.starts_with(start));
+    let mut rows = text.split_inclusive('\n').filter(|line| line.starts_with("| S") && !line.starts_with(start));
     let last = rows.next_back().unwrap();
     let begin = text.find(last).unwrap() + last.len();
     let of_part = text[begin..].split_inclusive('\n').take_while(|line| line.starts_with(start));
@@ -71,7 +65,9 @@ type Component<'a> = (&'a str, &'a str, &'a [(&'a str, &'a str)], bool);
 
 /// A composite of these components, from line 2 on, each in a line.
 fn fleet(components: &[Component<'_>]) -> String {
-    let mut text = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" name=\"t\">\n".to_owned();
+    let mut text =
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" name=\"t\">\n"
+            .to_owned();
     for (name, class, properties, is_wired) in components {
         let _ = write!(text, "<component name=\"{name}\"><implementation.java class=\"{class}\"/>");
         for (property, value) in [("ID", *name), ("period", "100")].iter().chain(*properties) {
@@ -110,9 +106,7 @@ fn with_scenario(map: &str, scenario: &str) -> Vec<String> {
 #[test]
 fn luggage_is_looked_at_wherever_it_may_be() {
     let map = ".....\n.@@..\n.@...";
-    assert!(
-        with_scenario(map, "at 1s luggage (3,1) to (4,2); at 2s luggage random to (0,0)..(1,2)").is_empty()
-    );
+    assert!(with_scenario(map, "at 1s luggage (3,1) to (4,2); at 2s luggage random to (0,0)..(1,2)").is_empty());
     assert_eq!(
         with_scenario(map, "at 1s luggage (5,1) to (4,9)\nat 1s luggage (1,1)..(2,1) to (1,2)"),
         [
@@ -131,10 +125,7 @@ fn luggage_is_looked_at_wherever_it_may_be() {
         MASTER,
         ("Robot1", "saoms.Robot", &[], false),
     ];
-    assert_eq!(
-        found(&without),
-        ["error S5001 `random` needs an area to draw from, and nothing in the fleet says one"]
-    );
+    assert_eq!(found(&without), ["error S5001 `random` needs an area to draw from, and nothing in the fleet says one"]);
     // A wrong line and an impossible one are told together.
     let both = with_scenario(map, "at 1s lugage (1,1) to (0,0); at 1s luggage (1,1) to (0,0)");
     assert_eq!(both.len(), 2, "{both:?}");
@@ -163,7 +154,8 @@ fn robots_outside_of_the_world_are_told_unless_a_wire_has_a_fault() {
     fn robot(name: &str, is_wired: bool) -> Component<'_> {
         (name, "saoms.Robot", &[], is_wired)
     }
-    let beside = "warning S5009 this robot is wired to no world, and others are: neither the world nor they know where it is";
+    let beside =
+        "warning S5009 this robot is wired to no world, and others are: neither the world nor they know where it is";
     assert_eq!(
         found(&[world, ROBOT, robot("Robot2", false), robot("Robot3", false), robot("Robot4", true)]),
         [beside, beside]
@@ -174,11 +166,7 @@ fn robots_outside_of_the_world_are_told_unless_a_wire_has_a_fault() {
         ("target=\"World\"", "target=\"World/hardwere\"", "S2012"),
         ("name=\"world\"", "name=\"wrld\"", "S2006"),
         ("target=\"World\"", "targt=\"World\"", "S1007"),
-        (
-            "target=\"World\"/></component>",
-            "/></component><wire source=\"Q*/world\" target=\"World\"/>",
-            "S2011",
-        ),
+        ("target=\"World\"/></component>", "/></component><wire source=\"Q*/world\" target=\"World\"/>", "S2011"),
     ] {
         let found = Fleet::of_text(text.replace(right, wrong)).diagnostics();
         assert!(found.lines().count() == 1 && found.contains(code), "{wrong}: {found}");
@@ -234,8 +222,7 @@ fn a_charger_outside_the_map_is_shown_where_it_leaves_the_map() {
     for (properties, wrong) in
         [([("chargeX", "33"), ("chargeY", "2")], "33"), ([("chargeX", "2"), ("chargeY", "22")], "22")]
     {
-        let text =
-            fleet(&[("World", "saoms.World", &[], false), ("Robot1", "saoms.Robot", &properties, true)]);
+        let text = fleet(&[("World", "saoms.World", &[], false), ("Robot1", "saoms.Robot", &properties, true)]);
         let found = Fleet::of_text(text.clone()).diagnostics();
         let mut place = found.split([' ', ':']).filter_map(|word| word.parse::<usize>().ok());
         let (line, column) = (place.next().unwrap(), place.next().unwrap());
@@ -253,8 +240,7 @@ fn what_no_world_lets_start_cannot_be_lowered() {
         ("Robot1", "saoms.Robot", &[], true),
         ("Robot2", "saoms.Robot", charger, true),
     ]);
-    let lowered =
-        "<s:severity xmlns:s='urn:saoms:1' code='S5003' level='warning' reason='one dock'/></composite>";
+    let lowered = "<s:severity xmlns:s='urn:saoms:1' code='S5003' level='warning' reason='one dock'/></composite>";
     let shown = Fleet::of_text(fleet.replace("</composite>", lowered)).shown();
     assert!(shown.starts_with("error[S5003]") && shown.contains("cannot be lowered"), "{shown}");
 }
@@ -351,20 +337,13 @@ fn scenarios_of_which_nothing_comes_are_told() {
         found(&[&[("Environment", "saoms.Environment", scenario, false)], others].concat())
     }
     const KEEPER: Component<'_> = ("Keeper", "saoms.MasterRobot", &[], false);
-    const SLEEPER: Component<'_> =
-        ("Robot1", "saoms.Robot", &[("asleep", "true"), ("policy", "classic")], false);
+    const SLEEPER: Component<'_> = ("Robot1", "saoms.Robot", &[("asleep", "true"), ("policy", "classic")], false);
     let luggage = [("scenario", "at 1s luggage (1,0) to (4,0)")];
     let landing = [("scenario", "at 1s landing 2; at 2s luggage (1,0) to (4,0)")];
     let robot = ("Robot2", "saoms.Robot", &[][..], false);
     let sleep = "warning S5008 all robots sleep, and none is woken to bring the luggage of this scenario";
-    assert_eq!(
-        with(&luggage, &[robot]),
-        ["warning S5008 nobody passes the events of this scenario on to the robots"]
-    );
-    assert_eq!(
-        with(&luggage, &[MASTER]),
-        ["warning S5008 no robot is there to bring the luggage of this scenario"]
-    );
+    assert_eq!(with(&luggage, &[robot]), ["warning S5008 nobody passes the events of this scenario on to the robots"]);
+    assert_eq!(with(&luggage, &[MASTER]), ["warning S5008 no robot is there to bring the luggage of this scenario"]);
     assert_eq!(with(&luggage, &[MASTER, KEEPER, SLEEPER]), [sleep]);
     assert_eq!(with(&landing, &[MASTER, SLEEPER]), [sleep], "nobody listens to landings");
     assert_eq!(
@@ -376,8 +355,7 @@ fn scenarios_of_which_nothing_comes_are_told() {
     let safe = ("Robot2", "saoms.Robot", &[("asleep", "true")][..], false);
     assert!(with(&luggage, &[MASTER, safe]).is_empty(), "it awakes by itself");
     assert!(with(&[("scenario", "at 9s end")], &[]).is_empty());
-    let broker =
-        ("Robot1", "saoms.Robot", &[("useJMS", "true"), ("url", "tcp://localhost:61616")][..], false);
+    let broker = ("Robot1", "saoms.Robot", &[("useJMS", "true"), ("url", "tcp://localhost:61616")][..], false);
     assert!(!with(&luggage, &[broker]).concat().contains("S5008"), "masters may be in other programs");
 }
 
@@ -387,8 +365,7 @@ fn a_world_that_no_robot_knows_is_told() {
     let unwired = ("Robot1", "saoms.Robot", &[][..], false);
     let message = "warning S5009 no robot is wired to this world, so robots move through its blocked blocks";
     assert_eq!(found(&[("World", "saoms.World", blocked, false), unwired]), [message]);
-    let message =
-        "warning S5009 no robot is wired to this world, so it sees neither robots nor what they deliver";
+    let message = "warning S5009 no robot is wired to this world, so it sees neither robots nor what they deliver";
     assert_eq!(found(&[("World", "saoms.World", &[], false), unwired]), [message]);
     assert!(found(&[("World", "saoms.World", blocked, false), ROBOT]).is_empty());
 }
@@ -399,22 +376,16 @@ fn what_is_wrong_whatever_a_faulty_component_is_comes_with_its_fault() {
     let environment = ("Environment", "saoms.Environment", luggage, false);
     let world = ("World", "saoms.World", &[("width", "5")][..], false);
     let low = ("Robot1", "saoms.Robot", &[("battery", "-1")][..], true);
-    let outside =
-        "error S5001 luggage cannot be at (3,11): it is outside the map, which goes from (0,0) to (4,10)";
-    let battery =
-        "error S3008 property `battery`: `-1` is out of range: expected a number from 0.0 to 100.0 [%]";
+    let outside = "error S5001 luggage cannot be at (3,11): it is outside the map, which goes from (0,0) to (4,10)";
+    let battery = "error S3008 property `battery`: `-1` is out of range: expected a number from 0.0 to 100.0 [%]";
     assert_eq!(found(&[world, environment, low]), [outside, battery], "robot 1 is no unknown robot");
     let far = ("Robot2", "saoms.Robot", &[("chargeX", "7")][..], true);
     assert_eq!(
         found(&[world, low, far]),
-        [
-            battery,
-            "error S5002 the charger of robot 2 is at (7,2), outside the map, which goes from (0,0) to (4,10)"
-        ]
+        [battery, "error S5002 the charger of robot 2 is at (7,2), outside the map, which goes from (0,0) to (4,10)"]
     );
     let no_world = ("World", "saoms.World", &[("width", "0")][..], false);
-    let width =
-        "error S3008 property `width`: `0` is out of range: expected a whole number from 1 to 8192 [blocks]";
+    let width = "error S3008 property `width`: `0` is out of range: expected a whole number from 1 to 8192 [blocks]";
     assert_eq!(found(&[no_world, environment, far]), [width], "how large the area is, nobody knows");
 }
 
@@ -428,8 +399,7 @@ fn several_blocked_blocks_in_one_text_are_told_how_to_write_them() {
 #[test]
 fn what_a_charger_without_a_block_cuts_off_is_not_told() {
     let world = ("World", "saoms.World", &[("map", "@...\n....")][..], false);
-    let environment =
-        ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (1,0) to (3,0)")][..], false);
+    let environment = ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (1,0) to (3,0)")][..], false);
     let robot = ("Robot1", "saoms.Robot", &[("chargeX", "0"), ("chargeY", "0")][..], true);
     let master = ("Master", "saoms.MasterEnvironment", &[][..], false);
     assert_eq!(
@@ -448,8 +418,7 @@ fn a_world_that_is_pasted_again_is_told_once() {
 
 #[test]
 fn luggage_that_is_there_already_is_told() {
-    let found =
-        with_scenario("...\n...", "at 1s luggage (2,0) to (2,0); at 1s luggage (2,0) to (0,0)..(2,0)");
+    let found = with_scenario("...\n...", "at 1s luggage (2,0) to (2,0); at 1s luggage (2,0) to (0,0)..(2,0)");
     let message = "error S3014 component `Environment`: property `scenario`: found (2,0), where the luggage is already: expected another block";
     assert_eq!(found, [message]);
 }

@@ -40,8 +40,7 @@ fn contribution(deployables: &[&str]) -> tempfile::TempDir {
     let hall = must.to_owned() + &robot(7, "<property name=\"battery\" source=\"$level\"/>");
     write("hall.composite", &composite("hall", &hall));
     if !deployables.is_empty() {
-        let all: String =
-            deployables.iter().map(|name| format!("<deployable composite=\"{name}\"/>")).collect();
+        let all: String = deployables.iter().map(|name| format!("<deployable composite=\"{name}\"/>")).collect();
         write(
             "sca-contribution.xml",
             &format!(
@@ -67,8 +66,7 @@ fn check_looks_at_every_fleet_of_a_folder() {
         composite("part", &robot(1, "<property name=\"batery\">1</property>")),
     )
     .unwrap();
-    fs::write(folder.path().join("second.composite"), composite("second", "<include name=\"a:part\"/>"))
-        .unwrap();
+    fs::write(folder.path().join("second.composite"), composite("second", "<include name=\"a:part\"/>")).unwrap();
     let (code, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
     assert_eq!((code, stdout.as_str()), (2, "4 fleets, 2 components: 1 error, 0 warnings\n"), "{stderr}");
     assert!(stderr.contains("parts/part.composite:2:"), "{stderr}");
@@ -80,10 +78,7 @@ fn what_runs_of_a_folder_is_what_it_calls_deployable() {
     let (code, _, stderr) = saoms(folder.path(), &["run", "--virtual", "."], "");
     assert_eq!(code, 2);
     assert!(stderr.contains("error[S0002]: a directory with 3 fleets, and one is asked for"), "{stderr}");
-    assert!(
-        stderr.contains("name one: `./fleet.composite`, `./hall.composite`, `./other.composite`"),
-        "{stderr}"
-    );
+    assert!(stderr.contains("name one: `./fleet.composite`, `./hall.composite`, `./other.composite`"), "{stderr}");
     assert!(stderr.contains("`<deployable composite=\"...\"/>`"), "{stderr}");
 
     let folder = contribution(&["a:other"]);
@@ -137,10 +132,7 @@ fn a_composite_beside_one_that_is_named_from_outside_is_one_file() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     fs::create_dir(folder.path().join("parts")).unwrap();
-    write(
-        "sca-contribution.xml",
-        "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"/>",
-    );
+    write("sca-contribution.xml", "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"/>");
     let inner = "<component name=\"A\"><implementation.composite name=\"a:body\"/></component>";
     write("parts/hall.composite", &composite("hall", inner));
     write("parts/body.composite", &composite("body", &robot(1, "")));
@@ -205,10 +197,7 @@ fn what_a_contribution_exports_is_checked_where_another_one_takes_it() {
     let world = "<include name=\"a:part\"/><component name=\"World\"><implementation.rust class=\"saoms.World\"/><property name=\"ID\">World</property><property name=\"period\">100</property></component>";
     let fleet = composite("fleet", world).replace("targetNamespace=\"urn:a\"", "targetNamespace=\"urn:f\"");
     write("fleet/fleet.composite", &fleet);
-    write(
-        "fleet/sca-contribution.xml",
-        &described("<import namespace=\"urn:a\"/><deployable composite=\"f:fleet\"/>"),
-    );
+    write("fleet/sca-contribution.xml", &described("<import namespace=\"urn:a\"/><deployable composite=\"f:fleet\"/>"));
     write("a/sca-contribution.xml", &described("<export namespace=\"urn:a\"/>"));
     write("a/part.composite", &composite("part", &robot(1, "<reference name=\"world\" target=\"World\"/>")));
     let (code, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
@@ -232,26 +221,15 @@ fn files_beside_composites_are_checked_by_themselves() {
     let files = ["check", "definitions.xml", "sca-contribution.xml", "Radar.componentType"];
     let (code, out, err) = saoms(folder.path(), &files, "");
     assert_eq!((code, out.as_str(), err.as_str()), (0, "0 errors, 0 warnings\n", ""));
-    write(
-        "definitions.xml",
-        &format!("<definitions {sca} targetNamespace=\"urn:a\"><intent/></definitions>"),
-    );
-    write(
-        "sca-contribution.xml",
-        &format!("<contribution {sca} xmlns:a=\"urn:a\"><deployable/></contribution>"),
-    );
+    write("definitions.xml", &format!("<definitions {sca} targetNamespace=\"urn:a\"><intent/></definitions>"));
+    write("sca-contribution.xml", &format!("<contribution {sca} xmlns:a=\"urn:a\"><deployable/></contribution>"));
     let two = "<service name=\"eye\"/><service name=\"eye\"/><reference/>";
     write("Radar.componentType", &format!("<componentType {sca}>{two}</componentType>"));
     write("a.composite", &composite("a", ""));
     let (code, out, err) = saoms(folder.path(), &[&files[..], &["a.composite"]].concat(), "");
     assert_eq!((code, out.as_str()), (2, "0 components: 4 errors, 0 warnings\n"));
-    for told in [
-        "definitions.xml:1:",
-        "sca-contribution.xml:1:",
-        "Radar.componentType:1:",
-        "S2043",
-        "S1008, ASM10003",
-    ] {
+    for told in ["definitions.xml:1:", "sca-contribution.xml:1:", "Radar.componentType:1:", "S2043", "S1008, ASM10003"]
+    {
         assert!(err.contains(told), "{told}: {err}");
     }
     // Nothing of it can run.
@@ -263,7 +241,8 @@ fn files_beside_composites_are_checked_by_themselves() {
 #[test]
 fn a_file_that_cannot_be_read_is_told_once_and_no_fleet_where_there_is_none() {
     let folder = tempfile::tempdir().unwrap();
-    let names = "<include name=\"a:dead\"/><component name=\"C\"><implementation.composite name=\"a:late\"/></component>";
+    let names =
+        "<include name=\"a:dead\"/><component name=\"C\"><implementation.composite name=\"a:late\"/></component>";
     fs::write(folder.path().join("fleet.composite"), composite("fleet", names)).unwrap();
     fs::write(folder.path().join("late.composite"), b"<\0c\0").unwrap();
     for (to, name) in [("nowhere", "dead.composite"), ("loop.composite", "loop.composite")] {

@@ -131,10 +131,7 @@ fn events_are_taken_as_they_come_and_the_end_of_input_is_no_end_of_the_run() {
 fn events_that_cannot_be_read_start_nothing() {
     let yard = Yard::new();
     for (arguments, expected) in [
-        (
-            &["--events", "nowhere.txt"][..],
-            "error: the events cannot be read from `nowhere.txt`: No such file",
-        ),
+        (&["--events", "nowhere.txt"][..], "error: the events cannot be read from `nowhere.txt`: No such file"),
         (&["--events", "."], "error: the events cannot be read from `.`: is a directory"),
         (&["--events", "-", "-"], "error: composite and events cannot both be read from standard input"),
     ] {

@@ -26,17 +26,13 @@ fn folder(files: &[(&str, &str)]) -> TempDir {
 
 #[test]
 fn a_folder_stands_for_all_composites_in_it_and_below() {
-    let folder =
-        folder(&[("b.composite", WRONG_LAYOUT), ("a.composite", WRONG_LAYOUT), ("c.xml", WRONG_LAYOUT)]);
+    let folder = folder(&[("b.composite", WRONG_LAYOUT), ("a.composite", WRONG_LAYOUT), ("c.xml", WRONG_LAYOUT)]);
     let at = |name: &str| folder.path().join(name);
     for name in ["z/inner", "own", ".hidden", "target", "none"] {
         fs::create_dir_all(at(name)).unwrap();
     }
     for name in [
-        "z/inner/one.composite",
-        "own/sca-contribution.xml",
-        "own/two.composite",
-        ".hidden/x.composite",
+        "z/inner/one.composite", "own/sca-contribution.xml", "own/two.composite", ".hidden/x.composite",
         "target/x.composite",
     ] {
         fs::write(at(name), WRONG_LAYOUT).unwrap();

@@ -60,9 +60,8 @@ fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
         path.to_str().unwrap().to_owned()
     };
     let head = "<composite xmlns='http://docs.oasis-open.org/ns/opencsa/sca/200912' name='c' targetNamespace='urn:c'>";
-    let wrong = format!(
-        "{head}<component name='A'><implementation.java class='no.Such'/><oops/></component></composite>"
-    );
+    let wrong =
+        format!("{head}<component name='A'><implementation.java class='no.Such'/><oops/></component></composite>");
     let (code, picture, error) = graph(&[&file("wrong.composite", &wrong)]);
     assert!(code == 0 && picture.contains("no such class is registered"), "{picture}");
     assert!(error.starts_with("warning: drawn as far as it is understood; `saoms check "), "{error}");
@@ -87,8 +86,7 @@ fn replicas_are_one_box_with_their_number_and_what_is_not_there_is_left_out() {
     assert_eq!((code, errors.as_str()), (0, ""));
     assert!(shown.contains("Robot* \u{d7} 40") && shown.contains("MasterRobot"), "{shown}");
     assert!(shown.contains("\"world \u{2192} hardware\""), "{shown}");
-    let (_, shown, _) =
-        graph(&[hangar, "--format", "mermaid", "--set", "robots=14", "--set", "landings=false"]);
+    let (_, shown, _) = graph(&[hangar, "--format", "mermaid", "--set", "robots=14", "--set", "landings=false"]);
     assert!(shown.contains("Robot* \u{d7} 14") && !shown.contains("MasterRobot"), "{shown}");
     let (code, _, errors) = graph(&[hangar, "--set", "robot=14"]);
     assert!(code == 2 && errors.contains("replace `robot` with `robots`"), "{errors}");
@@ -161,14 +159,8 @@ fn what_is_in_replicas_is_counted_in_each_of_them() {
     let (code, shown, _) = graph(&[&path]);
     assert_eq!(code, 0);
     for part in [
-        ">Hall* \u{d7} 3<",
-        ">Bot* \u{d7} 2<",
-        ">Bot* \u{d7} 5<",
-        ">pos*<",
-        "pos1, pos2, pos3\n",
-        ">pos9<",
-        "no such composite is found",
-        ">reads a topic<",
+        ">Hall* \u{d7} 3<", ">Bot* \u{d7} 2<", ">Bot* \u{d7} 5<", ">pos*<", "pos1, pos2, pos3\n", ">pos9<",
+        "no such composite is found", ">reads a topic<",
     ] {
         assert!(shown.contains(part), "{part} in {shown}");
     }
@@ -180,10 +172,7 @@ fn what_is_in_replicas_is_counted_in_each_of_them() {
     let lone = folder.path().join("lone.composite");
     composite("lone", world);
     let (_, shown, _) = graph(&[lone.to_str().unwrap()]);
-    assert!(
-        shown.contains(">property<") && !shown.contains(">promotion<") && !shown.contains(">wire<"),
-        "{shown}"
-    );
+    assert!(shown.contains(">property<") && !shown.contains(">promotion<") && !shown.contains(">wire<"), "{shown}");
 }
 
 #[test]

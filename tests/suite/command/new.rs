@@ -31,8 +31,7 @@ fn made_tested_and_run(kind: &str, expected: &str) {
     }
     let library = target().join(format!("debug/libmade_{kind}.so"));
     let library = library.to_str().unwrap();
-    let run =
-        saoms_in(&plugin, &["run", "fleet.composite", "--virtual", "--for", "60s", "--plugin", library]);
+    let run = saoms_in(&plugin, &["run", "fleet.composite", "--virtual", "--for", "60s", "--plugin", library]);
     assert!(run.status.success() && text(&run).contains(expected), "{}", text(&run));
     let listed = saoms_in(&plugin, &["components", "--plugin", library]);
     assert!(text(&listed).contains(&format!("made_{kind}.Made")), "{}", text(&listed));

@@ -11,10 +11,8 @@ const HANGAR: &str = "composites/hangar.composite";
 #[test]
 fn the_command_line_counts_before_the_environment_and_that_before_the_file() {
     let components = |arguments: &[&str], environment: &[(&str, &str)]| {
-        let output = command(&[&["check", HANGAR], arguments].concat())
-            .envs(environment.iter().copied())
-            .output()
-            .unwrap();
+        let output =
+            command(&[&["check", HANGAR], arguments].concat()).envs(environment.iter().copied()).output().unwrap();
         stdout(&output).split(' ').next().unwrap().parse::<u32>().unwrap()
     };
     assert_eq!(components(&[], &[]), 44);
@@ -24,10 +22,7 @@ fn the_command_line_counts_before_the_environment_and_that_before_the_file() {
     let output = command(&["check", HANGAR]).env("HANGAR_ROBOTS", "twenty").output().unwrap();
     let shown = stderr(&output);
     assert_eq!(output.status.code(), Some(2));
-    assert!(
-        shown.contains("1 | HANGAR_ROBOTS=twenty") && shown.matches("error[S2042").count() == 1,
-        "{shown}"
-    );
+    assert!(shown.contains("1 | HANGAR_ROBOTS=twenty") && shown.matches("error[S2042").count() == 1, "{shown}");
     let shown = stderr(&saoms(&["check", HANGAR, "--set", "robot=3"]));
     assert!(shown.contains("replace `robot` with `robots`"), "{shown}");
 }

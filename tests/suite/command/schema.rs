@@ -95,8 +95,7 @@ fn all_that_is_registered_is_named() {
         assert!(one.declaration().properties.iter().all(|property| properties.contains(&property.name)));
     }
     assert!(
-        TaskProperties::DECLARATION.contains("runOnStartup")
-            && properties.iter().any(|name| name == "runOnStartup")
+        TaskProperties::DECLARATION.contains("runOnStartup") && properties.iter().any(|name| name == "runOnStartup")
     );
 }
 
@@ -121,17 +120,13 @@ fn repeated_components_are_refused_unless_a_condition_or_an_index_decides() {
                 let paths = found.children().filter_map(|node| node.attribute("xpath"));
                 paths.collect::<Vec<_>>()
             };
-            assert_eq!(
-                named("component-of-composite"),
-                ["sca:component", "@name", "@saoms:if", "@saoms:from"]
-            );
+            assert_eq!(named("component-of-composite"), ["sca:component", "@name", "@saoms:if", "@saoms:from"]);
             assert_eq!(named("property-of-component"), ["sca:property", "@name"]);
         }
         // Without defaults only those would be compared that have all of them.
         let own = Document::parse(&all[3]).unwrap();
         let default = |name: &str| {
-            let mut attributes =
-                own.root_element().children().filter(|node| node.has_tag_name((XSD, "attribute")));
+            let mut attributes = own.root_element().children().filter(|node| node.has_tag_name((XSD, "attribute")));
             attributes.find(|node| node.attribute("name") == Some(name)).unwrap().attribute("default")
         };
         assert_eq!([default("if"), default("from"), default("count")], [Some("true"), Some("1"), None]);
@@ -149,9 +144,7 @@ fn unknown_attributes_of_saoms_are_refused() {
             all.map(|node| node.attribute(attribute).unwrap().to_owned()).collect()
         };
         let known = open(&plain[place], "namespace");
-        assert!(
-            known.len() > 10 && known.iter().all(|one| !one.contains("saoms") && !one.contains("##other"))
-        );
+        assert!(known.len() > 10 && known.iter().all(|one| !one.contains("saoms") && !one.contains("##other")));
         assert!(known.iter().all(|one| one.contains("http://www.w3.org/XML/1998/namespace")));
         assert!(open(&asserting[place], "notNamespace").iter().all(|one| one == target));
     }

@@ -51,24 +51,14 @@ const ONE_ROBOT: &str = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" 
 fn the_airport_delivers_everything_and_ends_by_itself() {
     let folder = empty_folder("airport");
     let report = folder.join("report.json");
-    let arguments = [
-        "run",
-        "composites/airport.composite",
-        "--virtual",
-        "--seed",
-        "7",
-        "--report",
-        report.to_str().unwrap(),
-    ];
+    let arguments =
+        ["run", "composites/airport.composite", "--virtual", "--seed", "7", "--report", report.to_str().unwrap()];
     let output = saoms(&arguments);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     assert!(stdout(&output).contains("14 of 14 pieces of luggage delivered, no collision, 0 stranded"));
     let first: Value = serde_json::from_slice(&fs::read(&report).unwrap()).unwrap();
     assert_eq!(first["seed"], 7);
-    assert_eq!(
-        first["luggage"],
-        serde_json::json!({"delivered": 14, "requested": 14, "open": 0, "ignored": 0})
-    );
+    assert_eq!(first["luggage"], serde_json::json!({"delivered": 14, "requested": 14, "open": 0, "ignored": 0}));
     assert_eq!(first["collisions"], serde_json::json!({"swap": 0, "vertex": 0}));
     assert_eq!(first["stranded"], 0);
     assert!(first["time_s"].as_f64().unwrap() > 0.0 && first["periods"].as_u64().unwrap() > 0);
@@ -85,8 +75,7 @@ fn the_airport_delivers_everything_and_ends_by_itself() {
 
 #[test]
 fn two_robots_deliver_in_real_time_too() {
-    let output =
-        saoms(&["run", "tests/fleets/pair.composite", "--set", "period=20", "--quiet", "--report", "-"]);
+    let output = saoms(&["run", "tests/fleets/pair.composite", "--set", "period=20", "--quiet", "--report", "-"]);
     assert_eq!(code(&output), 0, "{}", stderr(&output));
     let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(report["luggage"]["delivered"], 4);
@@ -95,16 +84,8 @@ fn two_robots_deliver_in_real_time_too() {
 
 #[test]
 fn the_time_given_ends_a_run_with_work_left() {
-    let output = saoms(&[
-        "run",
-        "composites/airport.composite",
-        "--virtual",
-        "--for",
-        "1s",
-        "--report",
-        "-",
-        "--quiet",
-    ]);
+    let output =
+        saoms(&["run", "composites/airport.composite", "--virtual", "--for", "1s", "--report", "-", "--quiet"]);
     assert_eq!(code(&output), 0);
     let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(report["outcome"]["status"], "elapsed");
@@ -251,12 +232,7 @@ fn wrong_input_is_told_at_its_place_and_starts_nothing() {
         ("missing", change("    <property name=\"period\">20</property>\n", ""), 2, "period"),
         ("same name", second("Robot001", "Robot002"), 7, "Robot001"),
         ("same ID", second("Robot002", "Robot001"), 9, "Robot001"),
-        (
-            "rename",
-            property("<property name=\"topicRename\">POSTOPIC,a::POSTOPIC,b</property>"),
-            6,
-            "POSTOPIC",
-        ),
+        ("rename", property("<property name=\"topicRename\">POSTOPIC,a::POSTOPIC,b</property>"), 6, "POSTOPIC"),
     ];
     for (name, text, line, mentions) in cases {
         let path = file(&folder, &format!("{}.composite", name.replace(' ', "-")), text);
@@ -310,21 +286,13 @@ fn a_mistake_on_the_command_line_is_wrong_input() {
 
 #[test]
 fn a_report_that_cannot_be_written_is_told_before_the_run_and_fails_it_after() {
-    let output = saoms(&[
-        "run",
-        "composites/airport.composite",
-        "--virtual",
-        "--report",
-        "no/such/folder/report.json",
-    ]);
+    let output = saoms(&["run", "composites/airport.composite", "--virtual", "--report", "no/such/folder/report.json"]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("no/such/folder/report.json"));
     assert_eq!(stdout(&output), "", "nothing was started");
     let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let output = command(&["run", "composites/airport.composite", "--virtual", "--report", "-"])
-        .stdout(full)
-        .output()
-        .unwrap();
+    let output =
+        command(&["run", "composites/airport.composite", "--virtual", "--report", "-"]).stdout(full).output().unwrap();
     assert_eq!(code(&output), 1);
     assert!(stderr(&output).contains("`-`"), "{}", stderr(&output));
 }
@@ -332,8 +300,7 @@ fn a_report_that_cannot_be_written_is_told_before_the_run_and_fails_it_after() {
 #[test]
 fn a_refused_run_leaves_no_files_and_keeps_those_that_are_there() {
     let folder = empty_folder("refused");
-    let (report, kept, link) =
-        (folder.join("report.json"), folder.join("kept.svg"), folder.join("link.json"));
+    let (report, kept, link) = (folder.join("report.json"), folder.join("kept.svg"), folder.join("link.json"));
     fs::write(&kept, "of an earlier run").unwrap();
     std::os::unix::fs::symlink("behind.json", &link).unwrap();
     let wrong: [&[&str]; 2] = [&["--set", "perod=10"], &["--journal", "no/such/folder/journal"]];
@@ -362,18 +329,13 @@ fn components_says_what_can_be_named() {
         assert!(list.contains(name), "{name} is missing in:\n{list}");
     }
     let one = stdout(&saoms(&["components", "robot.Robot003"]));
-    for fact in [
-        "another name of saoms.Robot",
-        "period: ",
-        "100us",
-        "TaskInterface",
-        "scheduleFor(milliseconds: uint64)",
-    ] {
+    for fact in
+        ["another name of saoms.Robot", "period: ", "100us", "TaskInterface", "scheduleFor(milliseconds: uint64)"]
+    {
         assert!(one.contains(fact), "`{fact}` is missing in:\n{one}");
     }
     let json: Value = serde_json::from_str(&stdout(&saoms(&["components", "--format", "json"]))).unwrap();
-    let robot =
-        json["components"].as_array().unwrap().iter().find(|class| class["class"] == "saoms.Robot").unwrap();
+    let robot = json["components"].as_array().unwrap().iter().find(|class| class["class"] == "saoms.Robot").unwrap();
     assert!(robot["taskProperties"].as_array().unwrap().iter().any(|property| property["name"] == "period"));
 }
 
@@ -429,19 +391,10 @@ fn check_gives_code_scanning_a_log() {
 #[test]
 fn loops_and_knowledge_are_described() {
     let class = stdout(&saoms(&["components", "robot.Robot001"]));
-    assert!(
-        class.contains("Loops, in order, where policy is safe\n  RobotMS              saoms.RobotMS\n"),
-        "{class}"
-    );
-    assert!(
-        class.contains("Knowledge saoms.Robot\n") && class.contains("  battery: float64, in %\n"),
-        "{class}"
-    );
+    assert!(class.contains("Loops, in order, where policy is safe\n  RobotMS              saoms.RobotMS\n"), "{class}");
+    assert!(class.contains("Knowledge saoms.Robot\n") && class.contains("  battery: float64, in %\n"), "{class}");
     let one = stdout(&saoms(&["components", "saoms.CollisionMS"]));
-    assert!(
-        one.contains("works on the knowledge saoms.Robot") && one.contains("Effects\n  stopAPeriod\n"),
-        "{one}"
-    );
+    assert!(one.contains("works on the knowledge saoms.Robot") && one.contains("Effects\n  stopAPeriod\n"), "{one}");
     let all: Value = serde_json::from_str(&stdout(&saoms(&["components", "--format", "json"]))).unwrap();
     assert!(all["loops"].as_array().unwrap().iter().any(|one| one["loop"] == "saoms.classic.CollisionMS"));
     let unknown = saoms(&["components", "CollisionMS"]);

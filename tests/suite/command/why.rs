@@ -72,8 +72,7 @@ fn json_holds_the_chain_back_to_its_root() {
 
 #[test]
 fn what_several_reasons_have_in_common_is_told_once() {
-    let answer =
-        stdout(&saoms_in(&folder("once"), &["why", "Robot7", "--at", "1100", "--report", "report.json"]));
+    let answer = stdout(&saoms_in(&folder("once"), &["why", "Robot7", "--at", "1100", "--report", "report.json"]));
     let root = "luggage 1 waits at (3,1) to be brought to (3,10)";
     assert_eq!(answer.matches(root).count(), 1, "{answer}");
     assert!(answer.contains("     ... and so on as above ...\n"), "{answer}");
@@ -84,10 +83,7 @@ fn wrong_questions_are_told() {
     let folder = folder("wrong");
     let report = ["--report", "report.json"];
     let ask = |robot: &str, more: &[&str]| refused(&folder, &[&[robot], &report[..], more].concat());
-    assert_eq!(
-        ask("Robot8", &[]),
-        "error: the fleet of this run had no component `Robot8`: did you mean `Robot7`?\n"
-    );
+    assert_eq!(ask("Robot8", &[]), "error: the fleet of this run had no component `Robot8`: did you mean `Robot7`?\n");
     assert!(ask("Nobody", &[]).contains("its components are `World`, `Environment`, `Master`, `Robot7`"));
     assert!(ask("", &[]).contains("no component ``"));
     assert_eq!(
@@ -144,15 +140,7 @@ fn the_journal_needs_a_file_of_its_own() {
         ("-", "cannot be written to standard output"),
         ("report.json", "cannot both be written to `report.json`"),
     ] {
-        let run = [
-            "run",
-            "composites/hall.composite",
-            "--virtual",
-            "--report",
-            "report.json",
-            "--journal",
-            journal,
-        ];
+        let run = ["run", "composites/hall.composite", "--virtual", "--report", "report.json", "--journal", journal];
         let output = saoms_in(&folder, &run);
         assert_eq!(output.status.code(), Some(2));
         let told = String::from_utf8(output.stderr).unwrap();
@@ -170,13 +158,10 @@ fn a_safe_robot_knows_that_it_goes_to_its_charger_and_is_in_charge() {
     };
     let text = component("World", "saoms.World", "")
         + &component("Master", "saoms.MasterEnvironment", "")
-        + &component(
-            "Environment",
-            "saoms.Environment",
-            &format!("<property name=\"scenario\">{scenario}</property>"),
-        )
+        + &component("Environment", "saoms.Environment", &format!("<property name=\"scenario\">{scenario}</property>"))
         + &component("Robot1", "saoms.Robot", "<reference name=\"world\" target=\"World\"/>");
-    let start = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">";
+    let start =
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">";
     let run = saoms_testkit::Fleet::of_text(format!("{start}\n{text}</composite>"))
         .run(1, std::time::Duration::from_secs(60));
     let journal: String = run.journal().entries().iter().map(|entry| format!("{entry}\n")).collect();

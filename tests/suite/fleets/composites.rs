@@ -41,12 +41,6 @@ fn each_says_what_it_shows() {
 fn each_runs_for_a_minute_and_fails_nowhere() {
     for path in shipped() {
         let report = Fleet::of_file(&path).run(1, Duration::from_secs(60));
-        assert_ne!(
-            report.outcome.status,
-            RunStatus::Failed,
-            "{}: {:?}",
-            path.display(),
-            report.outcome.reasons
-        );
+        assert_ne!(report.outcome.status, RunStatus::Failed, "{}: {:?}", path.display(), report.outcome.reasons);
     }
 }

@@ -36,13 +36,7 @@ fn luggage(report: &RunReport, what: &str) -> u64 {
 
 /// The run ended by itself, without a collision, and whatever was not delivered is given up.
 fn assert_ended(report: &RunReport, context: &str) {
-    assert_eq!(
-        report.outcome.status,
-        RunStatus::Done,
-        "{context}: {:?}, {:?}",
-        report.outcome,
-        report.sections
-    );
+    assert_eq!(report.outcome.status, RunStatus::Done, "{context}: {:?}, {:?}", report.outcome, report.sections);
     assert_eq!(
         luggage(report, "delivered") + luggage(report, "open"),
         luggage(report, "requested"),
@@ -58,18 +52,12 @@ const WIRE: &str = r#"<reference name="world" target="World"/>"#;
 fn sleepers_try_what_those_who_are_awake_refused() {
     // Only who drives finds out that a move takes four executions: few pieces are in reach.
     let scenario = "from 1s every 1s 10 times luggage (1,0)..(10,10) to (1,0)..(10,10); at 4s breakdown 2";
-    let mut components = component(
-        "World",
-        "World",
-        100,
-        &(property("moveTime", "350ms") + &property("handlingTime", "700ms")),
-    );
+    let mut components =
+        component("World", "World", 100, &(property("moveTime", "350ms") + &property("handlingTime", "700ms")));
     components += &component("Master", "MasterEnvironment", 100, "");
     components += &component("MasterRobot", "MasterRobot", 100, "");
     components += &component("Environment", "Environment", 100, &property("scenario", scenario));
-    for (robot, more) in
-        [("Robot1", ""), ("Robot2", ""), ("Robot3", r#"<property name="asleep">true</property>"#)]
-    {
+    for (robot, more) in [("Robot1", ""), ("Robot2", ""), ("Robot3", r#"<property name="asleep">true</property>"#)] {
         components += &component(robot, "Robot", 100, &format!("{more}{WIRE}"));
     }
     let fleet = composite(&components);

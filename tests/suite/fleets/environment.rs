@@ -14,8 +14,7 @@ const HOUR: Duration = Duration::from_secs(3600);
 
 /// A fleet of two robots in a world of 5 x 4 blocks with a wall in (2,2), and these components too.
 fn fleet(scenario: &str, more: &str) -> String {
-    let task =
-        |id: &str| format!("<property name=\"ID\">{id}</property><property name=\"period\">100</property>");
+    let task = |id: &str| format!("<property name=\"ID\">{id}</property><property name=\"period\">100</property>");
     let robot = |number: u32| {
         format!(
             "<component name=\"Robot{number}\"><implementation.java class=\"saoms.Robot\"/>{}<reference name=\"world\" target=\"World\"/></component>\n",
@@ -87,8 +86,7 @@ impl Component for Prankster {
 #[test]
 fn impossible_events_are_ignored_and_the_run_ends_by_itself() {
     let prankster = "<component name=\"P\"><implementation.java class=\"test.Prankster\"/><property name=\"ID\">P</property><property name=\"period\">100</property></component>";
-    let scenario =
-        "<property name=\"scenario\">at 1s luggage (1,0) to (4,3); at 3s luggage (1,1) to (4,1)</property>";
+    let scenario = "<property name=\"scenario\">at 1s luggage (1,0) to (4,3); at 3s luggage (1,1) to (4,1)</property>";
     let report = Fleet::of_text(fleet(scenario, prankster)).run(1, HOUR);
     assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
     let luggage = json!({"requested": 3, "delivered": 3, "open": 0, "ignored": 5});
@@ -99,7 +97,8 @@ fn impossible_events_are_ignored_and_the_run_ends_by_itself() {
 
 #[test]
 fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends() {
-    let scenario = "at 1s luggage (1,0) to (4,3); at 2s breakdown 1; at 2s breakdown Robot2; at 3s luggage (1,1) to (4,1)";
+    let scenario =
+        "at 1s luggage (1,0) to (4,3); at 2s breakdown 1; at 2s breakdown Robot2; at 3s luggage (1,1) to (4,1)";
     let report = Fleet::of_text(with_scenario(scenario)).run(1, HOUR);
     assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
     let luggage = json!({"requested": 2, "delivered": 0, "open": 2, "ignored": 0});

@@ -184,11 +184,9 @@ fn composites_of_another_contribution_are_found_from_every_folder() {
             "<component name='m'><implementation.java class='unibg.robotics.tca.MessageBrokerImpl'/></component>",
         ),
     );
-    for (inside, path) in [
-        ("", "fleet/part/fleet.composite"),
-        ("fleet", "part/fleet.composite"),
-        ("fleet/part", "fleet.composite"),
-    ] {
+    for (inside, path) in
+        [("", "fleet/part/fleet.composite"), ("fleet", "part/fleet.composite"), ("fleet/part", "fleet.composite")]
+    {
         let output = saoms_in(&folder.path().join(inside), &["expand", path]);
         let text = String::from_utf8_lossy(&output.stdout);
         assert!(text.contains("name=\"m\""), "{path}: {}", String::from_utf8_lossy(&output.stderr));

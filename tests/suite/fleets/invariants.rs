@@ -85,11 +85,7 @@ fn moves_and_handling_may_take_several_periods() {
     let size = r#"<property name="width">11</property>"#;
     let times = r#"<property name="moveTime">250ms</property><property name="handlingTime">1s</property>"#;
     let slow = with(&pair(), size, &format!("{size}{times}"));
-    let slow = with(
-        &slow,
-        r#"<property name="period" source="$period"/>"#,
-        r#"<property name="period">50</property>"#,
-    );
+    let slow = with(&slow, r#"<property name="period" source="$period"/>"#, r#"<property name="period">50</property>"#);
     let slow = with(
         &slow,
         r#"<reference name="world""#,
@@ -124,10 +120,7 @@ fn the_classic_rules_deliver_and_collide_once_as_in_figure_8_19() {
     }
     let report = Fleet::of_text(composite).run(1, HOUR);
     assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
-    assert_eq!(
-        section(&report, "luggage"),
-        &json!({"requested": 4, "delivered": 4, "open": 0, "ignored": 0})
-    );
+    assert_eq!(section(&report, "luggage"), &json!({"requested": 4, "delivered": 4, "open": 0, "ignored": 0}));
     assert_eq!(section(&report, "collisions"), &json!({"vertex": 1, "swap": 0}));
     // The last piece is deposited in the 51st execution of the first robot, and the run ends when the environment hears
     // of it.
@@ -149,7 +142,8 @@ fn two_robots_cannot_start_on_one_block() {
 fn a_wrong_scenario_is_found_before_anything_runs() {
     let wrong = with(&pair(), "then 100ms luggage (1,5) to (10,5)", "then 100ms luggage (1,5) to");
     let found = Fleet::of_text(wrong).diagnostics();
-    let expected = "error S3014 38:34 component `Environment`: property `scenario`: found the end of the line, expected a block";
+    let expected =
+        "error S3014 38:34 component `Environment`: property `scenario`: found the end of the line, expected a block";
     assert!(found.starts_with(expected), "{found}");
 }
 

@@ -8,8 +8,8 @@ use saoms_components::grid::Block;
 use saoms_components::hardware::Area;
 use saoms_components::messages::{
     AREA, CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, ENVIRONMENT, EVENT_LUGGAGE,
-    EnvironmentEvent, EventLuggage, FAULT, Fault, LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE,
-    RobotList, RobotState,
+    EnvironmentEvent, EventLuggage, FAULT, Fault, LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList,
+    RobotState,
 };
 use saoms_core::report::RunStatus;
 use saoms_testkit::{Fleet, Run};
@@ -20,16 +20,7 @@ use serde_json::json;
 #[class(
     name = "test.Liar",
     periodic,
-    publishes(
-        ENVIRONMENT,
-        EVENT_LUGGAGE,
-        ROBOT_STATE,
-        CRITICAL_SITUATION,
-        POSITION,
-        ROBOT_LIST,
-        FAULT,
-        AREA
-    )
+    publishes(ENVIRONMENT, EVENT_LUGGAGE, ROBOT_STATE, CRITICAL_SITUATION, POSITION, ROBOT_LIST, FAULT, AREA)
 )]
 struct Liar {
     topic: String,
@@ -106,12 +97,9 @@ impl Component for Liar {
                 }
                 for (robot, luggage) in [(0, 1), (77, 1), (1, 1), (2, 2), (u32::MAX, u32::MAX)] {
                     let said = EventLuggage { robot, ..EventLuggage::request(luggage, HERE, THERE) };
-                    for stage in [
-                        LuggageStage::Interest,
-                        LuggageStage::Taken,
-                        LuggageStage::Delivered,
-                        LuggageStage::Refused,
-                    ] {
+                    for stage in
+                        [LuggageStage::Interest, LuggageStage::Taken, LuggageStage::Delivered, LuggageStage::Refused]
+                    {
                         context.send(&self.luggage, EventLuggage { stage, ..said.clone() })?;
                         context.send(&self.luggage, EventLuggage { stage, block: LOW, ..said.clone() })?;
                     }
@@ -142,8 +130,7 @@ impl Component for Liar {
                     context.send(&self.situations, CriticalSituation { block: HIGH, ..request.clone() })?;
                     for healer in [0, 77, 2] {
                         let stage = CriticalStage::Taken;
-                        context
-                            .send(&self.situations, CriticalSituation { stage, healer, ..request.clone() })?;
+                        context.send(&self.situations, CriticalSituation { stage, healer, ..request.clone() })?;
                     }
                 }
             }
@@ -193,10 +180,8 @@ fn run(policy: &str, topic: &str) -> Run {
             "<component name=\"{name}\"><implementation.java class=\"{class}\"/><property name=\"ID\">{name}</property><property name=\"period\">100</property>{inside}</component>\n"
         )
     };
-    let robot =
-        format!("<property name=\"policy\">{policy}</property><reference name=\"world\" target=\"World\"/>");
-    let scenario =
-        "<property name=\"scenario\">at 1s luggage (1,0) to (4,3); at 3s luggage (1,1) to (4,1)</property>";
+    let robot = format!("<property name=\"policy\">{policy}</property><reference name=\"world\" target=\"World\"/>");
+    let scenario = "<property name=\"scenario\">at 1s luggage (1,0) to (4,3); at 3s luggage (1,1) to (4,1)</property>";
     let text = [
         component("World", "saoms.World", "<property name=\"map\">.....\n.....\n..@..\n.....</property>"),
         component("Master", "saoms.MasterEnvironment", ""),
@@ -206,7 +191,8 @@ fn run(policy: &str, topic: &str) -> Run {
         component("Robot2", "saoms.Robot", &robot),
         component("Liar", "test.Liar", &format!("<property name=\"topic\">{topic}</property>")),
     ];
-    let start = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">";
+    let start =
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">";
     Fleet::of_text(format!("{start}\n{}</composite>", text.concat())).run(1, Duration::from_secs(600))
 }
 
@@ -231,9 +217,8 @@ fn ignored(topic: &str, readers: &[(&str, &[&str])]) {
             told.retain(|line| !line.contains(&format!("{reader}: ")));
         }
         assert!(told.is_empty(), "others said something, too: {told:?}");
-        let counted = ["messages", "luggage", "faults"].map(|name| {
-            report.sections.get(name).and_then(|section| section["ignored"].as_u64()).unwrap_or(0)
-        });
+        let counted = ["messages", "luggage", "faults"]
+            .map(|name| report.sections.get(name).and_then(|section| section["ignored"].as_u64()).unwrap_or(0));
         assert!(counted.iter().sum::<u64>() >= 35, "{counted:?}");
     }
 }
@@ -299,10 +284,7 @@ fn states_of_robots() {
         NO_ROBOT,
         "it is in the name of robot 1, for which `Robot1` speaks",
     ];
-    ignored(
-        "RLMSTOPIC",
-        &["Robot1", "Robot2", "Master", "Environment", "World", "Crew"].map(|reader| (reader, all)),
-    );
+    ignored("RLMSTOPIC", &["Robot1", "Robot2", "Master", "Environment", "World", "Crew"].map(|reader| (reader, all)));
 }
 
 #[test]

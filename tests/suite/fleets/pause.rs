@@ -70,7 +70,8 @@ fn paused(robots: u32, from: u64, length: u64) -> Fleet {
         let inside = property("discharge", "0.5") + "<reference name=\"world\" target=\"World\"/>";
         text += &component(&format!("Robot{robot}"), "saoms.Robot", &inside);
     }
-    let start = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">";
+    let start =
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">";
     Fleet::of_text(format!("{start}\n{text}</composite>"))
 }
 

@@ -63,12 +63,9 @@ const TIRELESS: Setting = Setting { discharge: "0", times: (0, 0), ..FOUR };
 
 #[test]
 fn what_is_refused_piles_up_and_what_is_not_told_is_worked_off() {
-    for (setting, holds, likely, never) in [
-        (ONE, 3200, 2800, 1100),
-        (SLOW, 5600, 4400, 3500),
-        (FOUR, 4000, 3500, 900),
-        (TIRELESS, 700, 600, 230),
-    ] {
+    for (setting, holds, likely, never) in
+        [(ONE, 3200, 2800, 1100), (SLOW, 5600, 4400, 3500), (FOUR, 4000, 3500, 900), (TIRELESS, 700, 600, 230)]
+    {
         let Setting { luggage, robots, .. } = setting;
         let said = [holds, likely, never].map(|every| setting.severity(every));
         assert_eq!(said, ["", "warning", "error"], "{robots} robots, {luggage}");
@@ -92,10 +89,7 @@ fn what_is_in_reach_is_brought_and_what_is_not_is_given_up() {
         let fleet = Setting { luggage, ..far }.fleet(60_000, "1 times");
         let found = fleet.diagnostics();
         let report = fleet.run(1, Duration::from_secs(900));
-        (
-            found.split(' ').next().unwrap_or("").to_owned(),
-            report.sections["luggage"]["delivered"].as_u64().unwrap(),
-        )
+        (found.split(' ').next().unwrap_or("").to_owned(), report.sections["luggage"]["delivered"].as_u64().unwrap())
     };
     assert_eq!(brought("(1,1) to (14,6)"), (String::new(), 1), "19 moves from (0,1)");
     assert_eq!(brought("(1,1) to (15,6)..(15,7)"), ("warning".to_owned(), 0), "20 moves or more");
@@ -106,10 +100,9 @@ fn only_endless_work_is_too_much() {
     let often = ONE.fleet(500, "10000 times").diagnostics();
     assert_eq!(often, "");
     let shown = ONE.fleet(500, "").shown();
-    for part in [
-        "120 pieces a minute, each at least 1.2 s of a robot's time",
-        "have 3 robots with chargers of their own",
-    ] {
+    for part in
+        ["120 pieces a minute, each at least 1.2 s of a robot's time", "have 3 robots with chargers of their own"]
+    {
         assert!(shown.contains(part), "{shown}");
     }
 }

@@ -46,11 +46,8 @@ fn files_that_no_composite_reads_are_nobodys_fault() {
 
 #[test]
 fn descriptions_are_checked_with_what_they_deploy() {
-    let files = [
-        ("fleet.composite", fleet()),
-        ("r.csv", TABLE.to_owned()),
-        ("sca-contribution.xml", DESCRIPTION.to_owned()),
-    ];
+    let files =
+        [("fleet.composite", fleet()), ("r.csv", TABLE.to_owned()), ("sca-contribution.xml", DESCRIPTION.to_owned())];
     let files = files.each_ref().map(|(name, text)| (*name, text.as_str()));
     let mut editor = Editor::started("description", &files);
     editor.open("sca-contribution.xml", DESCRIPTION);

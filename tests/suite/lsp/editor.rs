@@ -48,12 +48,8 @@ impl Editor {
         for (name, text) in files {
             fs::write(folder.join(name), text).unwrap();
         }
-        let mut server = command(&["lsp"])
-            .current_dir(&folder)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut server =
+            command(&["lsp"]).current_dir(&folder).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
         let mut output = BufReader::new(server.stdout.take().unwrap());
         let (sender, messages) = mpsc::channel();
         thread::spawn(move || {

@@ -53,11 +53,7 @@ fn what_is_imported_is_completed_explained_and_found() {
     assert_eq!(defined(&mut editor, at(4, "floor")), 1);
     let hover = editor.ask("textDocument/hover", at(2, "size"));
     assert!(hover["result"]["contents"]["value"].as_str().unwrap().contains("size"), "{hover}");
-    assert_eq!(
-        labels(&editor.ask("textDocument/completion", at(1, "r:hall"))),
-        ["r:hall"],
-        "what is exported"
-    );
+    assert_eq!(labels(&editor.ask("textDocument/completion", at(1, "r:hall"))), ["r:hall"], "what is exported");
     assert_eq!(labels(&editor.ask("textDocument/completion", at(2, "size"))), ["size"]);
     assert_eq!(labels(&editor.ask("textDocument/completion", at(4, "floor"))), ["floor"]);
     // Who else uses it is not known here.
@@ -70,7 +66,8 @@ fn what_is_imported_is_completed_explained_and_found() {
     editor.wait_for("robots/hall.composite", |all| all == ["S2026 2:16"]);
     let hall = editor.uri("robots/hall.composite");
     let column = inner.lines().nth(2).unwrap().find("size").unwrap();
-    let rename = json!({ "textDocument": { "uri": hall }, "position": { "line": 2, "character": column }, "newName": "width" });
+    let rename =
+        json!({ "textDocument": { "uri": hall }, "position": { "line": 2, "character": column }, "newName": "width" });
     let edits = editor.ask("textDocument/rename", rename);
     let changes = edits["result"]["changes"].as_object().unwrap();
     let mut files: Vec<(String, usize)> =
@@ -78,9 +75,7 @@ fn what_is_imported_is_completed_explained_and_found() {
     files.sort();
     assert_eq!(files, [(uri.clone(), 1), (hall.clone(), 1)], "{edits}");
     // The composites there are none that this one can name.
-    let naming = inner
-        .replace("saoms.World", "")
-        .replace("implementation.rust class", "implementation.composite name");
+    let naming = inner.replace("saoms.World", "").replace("implementation.rust class", "implementation.composite name");
     editor.change("robots/hall.composite", 2, json!([{ "text": naming }]));
     let column = naming.lines().nth(3).unwrap().find("name=\"\"").unwrap() + 6;
     let place = json!({ "textDocument": { "uri": hall }, "position": { "line": 3, "character": column } });

@@ -23,8 +23,7 @@ const INNER: &str = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sc
 
 #[test]
 fn diagnostics_follow_what_is_typed_in_every_file() {
-    let mut editor =
-        Editor::started("diagnostics", &[("outer.composite", OUTER), ("inner.composite", INNER)]);
+    let mut editor = Editor::started("diagnostics", &[("outer.composite", OUTER), ("inner.composite", INNER)]);
     editor.open("outer.composite", OUTER);
     // Columns are in UTF-16 units: the robot is two, the umlaut one.
     let column = INNER.lines().nth(1).unwrap().split("<component name=\"Gps\"").next().unwrap();
@@ -37,17 +36,17 @@ fn diagnostics_follow_what_is_typed_in_every_file() {
     editor.change("inner.composite", 2, json!([{ "range": { "start": start, "end": end }, "text": "" }]));
     editor.wait_for("inner.composite", <[String]>::is_empty);
     // Text that is no XML is told, too, and what can be written there.
-    editor.change("outer.composite", 2, json!([{ "text": "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"o\"><inc" }]));
+    editor.change(
+        "outer.composite",
+        2,
+        json!([{ "text": "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"o\"><inc" }]),
+    );
     editor.wait_for("outer.composite", |all| all.iter().any(|one| one.starts_with("S01")));
     let position = json!({ "line": 0, "character": 83 });
     let asked = json!({ "textDocument": { "uri": editor.uri("outer.composite") }, "position": position });
     let answer = editor.ask("textDocument/completion", asked);
-    let labels: Vec<&str> = answer["result"]["items"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|item| item["label"].as_str().unwrap())
-        .collect();
+    let labels: Vec<&str> =
+        answer["result"]["items"].as_array().unwrap().iter().map(|item| item["label"].as_str().unwrap()).collect();
     assert!(labels.contains(&"include"), "{labels:?}");
     let uri = editor.uri("outer.composite");
     editor.tell("textDocument/didClose", json!({ "textDocument": { "uri": uri } }));
@@ -69,8 +68,7 @@ fn what_is_malformed_or_unknown_is_answered() {
     assert_eq!(editor.ask("textDocument/completion", json!({ "position": 3 }))["error"]["code"], -32602);
     editor.tell("textDocument/didOpen", json!([1]));
     editor.tell("$/nonsense", json!(null));
-    let nowhere =
-        json!({ "textDocument": { "uri": "untitled:1" }, "position": { "line": 0, "character": 0 } });
+    let nowhere = json!({ "textDocument": { "uri": "untitled:1" }, "position": { "line": 0, "character": 0 } });
     assert_eq!(editor.ask("textDocument/completion", nowhere)["error"]["code"], -32602);
     assert_eq!(editor.ask("shutdown", Value::Null)["result"], Value::Null);
     assert_eq!(editor.ask("textDocument/hover", json!({}))["error"]["code"], -32600, "shut down");
@@ -146,8 +144,7 @@ fn what_is_wrong_is_mended_and_names_are_changed_in_all_files() {
     // The layout is that of `saoms fmt`.
     editor.change("fleet.composite", 2, json!([{ "text": text.replace("  <wire", "<wire") }]));
     let options = json!({ "tabSize": 8, "insertSpaces": false });
-    let formatted =
-        editor.ask("textDocument/formatting", json!({ "textDocument": document, "options": options }));
+    let formatted = editor.ask("textDocument/formatting", json!({ "textDocument": document, "options": options }));
     let laid_out = formatted["result"][0]["newText"].as_str().unwrap();
     assert!(laid_out.contains("\n  <wire source"), "{laid_out}");
     assert_eq!(editor.end(), 0);
@@ -163,8 +160,7 @@ fn what_is_no_fault_here_is_allowed_with_a_reason_and_all_is_mended_at_once() {
     editor.wait_for("fleet.composite", |all| all.len() == 3);
     let document = json!({ "uri": editor.uri("fleet.composite") });
     let mut actions = |line: u32, only: Value| {
-        let range =
-            json!({ "start": { "line": line, "character": 0 }, "end": { "line": line + 1, "character": 0 } });
+        let range = json!({ "start": { "line": line, "character": 0 }, "end": { "line": line + 1, "character": 0 } });
         let context = json!({ "diagnostics": [], "only": only });
         let asked = json!({ "textDocument": document, "range": range, "context": context });
         let all = editor.ask("textDocument/codeAction", asked);
@@ -180,19 +176,14 @@ fn what_is_no_fault_here_is_allowed_with_a_reason_and_all_is_mended_at_once() {
     let all = actions(0, json!(["source"]));
     assert_eq!(all[0]["kind"], "source.fixAll");
     let uri = document["uri"].as_str().unwrap();
-    assert_eq!(
-        all[0]["edit"]["changes"][uri].as_array().unwrap().len(),
-        2,
-        "of the third one, several names are near"
-    );
+    assert_eq!(all[0]["edit"]["changes"][uri].as_array().unwrap().len(), 2, "of the third one, several names are near");
     assert_eq!(editor.end(), 0);
 }
 
 #[test]
 fn one_fault_is_mended_where_all_are_asked_for() {
-    let text = composite(
-        "  <component name=\"B\" autowrie=\"true\"><implementation.java class=\"saoms.World\"/></component>",
-    );
+    let text =
+        composite("  <component name=\"B\" autowrie=\"true\"><implementation.java class=\"saoms.World\"/></component>");
     let mut editor = Editor::started("one", &[("fleet.composite", &text)]);
     editor.open("fleet.composite", &text);
     editor.wait_for("fleet.composite", |all| all.iter().any(|one| one.contains("S1007")));
@@ -219,10 +210,8 @@ fn composites_and_components_of_all_files_are_found_by_name() {
     let mut found = |query: &str| -> Vec<String> {
         let answer = editor.ask("workspace/symbol", json!({ "query": query }));
         let all = answer["result"].as_array().unwrap().iter();
-        all.map(|one| {
-            format!("{} in {}", one["name"].as_str().unwrap(), one["containerName"].as_str().unwrap())
-        })
-        .collect()
+        all.map(|one| format!("{} in {}", one["name"].as_str().unwrap(), one["containerName"].as_str().unwrap()))
+            .collect()
     };
     assert_eq!(found("gps"), ["GPS in inner", "Gps in inner"]);
     assert_eq!(found("outr"), ["outer in urn:f"]);
@@ -239,11 +228,10 @@ fn what_opens_something_asks_for_proposals() {
     editor.tell("initialized", json!({}));
     // Each of these texts ends with what opens a place where something can be proposed.
     let robot = "<component name=\"R${index}\" s:count=\"2\"><implementation.rust class=\"saoms.Robot\"/>";
-    let after =
-        ["<", "</", "<reference ", "<property name=\"", "<property name='", "<property name=\"ID\">${"];
+    let after = ["<", "</", "<reference ", "<property name=\"", "<property name='", "<property name=\"ID\">${"];
     for opening in after {
-        let text = composite(&format!("{robot}{opening}"))
-            .replace("name=\"fleet\"", "xmlns:s=\"urn:saoms:1\" name=\"fleet\"");
+        let text =
+            composite(&format!("{robot}{opening}")).replace("name=\"fleet\"", "xmlns:s=\"urn:saoms:1\" name=\"fleet\"");
         let column = robot.len() + opening.len();
         editor.open("fleet.composite", &text);
         let place = json!({ "textDocument": { "uri": editor.uri("fleet.composite") }, "position": { "line": 1, "character": column } });
@@ -303,11 +291,8 @@ fn composites_are_checked_as_the_description_of_their_contribution_says() {
             shown.insert(uri.rsplit('/').next().unwrap().to_owned(), codes.join(" "));
         }
     }
-    let expected = [
-        ("fleet.composite", "S2025 S2026"),
-        ("library.composite", "S2026"),
-        ("second.composite", "S2002 S2026"),
-    ];
+    let expected =
+        [("fleet.composite", "S2025 S2026"), ("library.composite", "S2026"), ("second.composite", "S2002 S2026")];
     assert_eq!(shown, expected.map(|(name, codes)| (name.to_owned(), codes.to_owned())).into());
     assert_eq!(editor.end(), 0);
 }
@@ -328,8 +313,7 @@ fn a_text_without_a_file_is_checked_and_completed() {
         }
     }
     let position = json!({ "line": 1, "character": 3 });
-    let answer = editor
-        .ask("textDocument/completion", json!({ "textDocument": { "uri": uri }, "position": position }));
+    let answer = editor.ask("textDocument/completion", json!({ "textDocument": { "uri": uri }, "position": position }));
     assert_eq!(answer["result"]["items"][0]["label"], "wire");
     assert_eq!(editor.end(), 0);
 }

@@ -33,16 +33,12 @@ struct Keystroke {
 /// Something that a person types: mostly in the middle of words, sometimes what breaks the text, which is mended at
 /// once.
 fn typed(text: &str, chance: &mut Chance) -> Vec<Keystroke> {
-    const BREAKING: [&str; 12] =
-        ["<", ">", "\"", "&", "</", "\r\n", "🤖", "<!--", "${", "/>", "ä", "<component "];
+    const BREAKING: [&str; 12] = ["<", ">", "\"", "&", "</", "\r\n", "🤖", "<!--", "${", "/>", "ä", "<component "];
     let start = text.floor_char_boundary(chance.below(text.len()));
     if chance.below(5) == 0 {
         let new = chance.pick(&BREAKING).to_owned();
         let behind = start + new.len();
-        return vec![
-            Keystroke { start, end: start, new },
-            Keystroke { start, end: behind, new: String::new() },
-        ];
+        return vec![Keystroke { start, end: start, new }, Keystroke { start, end: behind, new: String::new() }];
     }
     // A letter or a digit of a value gets another one, two, or none.
     let is_word = |at: &usize| text.as_bytes()[*at].is_ascii_alphanumeric();

@@ -52,8 +52,7 @@ fn saoms(arguments: &[&str]) -> Output {
 fn run(composite: &Path, seed: u64) -> Value {
     let seed = seed.to_string();
     let path = composite.to_str().unwrap();
-    let run =
-        saoms(&["run", path, "--virtual", "--for", "300s", "--seed", &seed, "--quiet", "--report", "-"]);
+    let run = saoms(&["run", path, "--virtual", "--for", "300s", "--seed", &seed, "--quiet", "--report", "-"]);
     assert!(run.status.success(), "{}", text(&run));
     serde_json::from_slice(&run.stdout).unwrap()
 }
@@ -79,19 +78,11 @@ fn it_gets_past_the_robots_that_ship_and_they_past_it() {
     for seed in 0..3 {
         let report = run(Path::new(FLEET), seed);
         assert_eq!(report["luggage"]["delivered"], 20, "seed {seed}: {report:#}");
-        assert_eq!(
-            report["collisions"],
-            serde_json::json!({"vertex": 0, "swap": 0}),
-            "seed {seed}: {report:#}"
-        );
+        assert_eq!(report["collisions"], serde_json::json!({"vertex": 0, "swap": 0}), "seed {seed}: {report:#}");
         assert!(report["patrol"]["rounds"].as_u64() > Some(15), "seed {seed}: {report:#}");
         turns += report["patrol"]["turns"].as_u64().unwrap_or(0);
         assert_eq!(report["messages"]["ignored"], Value::Null, "it says nothing wrong: {report:#}");
-        assert_eq!(
-            report["trace_hash"],
-            run(Path::new(FLEET), seed)["trace_hash"],
-            "the same seed, the same run"
-        );
+        assert_eq!(report["trace_hash"], run(Path::new(FLEET), seed)["trace_hash"], "the same seed, the same run");
     }
     assert!(turns > 0, "robots come towards each other now and then");
 }
@@ -106,11 +97,7 @@ fn it_hands_back_luggage_that_no_robot_is_left_for() {
     let (_, end) = rest.split_once("end\n").unwrap();
     fs::write(&composite, format!("{start}{scenario}{end}")).unwrap();
     let run = saoms(&["run", composite.to_str().unwrap(), "--virtual", "--for", "60s"]);
-    assert!(
-        support::text(&run).contains("gives up luggage 1 from (3,3) to (5,5)"),
-        "{}",
-        support::text(&run)
-    );
+    assert!(support::text(&run).contains("gives up luggage 1 from (3,3) to (5,5)"), "{}", support::text(&run));
 }
 
 #[test]
@@ -136,35 +123,25 @@ fn it_says_what_a_robot_says() {
     let mut patrol = Bench::of_library(library(), "patrol.Robot", &values).unwrap();
     patrol.start().unwrap();
     assert_eq!(patrol.sent(&ROBOT_LIST)[0].charger, Block::new(2, 0));
-    let wants =
-        |patrol: &Bench| patrol.sent(&POSITION).last().map(|position| (position.block, position.wanted));
+    let wants = |patrol: &Bench| patrol.sent(&POSITION).last().map(|position| (position.block, position.wanted));
     assert_eq!(wants(&patrol), Some((Block::new(2, 0), Block::new(2, 0))));
     patrol.execute().unwrap();
     assert_eq!(wants(&patrol), Some((Block::new(2, 0), Block::new(3, 0))), "says so before it goes");
     // Somebody stands in its way, and luggage waits.
     let block = Block::new(3, 0);
-    patrol
-        .deliver(&POSITION, Position { robot: 5, block, next: block, wanted: block, ..Position::default() });
+    patrol.deliver(&POSITION, Position { robot: 5, block, next: block, wanted: block, ..Position::default() });
     patrol.deliver(&EVENT_LUGGAGE, EventLuggage::request(7, block, block));
     patrol.execute().unwrap();
     assert_eq!(wants(&patrol), None, "waits");
     let refusal = &patrol.sent(&EVENT_LUGGAGE)[0];
     assert_eq!((refusal.robot, refusal.luggage, refusal.stage), (9, 7, LuggageStage::Refused));
     let away = Block::new(9, 9);
-    patrol.deliver(
-        &POSITION,
-        Position { robot: 5, block: away, next: away, wanted: away, ..Position::default() },
-    );
+    patrol.deliver(&POSITION, Position { robot: 5, block: away, next: away, wanted: away, ..Position::default() });
     patrol.execute().unwrap();
     assert_eq!(wants(&patrol), Some((Block::new(3, 0), Block::new(4, 0))), "goes on");
     // Somebody comes towards it.
-    let towards = Position {
-        robot: 5,
-        block: Block::new(4, 0),
-        next: Block::new(4, 0),
-        wanted: block,
-        ..Position::default()
-    };
+    let towards =
+        Position { robot: 5, block: Block::new(4, 0), next: Block::new(4, 0), wanted: block, ..Position::default() };
     patrol.deliver(&POSITION, towards);
     patrol.execute().unwrap();
     assert_eq!(wants(&patrol), Some((block, Block::new(2, 0))), "turns around");

@@ -88,21 +88,13 @@ fn the_battery_saver_is_loaded_into_robots_that_ship() {
 #[test]
 fn the_master_that_knows_flights_is_loaded() {
     let (report, _) = loaded_and_linked("flights", 300);
-    assert_eq!(
-        (&report["luggage"]["delivered"], &report["flights"]["done"]),
-        (&4.into(), &2.into()),
-        "{report:#}"
-    );
+    assert_eq!((&report["luggage"]["delivered"], &report["flights"]["done"]), (&4.into(), &2.into()), "{report:#}");
 }
 
 #[test]
 fn the_wheels_that_wear_out_are_loaded() {
     let (report, _) = loaded_and_linked("drive", 300);
-    assert_eq!(
-        (&report["luggage"]["delivered"], &report["assistance"]),
-        (&2.into(), &1.into()),
-        "{report:#}"
-    );
+    assert_eq!((&report["luggage"]["delivered"], &report["assistance"]), (&2.into(), &1.into()), "{report:#}");
 }
 
 #[test]
@@ -125,14 +117,9 @@ fn rules_over_fleets_take_a_loaded_robot_with_a_camera_for_a_robot() {
     let folder = tempfile::tempdir().unwrap();
     let composite = folder.path().join("fleet.composite");
     let fleet = fs::read_to_string(root().join("plugins/camera/fleet.composite")).unwrap();
-    fs::write(&composite, fleet.replace("name=\"ID\" value=\"Robot2\"", "name=\"ID\" value=\"Other1\""))
-        .unwrap();
+    fs::write(&composite, fleet.replace("name=\"ID\" value=\"Robot2\"", "name=\"ID\" value=\"Other1\"")).unwrap();
     let library = library("saoms_camera");
     let checked = saoms(&["check", composite.to_str().unwrap(), "--plugin", library.to_str().unwrap()]);
     assert_eq!(checked.status.code(), Some(2));
-    assert!(
-        text(&checked).contains("robots `Robot1` and `Robot2` both have the number 1"),
-        "{}",
-        text(&checked)
-    );
+    assert!(text(&checked).contains("robots `Robot1` and `Robot2` both have the number 1"), "{}", text(&checked));
 }

@@ -10,25 +10,11 @@ const ORDERS: &[(&str, &[&str])] = &[
     (
         "saoms-lang",
         &[
-            "limits",
-            "source",
-            "diagnostic",
-            "expression",
-            "syntax",
-            "model",
-            "load",
-            "contribution",
-            "schema",
-            "registry",
-            "assembly",
-            "check",
-            "project",
+            "limits", "source", "diagnostic", "expression", "syntax", "model", "load", "contribution", "schema",
+            "registry", "assembly", "check", "project",
         ],
     ),
-    (
-        "saoms-core",
-        &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"],
-    ),
+    ("saoms-core", &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"]),
 ];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
@@ -80,8 +66,7 @@ fn a_module_uses_only_modules_before_it() {
             for (line, used) in crate_paths(&fs::read_to_string(&file).unwrap()) {
                 if order.iter().position(|name| *name == used).is_some_and(|other| other > place) {
                     let file = file.display();
-                    wrong
-                        .push(format!("{file}:{line}: `{module}` comes before `{used}` and must not use it"));
+                    wrong.push(format!("{file}:{line}: `{module}` comes before `{used}` and must not use it"));
                 }
             }
         }
@@ -146,11 +131,7 @@ const DOMAIN: &[&str] =
 
 /// Examples in messages and helps, and names of the contract, that may say such a word.
 const EXAMPLES: &[&str] = &[
-    "`hall/Robot001`",
-    "`robots > 10",
-    "unibg.robotics.tca",
-    "value_name = \"ROBOT\"",
-    "that the robot did nothing",
+    "`hall/Robot001`", "`robots > 10", "unibg.robotics.tca", "value_name = \"ROBOT\"", "that the robot did nothing",
     "no such robot",
 ];
 
@@ -171,8 +152,7 @@ fn only_the_components_know_their_domain() {
         for file in files.iter().filter(|file| !file.starts_with(&templates) && !is_test(file)) {
             let text = fs::read_to_string(file).unwrap();
             let tests = ["#[cfg(test)]\nmod tests {", "#[cfg(test)]\n#[test]", "\n#[test]"];
-            let code =
-                tests.iter().fold(text.as_str(), |code, start| code.split(start).next().unwrap_or(code));
+            let code = tests.iter().fold(text.as_str(), |code, start| code.split(start).next().unwrap_or(code));
             for (number, line) in code.lines().enumerate() {
                 let line = without_examples(line).to_lowercase();
                 wrong.extend(

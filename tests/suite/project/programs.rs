@@ -13,9 +13,8 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 /// The test programs in a folder `tests`: files, and folders with a `main.rs`.
 fn programs(tests: &Path) -> Vec<PathBuf> {
     let mut programs = entries(tests);
-    programs.retain(|path| {
-        path.extension().is_some_and(|extension| extension == "rs") || path.join("main.rs").is_file()
-    });
+    programs
+        .retain(|path| path.extension().is_some_and(|extension| extension == "rs") || path.join("main.rs").is_file());
     programs
 }
 

@@ -7,9 +7,8 @@ use saoms_testkit::Fleet;
 /// The manual's area with its masters, an environment that plays this scenario, and these robots, given as number and
 /// further properties: `2 asleep=true battery=60`. Periods are those of the manual.
 pub(crate) fn fleet(policy: &str, master: &str, scenario: &str, robots: &[&str]) -> Fleet {
-    let mut text = String::from(
-        r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="test" targetNamespace="urn:test">"#,
-    );
+    let mut text =
+        String::from(r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="test" targetNamespace="urn:test">"#);
     let mut add = |class: &str, id: &str, period: u32, properties: &str, rest: &str| {
         let _ = write!(
             text,

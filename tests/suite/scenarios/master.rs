@@ -15,14 +15,10 @@ fn run(properties: &str, scenario: &str, robots: &[&str]) -> Run {
 
 #[test]
 fn one_robot_for_two_pieces_is_woken_by_battery_and_number() {
-    let robots =
-        ["1", "2 asleep=true battery=40", "3 asleep=true", "4 asleep=true battery=2", "5 asleep=true"];
+    let robots = ["1", "2 asleep=true battery=40", "3 asleep=true", "4 asleep=true battery=2", "5 asleep=true"];
     let run = run("", "at 2s landing 3", &robots);
     // The second and the fourth are still charging.
-    assert_eq!(
-        run.log("MRMS"),
-        ["2.500 s awakes robots 3 and 5", "27.500 s sends under charge robots 5 and 3"]
-    );
+    assert_eq!(run.log("MRMS"), ["2.500 s awakes robots 3 and 5", "27.500 s sends under charge robots 5 and 3"]);
     assert_eq!(
         run.story("Robot003"),
         "0: is charged, 100.0\n28: goes under charge, is in charge, 100.0\n29: is charged, 100.0\n"

@@ -19,14 +19,7 @@ fn begin_outside(run: &Run, loops: &[&str], texts: &[&str]) -> usize {
         seen += 1;
         let way = std::iter::successors(Some(entry), |entry| journal.entry(entry.cause()));
         let root = way.last().unwrap();
-        assert_eq!(
-            root.component(),
-            "Environment",
-            "{} {}: {}",
-            entry.time(),
-            entry.component(),
-            entry.text()
-        );
+        assert_eq!(root.component(), "Environment", "{} {}: {}", entry.time(), entry.component(), entry.text());
     }
     seen
 }
@@ -47,8 +40,7 @@ fn help_begins_with_the_breakdown_and_shifts_with_the_landing() {
     let robots = ["1", "3", "5", "7 asleep=true", "8 asleep=true"];
     for policy in ["safe", "classic"] {
         let run = Run::with(&fleet(policy, "", scenario, &robots), 100);
-        let healed =
-            begin_outside(&run, &["CriticalSituationMS"], &["would h", "awakes", "collects", "heals"]);
+        let healed = begin_outside(&run, &["CriticalSituationMS"], &["would h", "awakes", "collects", "heals"]);
         let called = begin_outside(&run, &["AwakeAsleepMS"], &["awakes", "the shift", "sends"]);
         let slept = begin_outside(&run, &["RobotMS"], &["awakes", "is awake", "finishes", "sleeps", "goes"]);
         assert!(healed > 2 && called > 3 && slept > 1, "{policy}: {healed}, {called}, {slept}");
@@ -57,10 +49,7 @@ fn help_begins_with_the_breakdown_and_shifts_with_the_landing() {
 
 #[test]
 fn each_called_robot_follows_from_its_own_call() {
-    let run = Run::with(
-        &fleet("safe", "", "at 1s landing 4; at 10s end", &["2 asleep=true", "3 asleep=true"]),
-        100,
-    );
+    let run = Run::with(&fleet("safe", "", "at 1s landing 4; at 10s end", &["2 asleep=true", "3 asleep=true"]), 100);
     let journal = &run.report.journal;
     for (robot, call) in [("Robot002", "awakes robot 2"), ("Robot003", "awakes robot 3")] {
         let symptoms = journal.of(robot).of_loop("RobotMS");
@@ -75,10 +64,7 @@ fn luggage_for_which_nobody_is_awake_awakes_a_robot() {
     let run = Run::with(&fleet("safe", "", "at 1s luggage (3,1) to (3,10)", &robots), 300);
     assert_eq!(run.count("luggage", "delivered"), 1);
     assert_eq!(run.log("Robot002"), [""; 0], "one is enough");
-    assert_eq!(
-        begin_outside(&run, &["RobotMS"], &["luggage 1 waits, and no robot that is awake can bring it"]),
-        1
-    );
+    assert_eq!(begin_outside(&run, &["RobotMS"], &["luggage 1 waits, and no robot that is awake can bring it"]), 1);
 }
 
 #[test]
@@ -95,11 +81,7 @@ fn luggage_that_no_battery_lasts_for_is_given_up_in_the_end() {
         r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="slow" targetNamespace="urn:slow">{}{}{}{}</composite>"#,
         component("World", "saoms.World", r#"<property name="moveTime">150ms</property>"#),
         component("MEMS", "saoms.MasterEnvironment", ""),
-        component(
-            "Environment",
-            "saoms.Environment",
-            &format!(r#"<property name="scenario">{scenario}</property>"#)
-        ),
+        component("Environment", "saoms.Environment", &format!(r#"<property name="scenario">{scenario}</property>"#)),
         component("Robot001", "saoms.Robot", r#"<reference name="world" target="World"/>"#),
     );
     let run = Run::with(&Fleet::of_text(text), 300);

@@ -22,14 +22,7 @@ const TABLE: &str = "
 ";
 
 const VARIABLES: [&str; 8] = [
-    "busy",
-    "transporter",
-    "hasLuggage",
-    "stopAPeriod",
-    "readyToGoUnderCharge",
-    "reachingCharge",
-    "inCharge",
-    "healer",
+    "busy", "transporter", "hasLuggage", "stopAPeriod", "readyToGoUnderCharge", "reachingCharge", "inCharge", "healer",
 ];
 
 /// The value of a variable once the execution that began then is over.

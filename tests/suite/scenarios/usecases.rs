@@ -7,11 +7,7 @@ use super::run::Run;
 fn run(composite: &str, pieces: i64) -> Run {
     let run = Run::of(composite, 3600);
     let count = |section, name| run.count(section, name);
-    assert_eq!(
-        (count("luggage", "requested"), count("luggage", "delivered")),
-        (pieces, pieces),
-        "{composite}"
-    );
+    assert_eq!((count("luggage", "requested"), count("luggage", "delivered")), (pieces, pieces), "{composite}");
     assert_eq!((count("collisions", "vertex"), count("collisions", "swap")), (0, 0), "{composite}");
     assert_eq!(run.report.sections["stranded"], 0, "{composite}");
     run
@@ -22,10 +18,7 @@ fn run(composite: &str, pieces: i64) -> Run {
 fn assert_order(run: &Run, expected: &[(&str, &str)]) {
     let mut log = run.whole_log();
     for (component, text) in expected {
-        assert!(
-            log.any(|line| line == (*component, *text)),
-            "`{component}: {text}` does not come in its place"
-        );
+        assert!(log.any(|line| line == (*component, *text)), "`{component}: {text}` does not come in its place");
     }
 }
 

@@ -63,9 +63,7 @@ pub(in crate::boundary) unsafe fn read_properties(
             1 => PropertyValue::Many(children.into_iter().map(|(_, value)| value).collect()),
             2 => PropertyValue::Complex(children.into()),
             other => {
-                return Err(Failure::new(format!(
-                    "found {other} for the kind of a property value, expected 0 to 2"
-                )));
+                return Err(Failure::new(format!("found {other} for the kind of a property value, expected 0 to 2")));
             }
         };
         values.push((name.into(), value));

@@ -48,11 +48,7 @@ unsafe fn read_at(view: &ReportView, depth: usize) -> Result<ReportValue, Failur
 }
 
 /// Shows a value for the report to code.
-pub(in crate::boundary) fn with_report_view(
-    name: &str,
-    value: &ReportValue,
-    code: &mut dyn FnMut(&ReportView),
-) {
+pub(in crate::boundary) fn with_report_view(name: &str, value: &ReportValue, code: &mut dyn FnMut(&ReportView)) {
     let scalar = |kind, bits, text: &str| ReportView {
         name: Bytes::text(name),
         kind,
@@ -81,11 +77,7 @@ pub(in crate::boundary) fn with_report_view(
 
 /// Shows the views of several values to code. The views of one lie on the stack while the next is made, so that all
 /// stay readable.
-fn collect(
-    values: &[(&str, &ReportValue)],
-    views: &mut Vec<ReportView>,
-    code: &mut dyn FnMut(&[ReportView]),
-) {
+fn collect(values: &[(&str, &ReportValue)], views: &mut Vec<ReportView>, code: &mut dyn FnMut(&[ReportView])) {
     match values {
         [] => code(views),
         [(name, value), rest @ ..] => with_report_view(name, value, &mut |view| {

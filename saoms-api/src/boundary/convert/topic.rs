@@ -23,9 +23,7 @@ pub(in crate::boundary) const fn topic_view(topic: &TopicDeclaration<'_>) -> Top
 ///
 /// # Safety
 /// The view and its texts are readable.
-pub(in crate::boundary) unsafe fn read_topic<'a>(
-    view: *const TopicView,
-) -> Result<TopicDeclaration<'a>, Failure> {
+pub(in crate::boundary) unsafe fn read_topic<'a>(view: *const TopicView) -> Result<TopicDeclaration<'a>, Failure> {
     // SAFETY: as the caller promises.
     unsafe {
         let TopicView { name, message, schema, kind } = *view;
@@ -36,11 +34,6 @@ pub(in crate::boundary) unsafe fn read_topic<'a>(
                 return Err(Failure::new(format!("found {other} for the kind of a topic, expected 0 or 1")));
             }
         };
-        Ok(TopicDeclaration {
-            name: name.get_text()?,
-            kind,
-            message: message.get_text()?,
-            schema: schema.get_text()?,
-        })
+        Ok(TopicDeclaration { name: name.get_text()?, kind, message: message.get_text()?, schema: schema.get_text()? })
     }
 }

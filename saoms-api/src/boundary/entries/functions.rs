@@ -176,12 +176,7 @@ unsafe extern "C" fn set<B: EntriesKind>(
     unsafe { guarded(error, || B::with(state, |all| all.set(entry, read_value(*value)?))?) }
 }
 
-unsafe extern "C" fn get_bytes<B: EntriesKind>(
-    state: *mut c_void,
-    entry: u32,
-    bytes: Sink,
-    error: Sink,
-) -> Status {
+unsafe extern "C" fn get_bytes<B: EntriesKind>(state: *mut c_void, entry: u32, bytes: Sink, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and wait for the bytes.
     unsafe {
         guarded(error, || {
@@ -193,12 +188,7 @@ unsafe extern "C" fn get_bytes<B: EntriesKind>(
     }
 }
 
-unsafe extern "C" fn set_bytes<B: EntriesKind>(
-    state: *mut c_void,
-    entry: u32,
-    bytes: Bytes,
-    error: Sink,
-) -> Status {
+unsafe extern "C" fn set_bytes<B: EntriesKind>(state: *mut c_void, entry: u32, bytes: Bytes, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the bytes.
     unsafe { guarded(error, || B::with(state, |all| all.set_bytes(entry, bytes.get()?))?) }
 }

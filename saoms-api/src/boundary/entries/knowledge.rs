@@ -63,8 +63,7 @@ impl DynEntries for RemoteKnowledge {
 impl Knowledge for RemoteKnowledge {
     fn declaration(&self) -> &'static str {
         // SAFETY: the handle keeps the rules; the text is a constant of a library or of the program, which stay.
-        unsafe { (self.remote.functions().declaration)(self.remote.handle.state).get_text() }
-            .unwrap_or_default()
+        unsafe { (self.remote.functions().declaration)(self.remote.handle.state).get_text() }.unwrap_or_default()
     }
 
     fn extras(&self) -> &Extras {

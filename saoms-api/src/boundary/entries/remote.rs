@@ -90,9 +90,7 @@ impl DynEntries for RemoteEntries {
 
     fn set_bytes(&mut self, entry: u32, bytes: &[u8]) -> Result<(), Failure> {
         // SAFETY: the handle keeps the rules; the bytes are lent to the call.
-        call(|error| unsafe {
-            (self.functions().set_bytes)(self.handle.state, entry, Bytes::lend(bytes), error)
-        })
+        call(|error| unsafe { (self.functions().set_bytes)(self.handle.state, entry, Bytes::lend(bytes), error) })
     }
 
     fn read(&self, values: &mut Vec<Value>) {

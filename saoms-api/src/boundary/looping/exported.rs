@@ -1,8 +1,7 @@
 use std::ffi::c_void;
 
 use saoms_abi::{
-    Bytes, EntriesHandle, FindingSink, HostHandle, LoopClassTable, LoopInstance, LoopTable, PropertyView,
-    Sink, Status,
+    Bytes, EntriesHandle, FindingSink, HostHandle, LoopClassTable, LoopInstance, LoopTable, PropertyView, Sink, Status,
 };
 
 use crate::adaptation::Writable;
@@ -91,12 +90,7 @@ impl ExportedLoop {
         knowledge: *const EntriesHandle,
         host: *const HostHandle,
         takes_in: bool,
-        code: impl FnOnce(
-            &mut dyn DynLoop,
-            &mut Snapshot,
-            &mut dyn Knowledge,
-            &mut Context<'_>,
-        ) -> Result<(), Failure>,
+        code: impl FnOnce(&mut dyn DynLoop, &mut Snapshot, &mut dyn Knowledge, &mut Context<'_>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         // SAFETY: as the caller promises.
         unsafe {

@@ -55,12 +55,7 @@ struct ImportedLoop {
 unsafe impl Send for ImportedLoop {}
 
 impl ImportedLoop {
-    fn step(
-        &mut self,
-        step: Step,
-        knowledge: &mut dyn Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn step(&mut self, step: Step, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let instance = self.instance;
         self.lease.step(knowledge, context, |knowledge, host, error| {
             // SAFETY: the functions keep the rules, the instance is theirs, and the handles are lent to this call.
@@ -81,17 +76,11 @@ impl DynLoop for ImportedLoop {
             if (self.table.entries)(self.instance, &raw mut handle) == 0 {
                 return None;
             }
-            RemoteEntries::new(handle)
-                .ok()
-                .map(|remote| Box::new(OwnedRemoteEntries(remote)) as Box<dyn DynEntries>)
+            RemoteEntries::new(handle).ok().map(|remote| Box::new(OwnedRemoteEntries(remote)) as Box<dyn DynEntries>)
         }
     }
 
-    fn initialize(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.step(self.table.initialize, knowledge, context)
     }
 

@@ -17,9 +17,7 @@ impl<'a> Reader<'a> {
             // The last two bytes are options that plain CDR does not use.
             [0, 1, _, _, ..] => Ok(Reader { bytes, at: HEADER.len() }),
             [first, second, _, _, ..] => Err(DecodeError::new(
-                format!(
-                    "found the header {first:02x} {second:02x}, expected 00 01 (plain CDR, little endian)"
-                ),
+                format!("found the header {first:02x} {second:02x}, expected 00 01 (plain CDR, little endian)"),
                 0,
             )),
             _ => Err(DecodeError::new(
@@ -81,10 +79,7 @@ impl<'a> Reader<'a> {
         let length = u32::from_le_bytes(self.scalar()?) as usize;
         if length.saturating_mul(least_size) > self.remaining() {
             let (at, left) = (self.at - 4, self.remaining());
-            return Err(DecodeError::new(
-                format!("found the length {length}, but only {left} bytes are left"),
-                at,
-            ));
+            return Err(DecodeError::new(format!("found the length {length}, but only {left} bytes are left"), at));
         }
         Ok(length)
     }

@@ -60,10 +60,7 @@ fn values_have_the_bytes_of_ros_2() {
     assert_eq!(bytes(&Vec::<f64>::new()), [0, 0, 0, 0]);
     // The elements are aligned, not the length.
     assert_eq!(bytes(&vec![1_u64]), [1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0]);
-    assert_eq!(
-        bytes(&Pair { small: 1, wide: -1 }),
-        [1, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255]
-    );
+    assert_eq!(bytes(&Pair { small: 1, wide: -1 }), [1, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255]);
     assert_eq!(bytes(&Kind::Below), [0xd4, 0xfe]);
     assert_eq!(bytes(&Kind::One), [1, 0]);
     assert_eq!(bytes(&Empty), [0]);
@@ -103,18 +100,12 @@ fn wrong_bytes_are_refused_with_their_place() {
     assert_eq!(refused::<Kind>(&[7, 0]), "byte 4: found 7, expected a constant of Kind");
     assert_eq!(refused::<String>(&[2, 0, 0, 0, b'x', b'x']), "byte 9: the string does not end with NUL");
     assert_eq!(refused::<String>(&[3, 0, 0, 0, b'x', 0xff, 0]), "byte 9: the string is not UTF-8");
-    assert_eq!(
-        refused::<String>(&[255; 8]),
-        "byte 4: found the length 4294967295, but only 4 bytes are left"
-    );
+    assert_eq!(refused::<String>(&[255; 8]), "byte 4: found the length 4294967295, but only 4 bytes are left");
     assert_eq!(
         refused::<Vec<u64>>(&[2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]),
         "byte 4: found the length 2, but only 9 bytes are left"
     );
-    assert_eq!(
-        refused::<Vec<()>>(&[255; 12]),
-        "byte 4: found the length 4294967295, but only 8 bytes are left"
-    );
+    assert_eq!(refused::<Vec<()>>(&[255; 12]), "byte 4: found the length 4294967295, but only 8 bytes are left");
     assert_eq!(
         refused::<Vec<Vec<Vec<u8>>>>(&[255; 40]),
         "byte 4: found the length 4294967295, but only 36 bytes are left"
@@ -131,8 +122,7 @@ fn what_other_writers_do_is_read() {
 fn everything() -> impl Strategy<Value = Everything> {
     let pair = (any::<u8>(), any::<i64>()).prop_map(|(small, wide)| Pair { small, wide });
     let kind = prop_oneof![Just(Kind::Below), Just(Kind::Zero), Just(Kind::One)];
-    let scalars =
-        (any::<bool>(), any::<i8>(), any::<u16>(), any::<i32>(), any::<u64>(), any::<f32>(), any::<f64>());
+    let scalars = (any::<bool>(), any::<i8>(), any::<u16>(), any::<i32>(), any::<u64>(), any::<f32>(), any::<f64>());
     let lists = (
         any::<String>(),
         any::<Vec<u8>>(),

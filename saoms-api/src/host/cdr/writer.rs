@@ -59,8 +59,7 @@ impl Writer {
         // The panic that is documented above: a length beyond this is a text or sequence of 4 GiB in memory, which no
         // message is meant to be.
         #[expect(clippy::expect_used, reason = "a value of 4 GiB is a fault of the program that made it")]
-        let length =
-            u32::try_from(length).expect("CDR has no strings and sequences of 2^32 elements or more");
+        let length = u32::try_from(length).expect("CDR has no strings and sequences of 2^32 elements or more");
         self.scalar(length.to_le_bytes());
     }
 

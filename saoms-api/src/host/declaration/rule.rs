@@ -126,9 +126,7 @@ impl<'a> Rule<'a> {
             PropertyKind::Duration => self.within(text, duration, |_, _, _| false).map(Scalar::Duration),
             PropertyKind::Boolean => self.within(text, boolean, |_, _, _| false).map(Scalar::Boolean),
             // No text is one.
-            PropertyKind::Complex => {
-                self.within(text, |_| None::<bool>, |_, _, _| false).map(Scalar::Boolean)
-            }
+            PropertyKind::Complex => self.within(text, |_| None::<bool>, |_, _, _| false).map(Scalar::Boolean),
         }
     }
 
@@ -139,11 +137,7 @@ impl<'a> Rule<'a> {
     pub fn allows(&self, text: &str) -> Result<(), String> {
         match self.kind {
             PropertyKind::String | PropertyKind::Enumeration => self.text(text),
-            PropertyKind::Integer
-                if PlainBounds::of(self).is_some_and(|bounds| bounds.read(text).is_some()) =>
-            {
-                Ok(())
-            }
+            PropertyKind::Integer if PlainBounds::of(self).is_some_and(|bounds| bounds.read(text).is_some()) => Ok(()),
             PropertyKind::Integer => self.within(text, integer, is_far).map(drop),
             PropertyKind::Float => self.within(text, float, |_, _, _| false).map(drop),
             PropertyKind::Duration => self.within(text, duration, |_, _, _| false).map(drop),
@@ -401,9 +395,7 @@ impl fmt::Display for Expected<'_> {
             (Some(min), None, Some(max)) => write!(formatter, " from {min} to below {max}")?,
         }
         match (rule.unit, rule.kind) {
-            (_, PropertyKind::Duration) => {
-                formatter.write_str(" (in ms, or with a unit: ns, us, ms, s, min, h)")
-            }
+            (_, PropertyKind::Duration) => formatter.write_str(" (in ms, or with a unit: ns, us, ms, s, min, h)"),
             (Some(unit), _) => write!(formatter, " [{unit}]"),
             (None, _) => Ok(()),
         }
@@ -441,8 +433,7 @@ mod tests {
             Some("-1000000000"),
             Some("x"),
         ];
-        let texts =
-            ["0", "6", "7", "007", "8", "999999998", "999999999", "1000000000", "-7", "+7", " 7", "", "x"];
+        let texts = ["0", "6", "7", "007", "8", "999999998", "999999999", "1000000000", "-7", "+7", " 7", "", "x"];
         let mut plain = 0;
         for (min, max) in bounds.iter().flat_map(|min| bounds.iter().map(|max| (*min, *max))) {
             let rule = Rule { min, max, ..Rule::of(PropertyKind::Integer) };
@@ -476,17 +467,13 @@ mod tests {
             "0000000001",
             "-0000000001",
         ];
-        let numbers =
-            [0, 1, -1, 999_999_999, -999_999_999, 1_000_000_000, -1_000_000_000, i128::MAX, i128::MIN];
+        let numbers = [0, 1, -1, 999_999_999, -999_999_999, 1_000_000_000, -1_000_000_000, i128::MAX, i128::MIN];
         let mut unread = 0;
         for (bound, number) in bounds.iter().flat_map(|bound| numbers.map(|number| (*bound, number))) {
             let read: i128 = bound.parse().unwrap();
             for is_least in [false, true] {
                 let is_far = is_far(&number, bound, is_least);
-                assert!(
-                    !is_far || if is_least { read < number } else { read > number },
-                    "{bound} of {number}"
-                );
+                assert!(!is_far || if is_least { read < number } else { read > number }, "{bound} of {number}");
                 unread += usize::from(is_far);
             }
         }

@@ -80,9 +80,7 @@ impl fmt::Display for ConstText {
                 for letter in text.chars() {
                     match u8::try_from(letter).map(escape) {
                         Ok((escaped, length)) if letter.is_ascii() => {
-                            escaped[..length]
-                                .iter()
-                                .try_for_each(|byte| formatter.write_char(char::from(*byte)))?;
+                            escaped[..length].iter().try_for_each(|byte| formatter.write_char(char::from(*byte)))?;
                         }
                         _ => formatter.write_char(letter)?,
                     }
@@ -112,9 +110,7 @@ const fn escape(byte: u8) -> ([u8; 6], usize) {
     const DIGITS: &[u8; 16] = b"0123456789abcdef";
     match byte {
         b'"' | b'\\' => ([b'\\', byte, 0, 0, 0, 0], 2),
-        0..=0x1f => {
-            ([b'\\', b'u', b'0', b'0', DIGITS[(byte >> 4) as usize], DIGITS[(byte & 15) as usize]], 6)
-        }
+        0..=0x1f => ([b'\\', b'u', b'0', b'0', DIGITS[(byte >> 4) as usize], DIGITS[(byte & 15) as usize]], 6),
         _ => ([byte, 0, 0, 0, 0, 0], 1),
     }
 }

@@ -2,8 +2,8 @@
 
 use saoms_api::host::{KnowledgeClass, LoopRegistration, Registration};
 use saoms_api::{
-    Class, Component, Context, Effector, Entries, Entry, Extras, Failure, Field, Knowledge, Loop, LoopClass,
-    Loops, Properties, PropertyField, Record, Value, record,
+    Class, Component, Context, Effector, Entries, Entry, Extras, Failure, Field, Knowledge, Loop, LoopClass, Loops,
+    Properties, PropertyField, Record, Value, record,
 };
 
 use super::host::FakeHost;
@@ -97,11 +97,7 @@ impl Loop for Saver {
         Ok(())
     }
 
-    fn analyze(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<Option<Record>, Failure> {
+    fn analyze(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
         let charge = self.charge.get(knowledge)?;
         Ok((charge < self.properties.threshold).then(|| record!("has {charge} % left", charge)))
     }
@@ -115,12 +111,7 @@ impl Loop for Saver {
         Ok((!self.stopped.get(knowledge)?).then(|| record!("stops")))
     }
 
-    fn execute(
-        &mut self,
-        _: Record,
-        knowledge: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn execute(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         self.stopped.set(knowledge, true)?;
         let saved = self.saved.get(knowledge)?;
         self.saved.set(knowledge, saved + 1)
@@ -186,21 +177,11 @@ impl Loop for Rogue {
         Ok(Some(record!("is bored")))
     }
 
-    fn plan(
-        &mut self,
-        symptom: Record,
-        _: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<Option<Record>, Failure> {
+    fn plan(&mut self, symptom: Record, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
         Ok(Some(symptom))
     }
 
-    fn execute(
-        &mut self,
-        _: Record,
-        knowledge: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn execute(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         let place = knowledge.all_declared().position(|entry| entry.name == "stopped").unwrap();
         knowledge.set_value(place as u32, Value::Bool(true))
     }
@@ -266,14 +247,8 @@ fn what_loops_change_is_told_and_seen_by_others() {
     assert_eq!(
         host.journal,
         [
-            "Symptom: has 48 % left",
-            "Decision: stops",
-            "stopped: no -> yes",
-            "saved: 0 -> 1",
-            "Symptom: somebody saves",
-            "Decision: goes to (1,0)",
-            "next: none -> (1,0)",
-            "light: OFF -> LOW_BEAM",
+            "Symptom: has 48 % left", "Decision: stops", "stopped: no -> yes", "saved: 0 -> 1",
+            "Symptom: somebody saves", "Decision: goes to (1,0)", "next: none -> (1,0)", "light: OFF -> LOW_BEAM",
             "Symptom: has 42 % left",
         ]
     );
@@ -333,10 +308,7 @@ fn wrong_entries_are_refused() {
     let mut cart = Cart::default();
     let knowledge: &mut dyn Knowledge = &mut cart;
     let say = |result: Result<(), Failure>| result.unwrap_err().message().to_owned();
-    assert_eq!(
-        say(knowledge.entry::<f64>("charges").map(drop)),
-        "there is no entry `charges`; did you mean `charge`?"
-    );
+    assert_eq!(say(knowledge.entry::<f64>("charges").map(drop)), "there is no entry `charges`; did you mean `charge`?");
     assert_eq!(
         say(knowledge.entry::<bool>("charge").map(drop)),
         "entry `charge` is of the type \"float64\", and not \"bool\""

@@ -2,14 +2,13 @@
 
 use saoms_api::boundary::{class_table, loop_class_table, rule_table};
 use saoms_api::host::{
-    DynComponent, DynLoop, Invocation, LoopRegistration, PropertyValue, Registration, SharedMessage, SmolStr,
-    TypedCall,
+    DynComponent, DynLoop, Invocation, LoopRegistration, PropertyValue, Registration, SharedMessage, SmolStr, TypedCall,
 };
 use saoms_api::rule::{ClassView, Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{
-    CallError, Cause, Class, Component, Context, Effector, Entries, Entry, Extras, Failure, Field, Finding,
-    Header, Knowledge, Level, Loop, LoopClass, Loops, Message, Place, Properties, Publisher, Record,
-    ReportValue, Subscription, Time, Topic, Work, interface, record,
+    CallError, Cause, Class, Component, Context, Effector, Entries, Entry, Extras, Failure, Field, Finding, Header,
+    Knowledge, Level, Loop, LoopClass, Loops, Message, Place, Properties, Publisher, Record, ReportValue, Subscription,
+    Time, Topic, Work, interface, record,
 };
 use saoms_core::plugin::{ImportedClass, ImportedLoopClass, ImportedRule};
 
@@ -78,11 +77,8 @@ impl Component for Busy {
             return Err("property `panics`: refused".into());
         }
         if properties.panics == "finds" {
-            let first =
-                Finding::new(Place::property("names").part(1, 0..2), "one").help("a").help("b").instead("");
-            return Err(
-                vec![first.label(Place::default(), "here"), Finding::new(Place::default(), "two")].into()
-            );
+            let first = Finding::new(Place::property("names").part(1, 0..2), "one").help("a").help("b").instead("");
+            return Err(vec![first.label(Place::default(), "here"), Finding::new(Place::default(), "two")].into());
         }
         let (samples, heard) = (Publisher::default(), Subscription::default());
         Ok(Busy { properties, samples, heard, adder: AdderReference::default() })
@@ -114,10 +110,7 @@ impl Component for Busy {
         context.report(
             "a.b",
             ReportValue::Map(vec![
-                (
-                    "list".to_owned(),
-                    ReportValue::List(vec![1.into(), 0.5.into(), "text".into(), ReportValue::Null]),
-                ),
+                ("list".to_owned(), ReportValue::List(vec![1.into(), 0.5.into(), "text".into(), ReportValue::Null])),
                 ("map".to_owned(), ReportValue::Map(vec![("yes".to_owned(), true.into())])),
             ]),
         );
@@ -153,9 +146,8 @@ type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>
 
 fn values(panics: &str) -> Vec<(SmolStr, PropertyValue)> {
     let text = |text: &str| PropertyValue::from(text);
-    let part = |name, weight| {
-        PropertyValue::Complex([("name".into(), text(name)), ("weight".into(), text(weight))].into())
-    };
+    let part =
+        |name, weight| PropertyValue::Complex([("name".into(), text(name)), ("weight".into(), text(weight))].into());
     vec![
         ("panics".into(), text(panics)),
         ("parts".into(), PropertyValue::Many([part("arm", "1.5"), part("leg", "2")].into())),
@@ -170,17 +162,13 @@ fn played(construct: Construct) -> String {
     let mut busy = construct(&values("nowhere")).unwrap();
     let mut results = vec![busy.initialize(&mut Context::new(&mut host, &[]))];
     let header = Header { sender: 9, sent: Time::from_nanos(7), cause: Cause(5) };
-    let message =
-        |robot| SharedMessage::new(header, Sample { robot, values: vec![0.5; 3], text: "text".to_owned() });
+    let message = |robot| SharedMessage::new(header, Sample { robot, values: vec![0.5; 3], text: "text".to_owned() });
     for inboxes in [vec![vec![]], vec![vec![message(1), message(2)]], vec![vec![message(3)]], vec![]] {
         results.push(busy.execute(&mut Context::new(&mut host, &inboxes)));
     }
     results.push(busy.shutdown(&mut Context::new(&mut host, &[])));
-    let sent: Vec<_> = host
-        .sent
-        .iter()
-        .map(|(place, message)| (*place, message.header(), message.key(), message.bytes()))
-        .collect();
+    let sent: Vec<_> =
+        host.sent.iter().map(|(place, message)| (*place, message.header(), message.key(), message.bytes())).collect();
     format!(
         "{results:#?} {sent:?} {:#?} {:#?} {:?} {:#?} {:?} {:?}",
         host.lines, host.report, host.votes, host.journal, host.published, host.subscribed
@@ -190,10 +178,7 @@ fn played(construct: Construct) -> String {
 #[test]
 fn a_component_does_the_same_behind_the_boundary() {
     let expected = played(linked);
-    assert!(
-        expected.contains("drove 3 blocks to (1,-2), yes") && expected.contains("they are equal"),
-        "{expected}"
-    );
+    assert!(expected.contains("drove 3 blocks to (1,-2), yes") && expected.contains("they are equal"), "{expected}");
     assert_eq!(played(imported), expected);
 }
 
@@ -202,23 +187,18 @@ fn panics_and_refusals_are_failures() {
     let failure = |panics: &str| imported(&values(panics)).map(drop).unwrap_err().to_string();
     assert_eq!(failure("refuses"), "property `panics`: refused");
     assert!(failure("new").ends_with("no more of new"), "{}", failure("new"));
-    let finds =
-        [linked, imported].map(|construct: Construct| construct(&values("finds")).map(drop).unwrap_err());
+    let finds = [linked, imported].map(|construct: Construct| construct(&values("finds")).map(drop).unwrap_err());
     assert_eq!(finds[0].findings().len(), 2);
     assert_eq!(finds[1], finds[0]);
     let mut host = FakeHost::new();
     let mut fails = |place: &str| {
         let mut busy = imported(&values(place)).unwrap();
         let mut context = Context::new(&mut host, &[]);
-        let results =
-            [busy.initialize(&mut context), busy.execute(&mut context), busy.shutdown(&mut context)];
+        let results = [busy.initialize(&mut context), busy.execute(&mut context), busy.shutdown(&mut context)];
         results.into_iter().filter_map(Result::err).map(|failure| failure.to_string()).collect::<Vec<_>>()
     };
     for place in ["initialize", "execute", "shutdown"] {
-        assert!(
-            fails(place).iter().any(|failure| failure.ends_with(&format!("no more of {place}"))),
-            "{place}"
-        );
+        assert!(fails(place).iter().any(|failure| failure.ends_with(&format!("no more of {place}"))), "{place}");
     }
     let mut busy = imported(&values("add")).unwrap();
     let mut call = TypedCall::<(u32, u32), u32>::new(0, (1, 2));
@@ -229,8 +209,7 @@ fn panics_and_refusals_are_failures() {
         "{error}"
     );
     let mut call = TypedCall::<(u32, u32), u32>::new(7, (1, 2));
-    let error =
-        busy.serve(&mut Invocation { service: "adder", call: &mut call }, &mut Context::new(&mut host, &[]));
+    let error = busy.serve(&mut Invocation { service: "adder", call: &mut call }, &mut Context::new(&mut host, &[]));
     assert!(matches!(error, Err(CallError::Mismatch { .. })), "{error:?}");
 }
 
@@ -277,13 +256,7 @@ struct DimmerProperties {
 
 /// Switches a lamp off when it is bright.
 #[derive(LoopClass)]
-#[looping(
-    name = "test.Dimmer",
-    senses("brightness"),
-    effects("isOn", "told"),
-    entries(Dimming),
-    subscribes(SAMPLES)
-)]
+#[looping(name = "test.Dimmer", senses("brightness"), effects("isOn", "told"), entries(Dimming), subscribes(SAMPLES))]
 struct Dimmer {
     properties: DimmerProperties,
     brightness: Entry<f64>,
@@ -305,11 +278,7 @@ impl Loop for Dimmer {
         Ok(Dimmer { properties, brightness, is_on, told, dimmed, samples: Subscription::default(), heard: 0 })
     }
 
-    fn initialize(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.samples = context.subscribe(&SAMPLES)?;
         self.brightness = knowledge.entry("brightness")?;
         self.is_on = knowledge.effector("isOn")?;
@@ -329,16 +298,11 @@ impl Loop for Dimmer {
         Ok(())
     }
 
-    fn analyze(
-        &mut self,
-        knowledge: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<Option<Record>, Failure> {
+    fn analyze(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
         assert!(!self.properties.panics, "too bright");
         let brightness = self.brightness.get(knowledge)?;
         let heard = i64::try_from(self.heard).unwrap_or(0);
-        Ok((brightness > self.properties.limit)
-            .then(|| record!("{brightness} lx, {heard} heard", brightness, heard)))
+        Ok((brightness > self.properties.limit).then(|| record!("{brightness} lx, {heard} heard", brightness, heard)))
     }
 
     fn plan(
@@ -350,12 +314,7 @@ impl Loop for Dimmer {
         Ok(self.is_on.get(knowledge)?.then(|| record!("switches it off")))
     }
 
-    fn execute(
-        &mut self,
-        _: Record,
-        knowledge: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn execute(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         let mut told = self.told.get(knowledge)?;
         told.push("off".to_owned());
         self.told.set(knowledge, told)?;
@@ -369,10 +328,8 @@ fn dimmed(dimmer: Box<dyn DynLoop>) -> String {
     let mut host = FakeHost::new();
     let mut lamp = LampKnowledge { brightness: 5.0, ..LampKnowledge::default() };
     let mut loops = Loops::of([("Dimmer".to_owned(), dimmer)]);
-    let message = SharedMessage::new(
-        Header { sender: 9, sent: Time::from_nanos(7), cause: Cause(5) },
-        Sample::default(),
-    );
+    let message =
+        SharedMessage::new(Header { sender: 9, sent: Time::from_nanos(7), cause: Cause(5) }, Sample::default());
     let inboxes = [vec![message]];
     let mut results = vec![loops.initialize(&mut lamp, &mut Context::new(&mut host, &[]))];
     for (brightness, is_on) in [(5.0, true), (20.0, false), (20.0, true), (30.0, true)] {
@@ -440,12 +397,9 @@ fn a_rule_finds_the_same_behind_the_boundary() {
     let other = ComponentView { class, period: None, has_broker: false, values: &[], ..one.clone() };
     // SAFETY: the function of the table is this crate's own.
     let imported = unsafe { ImportedRule::new(rule_table(&SHOWN)) };
-    for missing in [
-        vec![],
-        vec![Some(vec!["{}"])],
-        vec![None, Some(vec!["{}"])],
-        vec![Some(vec!["{}", Busy::DECLARATION])],
-    ] {
+    for missing in
+        [vec![], vec![Some(vec!["{}"])], vec![None, Some(vec!["{}"])], vec![Some(vec!["{}", Busy::DECLARATION])]]
+    {
         let components = [one.clone(), other.clone()];
         let fleet = FleetView::new(&components).without(&missing);
         assert_eq!(imported.check(&fleet).unwrap(), shown(&fleet));

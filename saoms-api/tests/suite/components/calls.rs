@@ -100,8 +100,7 @@ impl Gps for Receiver {
 }
 
 fn host(boundary: Boundary, service: &'static str) -> FakeHost {
-    let registration =
-        Registration::linked().find(|class| class.declaration() == Receiver::DECLARATION).unwrap();
+    let registration = Registration::linked().find(|class| class.declaration() == Receiver::DECLARATION).unwrap();
     let mut host = FakeHost::new();
     host.boundary = boundary;
     host.provider = Some((registration.construct(&[]).unwrap(), service));
@@ -116,12 +115,10 @@ fn calls_reach_the_provider_as_values_and_as_bytes() {
             let gps: GpsReference = context.reference("gps").unwrap();
             assert!(context.is_wired(&gps));
             assert_eq!(gps.position(context), Ok(Block { x: 3, y: 4 }));
-            let text =
-                gps.r#move(context, Block { x: -1, y: 9 }, "go".to_owned(), true, vec![1, 2], 0.5, u64::MAX);
+            let text = gps.r#move(context, Block { x: -1, y: 9 }, "go".to_owned(), true, vec![1, 2], 0.5, u64::MAX);
             assert_eq!(text.as_deref(), Ok("go true [1, 2] 0.5 18446744073709551615"));
             assert_eq!(gps.position(context), Ok(Block { x: -1, y: 9 }));
-            let failure =
-                CallError::Failed { provider: String::new(), failure: "there is no way back".into() };
+            let failure = CallError::Failed { provider: String::new(), failure: "there is no way back".into() };
             assert_eq!(gps.reset(context), Err(failure));
         });
         assert_eq!(host.lines, ["Info: asked", "Info: asked"]);

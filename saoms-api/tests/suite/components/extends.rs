@@ -88,8 +88,7 @@ impl Loud for LoudCar {
 
 fn call(car: &mut LoudCar, service: &str) -> Result<u32, CallError> {
     let mut call = TypedCall::new(0, ());
-    let served =
-        FakeHost::new().run(|context| car.serve(&mut Invocation { service, call: &mut call }, context));
+    let served = FakeHost::new().run(|context| car.serve(&mut Invocation { service, call: &mut call }, context));
     served.and_then(|()| call.into_reply())
 }
 
@@ -101,12 +100,8 @@ fn properties_are_flattened() {
     assert_eq!(names, ["volume", "number", "canHonk"]);
     let value = |name: &str, text: &str| (name.into(), PropertyValue::from(text));
     let read = LoudCarProperties::from_values(&[value("number", "7"), value("canHonk", "false")]).unwrap();
-    let expected = LoudCarProperties {
-        volume: 5,
-        car: CarProperties { number: 7 },
-        nothing: Nothing {},
-        can_honk: false,
-    };
+    let expected =
+        LoudCarProperties { volume: 5, car: CarProperties { number: 7 }, nothing: Nothing {}, can_honk: false };
     assert_eq!(read, expected);
     let unknown = LoudCarProperties::from_values(&[value("numbr", "7")]).unwrap_err();
     assert_eq!(unknown.message(), "property `numbr` is unknown: expected volume, number, canHonk");
@@ -120,8 +115,6 @@ fn a_class_declares_what_it_extends_and_serves_its_services() {
     let properties = LoudCarProperties::from_values(&[("number".into(), "7".into())]).unwrap();
     let mut car = LoudCar::new(properties).unwrap();
     assert_eq!((call(&mut car, "horn"), call(&mut car, "number")), (Ok(5), Ok(7)));
-    let CallError::Mismatch { message } = call(&mut car, "wings").unwrap_err() else {
-        panic!("no such service")
-    };
+    let CallError::Mismatch { message } = call(&mut car, "wings").unwrap_err() else { panic!("no such service") };
     assert!(message.contains("extends.Car"), "{message}");
 }

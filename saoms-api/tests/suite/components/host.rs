@@ -138,9 +138,8 @@ impl Host for FakeHost {
     }
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
-        let construct = |(name, registration): &(&str, LoopRegistration)| {
-            Ok(((*name).to_owned(), registration.construct(&[])?))
-        };
+        let construct =
+            |(name, registration): &(&str, LoopRegistration)| Ok(((*name).to_owned(), registration.construct(&[])?));
         self.loops.iter().map(construct).collect()
     }
 

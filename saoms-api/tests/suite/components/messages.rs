@@ -1,7 +1,6 @@
 use saoms_api::host::{Registration, SharedMessage, cdr};
 use saoms_api::{
-    Cause, Class, Component, Context, Failure, Header, Message, Publisher, ReportValue, Subscription, Time,
-    Topic, Work,
+    Cause, Class, Component, Context, Failure, Header, Message, Publisher, ReportValue, Subscription, Time, Topic, Work,
 };
 
 use super::host::FakeHost;
@@ -87,8 +86,7 @@ fn a_component_reads_and_sends_messages() {
     ]];
     component.execute(&mut Context::new(&mut host, &inbox)).unwrap();
     component.shutdown(&mut Context::new(&mut host, &[])).unwrap();
-    let sent: Vec<_> =
-        host.sent.iter().map(|(_, message)| message.get::<Position>().unwrap().clone()).collect();
+    let sent: Vec<_> = host.sent.iter().map(|(_, message)| message.get::<Position>().unwrap().clone()).collect();
     assert_eq!(sent, [position(1, "one"), position(2, "two")]);
     let expected = Header { sender: 3, sent: Time::from_nanos(1_000_000_000), cause: Cause(0) };
     assert!(host.sent.iter().all(|(publisher, message)| *publisher == 0 && message.header() == expected));

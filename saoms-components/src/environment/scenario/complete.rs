@@ -1,8 +1,6 @@
 //! Completion of scenarios in editors.
 
-use saoms_api::extension::{
-    Completion, CompletionKind, DURATION_UNITS, PropertyLanguage, PropertyText, submit,
-};
+use saoms_api::extension::{Completion, CompletionKind, DURATION_UNITS, PropertyLanguage, PropertyText, submit};
 
 use super::{Continuation, continuations};
 
@@ -36,20 +34,14 @@ fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
             }
             Continuation::Time if is_number(typed) => {
                 let units = DURATION_UNITS.iter().zip(1..);
-                all.extend(
-                    units.map(|((unit, name), rank)| {
-                        value(&format!("{typed}{unit}")).detail(*name).rank(rank)
-                    }),
-                );
+                all.extend(units.map(|((unit, name), rank)| value(&format!("{typed}{unit}")).detail(*name).rank(rank)));
             }
             Continuation::Time => all.push(value("1s").detail("a time: `500ms`, `6s`, or a range `2s..8s`")),
             Continuation::Times => {
                 let number = if is_number(typed) { typed } else { "3" };
                 all.push(value(&format!("{number} times")).detail("how often").rank(6));
             }
-            Continuation::Pieces => {
-                all.push(value("4").detail("how many pieces of luggage, or a range `2..8`"))
-            }
+            Continuation::Pieces => all.push(value("4").detail("how many pieces of luggage, or a range `2..8`")),
             Continuation::Place => {
                 let block = value("(0,0)").snippet("(${1:0},${2:0})");
                 all.push(block.detail("column and row of a block, or a range `(0,0)..(9,9)`"));

@@ -80,8 +80,7 @@ pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFa
         return Err(words.fault(start, message).instead(Some("from")));
     }
     let given = if words.peek_second() == Some("times") { Some(times(&mut words)?) } else { None };
-    let until =
-        if words.take("until") { Some(until(&mut words, every.is_some(), start, time)?) } else { None };
+    let until = if words.take("until") { Some(until(&mut words, every.is_some(), start, time)?) } else { None };
     let bytes = words.bytes(words.peek().unwrap_or_default());
     let event = event::read(&mut words)?;
     if let Some(more) = words.peek() {
@@ -141,8 +140,7 @@ fn time(words: &mut Tokenizer<'_>) -> Result<Duration, TextFault> {
         return Err(words.wrong(first, TIME));
     }
     if let Some(positive) = span.strip_prefix('-').filter(|span| parse_duration(span).is_ok()) {
-        let message =
-            format!("found `{span}`, which is before the start of the scenario: expected a time from 0s on");
+        let message = format!("found `{span}`, which is before the start of the scenario: expected a time from 0s on");
         return Err(words.fault(span, message).instead(Some(positive.trim())));
     }
     parse_duration(span).map_err(|message| words.fault(span, message).instead(short(span)))

@@ -58,11 +58,7 @@ impl<'a> Tokenizer<'a> {
     }
 
     /// Takes the next word if it is one of these.
-    pub(super) fn one_of(
-        &mut self,
-        known: &[&'static str],
-        expected: &str,
-    ) -> Result<&'static str, TextFault> {
+    pub(super) fn one_of(&mut self, known: &[&'static str], expected: &str) -> Result<&'static str, TextFault> {
         let word = self.next(expected)?;
         known
             .iter()

@@ -102,11 +102,7 @@ impl Loop for MasterAwakeAsleep {
         Ok(MasterAwakeAsleep::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut MasterRobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut MasterRobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.events = context.subscribe(&EXCEPTIONAL_EVENT)?;
         self.states = context.publish(&ROBOT_STATE)?;
         Ok(())

@@ -29,20 +29,12 @@ impl Loop for MasterRobotList {
         Ok(MasterRobotList::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut MasterRobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut MasterRobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robots = context.subscribe(&ROBOT_LIST)?;
         Ok(())
     }
 
-    fn monitor(
-        &mut self,
-        knowledge: &mut MasterRobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn monitor(&mut self, knowledge: &mut MasterRobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, robot) in context.receive(&self.robots).with_headers() {
             if self.validator.accepts(robot, header, None, context) {
                 knowledge.hear(robot);

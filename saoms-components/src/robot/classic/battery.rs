@@ -78,8 +78,7 @@ impl Loop for ClassicBattery {
     ) -> Result<Option<ClassicBatterySymptom>, Failure> {
         let (variables, battery) = (&knowledge.variables, &knowledge.battery);
         if !variables.in_charge {
-            let low = battery.percent() <= LOW.max(knowledge.charge_at)
-                && knowledge.block != knowledge.charge_block;
+            let low = battery.percent() <= LOW.max(knowledge.charge_at) && knowledge.block != knowledge.charge_block;
             let news = low && !variables.ready_to_go_under_charge && !variables.healer;
             return Ok(news.then(|| ClassicBatterySymptom::Low(battery.percent())));
         }

@@ -80,11 +80,7 @@ impl Loop for ClassicCollision {
         Ok(ClassicCollision::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.positions = context.subscribe(&POSITION)?;
         Ok(())
     }

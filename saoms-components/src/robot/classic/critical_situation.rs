@@ -1,12 +1,10 @@
 use std::cmp::Reverse;
 
-use saoms_api::{
-    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
-};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
 
 use crate::messages::{
-    CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT,
-    Fault, LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList, RobotState,
+    CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
+    LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList, RobotState,
 };
 use crate::robot::{Help, RobotKnowledge};
 
@@ -103,11 +101,7 @@ impl Loop for ClassicCriticalSituation {
         Ok(ClassicCriticalSituation::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.faults = context.subscribe(&FAULT)?;
         self.situations = context.publish(&CRITICAL_SITUATION)?;
         self.situations_heard = context.subscribe(&CRITICAL_SITUATION)?;
@@ -205,10 +199,7 @@ impl ClassicCriticalSituation {
     ) -> Result<(), Failure> {
         knowledge.retire(context)?;
         context.send(&self.situations, knowledge.situation(kind))?;
-        context.warn(format_args!(
-            "breaks down at {}: asks for help, and for human assistance",
-            knowledge.block
-        ));
+        context.warn(format_args!("breaks down at {}: asks for help, and for human assistance", knowledge.block));
         // The luggage that the robot was interested in waits again, for robots that dropped it because of that.
         if let Some(request) = knowledge.lists.requests.settle() {
             let job = request.job;
@@ -227,12 +218,7 @@ impl ClassicCriticalSituation {
         Ok(())
     }
 
-    fn intend(
-        &mut self,
-        robot: u32,
-        knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn intend(&mut self, robot: u32, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let Some(help) = knowledge.lists.helps.claim(robot) else { return Ok(()) };
         let situation = help.situation.clone();
         (knowledge.variables.healer, knowledge.variables.busy) = (true, true);
@@ -295,10 +281,8 @@ fn is_closest(knowledge: &RobotKnowledge, help: &Help) -> bool {
 /// The sleeping robot with the highest battery level, of equal ones the one with the lowest number, without the robot
 /// that needs help.
 fn best_charged(knowledge: &RobotKnowledge, critical: u32) -> Option<u32> {
-    let others =
-        knowledge.lists.active.iter().filter(|other| other.can_be_woken() && other.robot != critical);
-    let best = others.max_by(|one, other| {
-        one.battery.total_cmp(&other.battery).then(Reverse(one.robot).cmp(&Reverse(other.robot)))
-    });
+    let others = knowledge.lists.active.iter().filter(|other| other.can_be_woken() && other.robot != critical);
+    let best = others
+        .max_by(|one, other| one.battery.total_cmp(&other.battery).then(Reverse(one.robot).cmp(&Reverse(other.robot))));
     best.map(|robot| robot.robot)
 }

@@ -1,8 +1,6 @@
 use std::cmp::Reverse;
 
-use saoms_api::{
-    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record,
-};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
 
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
@@ -85,11 +83,7 @@ impl Loop for ClassicEventLuggage {
         Ok(ClassicEventLuggage::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         self.luggage_heard = context.subscribe(&EVENT_LUGGAGE)?;
         Ok(())
@@ -179,7 +173,6 @@ impl Loop for ClassicEventLuggage {
 fn is_closest(knowledge: &RobotKnowledge, request: &Request) -> bool {
     let from = request.job.from;
     let mine = (knowledge.block.straight_squared(from), knowledge.number);
-    let best =
-        request.rivals.iter().max_by_key(|rival| Reverse((rival.block.straight_squared(from), rival.robot)));
+    let best = request.rivals.iter().max_by_key(|rival| Reverse((rival.block.straight_squared(from), rival.robot)));
     best.is_none_or(|rival| mine < (rival.block.straight_squared(from), rival.robot))
 }

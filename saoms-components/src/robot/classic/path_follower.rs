@@ -113,11 +113,7 @@ impl Loop for ClassicPathFollower {
         Ok(ClassicPathFollower::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         self.positions = context.publish(&POSITION)?;
         self.situations = context.publish(&CRITICAL_SITUATION)?;
@@ -162,18 +158,14 @@ impl Loop for ClassicPathFollower {
     ) -> Result<Option<ClassicPathDecision>, Failure> {
         Ok(match symptom {
             ClassicPathSymptom::Stopped => Some(ClassicPathDecision::Stop),
-            ClassicPathSymptom::Working => {
-                (knowledge.next != knowledge.block).then_some(ClassicPathDecision::Announce)
-            }
+            ClassicPathSymptom::Working => (knowledge.next != knowledge.block).then_some(ClassicPathDecision::Announce),
             ClassicPathSymptom::AtDestination(block) => knowledge.job.map(|job| {
                 let has_luggage = knowledge.variables.has_luggage;
                 let action = if has_luggage { Action::deposit } else { Action::collect };
                 ClassicPathDecision::Handle(action(job.luggage, block))
             }),
             ClassicPathSymptom::OnTheWay { to, moved } => Some(ClassicPathDecision::Go { to, moved }),
-            ClassicPathSymptom::ToCharger { to, moved } => {
-                Some(ClassicPathDecision::GoCharging { to, moved })
-            }
+            ClassicPathSymptom::ToCharger { to, moved } => Some(ClassicPathDecision::GoCharging { to, moved }),
         })
     }
 
@@ -207,11 +199,7 @@ impl Loop for ClassicPathFollower {
 
 impl ClassicPathFollower {
     /// Asks for a substitute for a charging robot, unless it was sent to charge.
-    fn ask_for_substitute(
-        &self,
-        knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn ask_for_substitute(&self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         if std::mem::take(&mut knowledge.relieved) {
             return Ok(());
         }
@@ -250,8 +238,7 @@ fn reach(
     moved: bool,
 ) -> Result<bool, Failure> {
     let next = knowledge.next;
-    if next != knowledge.block && !moved && knowledge.begin(context, Action::move_to(next))? != Outcome::Done
-    {
+    if next != knowledge.block && !moved && knowledge.begin(context, Action::move_to(next))? != Outcome::Done {
         return Ok(false);
     }
     let block = knowledge.block;

@@ -28,11 +28,7 @@ impl Loop for ClassicRobotList {
         Ok(ClassicRobotList::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robots = context.publish(&ROBOT_LIST)?;
         self.robots_heard = context.subscribe(&ROBOT_LIST)?;
         Ok(())

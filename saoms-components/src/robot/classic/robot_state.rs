@@ -65,11 +65,7 @@ impl Loop for ClassicRobotState {
         Ok(ClassicRobotState::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.states = context.subscribe(&ROBOT_STATE)?;
         Ok(())
     }
@@ -97,8 +93,9 @@ impl Loop for ClassicRobotState {
         let variables = &knowledge.variables;
         Ok(match state.awake {
             true => variables.in_charge.then_some(ClassicRobotSymptom::Awake(state.emulate)),
-            false => (!variables.in_charge && !variables.ready_to_go_under_charge)
-                .then_some(ClassicRobotSymptom::Asleep),
+            false => {
+                (!variables.in_charge && !variables.ready_to_go_under_charge).then_some(ClassicRobotSymptom::Asleep)
+            }
         })
     }
 

@@ -96,13 +96,8 @@ impl Helps {
         if self.settled.iter().any(|settled| settled.settles(message) && settled.time > header.sent) {
             return;
         }
-        let help = Help {
-            situation: message.clone(),
-            since: header.sent,
-            cause: header.cause,
-            rivals: Vec::new(),
-            needs: 0,
-        };
+        let help =
+            Help { situation: message.clone(), since: header.sent, cause: header.cause, rivals: Vec::new(), needs: 0 };
         if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.is_of(message.critical)) {
             claimed.situation = help.situation;
         } else if let Some(known) = self.open.iter_mut().find(|known| known.is_of(message.critical)) {

@@ -92,8 +92,7 @@ impl Requests {
             }
             _ => {}
         }
-        let gone =
-            matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
+        let gone = matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
         if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.job.luggage == event.luggage) {
             claimed.hear(event);
             if gone {

@@ -87,8 +87,7 @@ fn what_a_robot_claims_leaves_the_list_and_comes_back_to_its_place() {
 fn active_robots_are_listed_by_number_without_oneself() {
     let mut lists = Lists::new(MINE);
     let mut hear = |robot, active| lists.hear_robot(&RobotList { robot, active, ..RobotList::default() });
-    for (robot, active) in [(4, true), (1, true), (MINE, true), (3, true), (4, true), (1, false), (9, false)]
-    {
+    for (robot, active) in [(4, true), (1, true), (MINE, true), (3, true), (4, true), (1, false), (9, false)] {
         hear(robot, active);
     }
     assert_eq!(lists.active.iter().map(|robot| robot.robot).collect::<Vec<_>>(), [3, 4]);
@@ -100,8 +99,7 @@ fn the_newest_position_of_each_counts() {
     let position = |robot, x| Position { robot, block: Block::new(x, 0), ..Position::default() };
     lists.peers.hear([position(3, 0), position(1, 4), position(MINE, 7), position(3, 1)].iter());
     lists.peers.hear([position(3, 2)].iter());
-    let shown =
-        |peers: Vec<&Position>| peers.iter().map(|peer| (peer.robot, peer.block.x)).collect::<Vec<_>>();
+    let shown = |peers: Vec<&Position>| peers.iter().map(|peer| (peer.robot, peer.block.x)).collect::<Vec<_>>();
     assert_eq!(shown(lists.peers.all().collect()), [(1, 4), (3, 2)]);
     assert_eq!(shown(lists.peers.heard().collect()), [(3, 2)]);
     let on = |x| lists.peers.on(Block::new(x, 0)).map(|peer| peer.robot);

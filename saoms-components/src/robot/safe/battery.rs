@@ -101,11 +101,7 @@ impl Recordable for SafeBatterySymptom {
                 other
             ),
             SafeBatterySymptom::CutOff { charger, other } => {
-                record!(
-                    "no way leads to its charger at {charger} any more, but one to {other}",
-                    charger,
-                    other
-                )
+                record!("no way leads to its charger at {charger} any more, but one to {other}", charger, other)
             }
             SafeBatterySymptom::Charged { battery } => record!("has charged up to {battery} %", battery),
             SafeBatterySymptom::Charge { begins: true, battery } => {
@@ -286,8 +282,7 @@ impl RobotKnowledge {
         let chargers = lists.chargers.iter().filter(|(_, charger)| !routes.is_obstacle(*charger));
         let chargers: Vec<(bool, Block)> =
             chargers.map(|(robot, charger)| (lists.is_active(*robot), *charger)).collect();
-        let ways =
-            chargers.into_iter().map(|(used, charger)| (used, routes.between(*next, charger), charger));
+        let ways = chargers.into_iter().map(|(used, charger)| (used, routes.between(*next, charger), charger));
         ways.filter(|(_, way, _)| *way != UNREACHABLE).min().map(|(_, _, charger)| charger)
     }
 }

@@ -74,11 +74,7 @@ impl Loop for SafeCollision {
         Ok(SafeCollision::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.positions = context.subscribe(&POSITION)?;
         Ok(())
     }

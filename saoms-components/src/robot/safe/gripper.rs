@@ -91,11 +91,7 @@ impl Loop for SafeGripper {
         Ok(SafeGripper::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         Ok(())
     }
@@ -124,8 +120,7 @@ impl Loop for SafeGripper {
             return Ok(None);
         }
         let has_luggage = knowledge.variables.has_luggage;
-        let symptom =
-            if has_luggage { SafeGripperSymptom::AtDestination } else { SafeGripperSymptom::AtLuggage };
+        let symptom = if has_luggage { SafeGripperSymptom::AtDestination } else { SafeGripperSymptom::AtLuggage };
         Ok(knowledge.job_here().map(symptom))
     }
 

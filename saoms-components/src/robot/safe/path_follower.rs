@@ -89,11 +89,7 @@ impl Loop for SafePathFollower {
         Ok(SafePathFollower::default())
     }
 
-    fn initialize(
-        &mut self,
-        knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.positions = context.publish(&POSITION)?;
         // All robots have to know which blocks are held before the first one moves.
         self.say(context, knowledge.position())

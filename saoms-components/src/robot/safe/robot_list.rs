@@ -63,11 +63,7 @@ impl Loop for SafeRobotList {
         Ok(SafeRobotList::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robots = context.publish(&ROBOT_LIST)?;
         self.robots_heard = context.subscribe(&ROBOT_LIST)?;
         Ok(())

@@ -109,11 +109,7 @@ impl Loop for SafeRobotState {
         Ok(SafeRobotState::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.states = context.subscribe(&ROBOT_STATE)?;
         Ok(())
     }
@@ -169,9 +165,7 @@ impl Loop for SafeRobotState {
                 Some(SafeRobotDecision::Awake { emulate })
             }
             SafeRobotSymptom::Woken { .. } => Some(SafeRobotDecision::StayAwake),
-            SafeRobotSymptom::NobodyAwake { critical } => {
-                Some(SafeRobotDecision::Awake { emulate: critical })
-            }
+            SafeRobotSymptom::NobodyAwake { critical } => Some(SafeRobotDecision::Awake { emulate: critical }),
             SafeRobotSymptom::NobodyForLuggage { .. } => Some(SafeRobotDecision::Awake { emulate: 0 }),
             SafeRobotSymptom::SentToSleep => (!asleep).then_some(SafeRobotDecision::Finish),
             SafeRobotSymptom::AtRest => Some(SafeRobotDecision::Sleep),

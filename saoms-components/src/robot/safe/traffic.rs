@@ -115,13 +115,7 @@ impl Traffic {
     }
 
     /// Chooses the block that the robot wants from now on.
-    pub(super) fn choose(
-        &mut self,
-        claim: &Claim,
-        own: Priority,
-        routes: &Routes,
-        chance: &mut Chance,
-    ) -> Block {
+    pub(super) fn choose(&mut self, claim: &Claim, own: Priority, routes: &Routes, chance: &mut Chance) -> Block {
         let Claim { at, goal, .. } = *claim;
         let makes_way = claim.priority > own;
         let on_the_way = goal.is_some_and(|goal| goal != at);
@@ -132,8 +126,8 @@ impl Traffic {
         self.waited += u32::from(claim.tempo > 0);
         self.avoided = self.avoided.filter(|(block, robot)| self.holder(*block) == Some(*robot));
         let patience = if self.wanted(at).is_some() { PATIENCE } else { SHORT_PATIENCE };
-        let impatient = claim.tempo > 0
-            && (self.waited > patience.saturating_mul(claim.tempo) || self.is_stuck_for(claim));
+        let impatient =
+            claim.tempo > 0 && (self.waited > patience.saturating_mul(claim.tempo) || self.is_stuck_for(claim));
         if impatient {
             self.give_up(claim, routes, chance);
         }
@@ -142,18 +136,14 @@ impl Traffic {
         let best = at
             .neighbours()
             .into_iter()
-            .filter(|block| {
-                routes.is_free(*block) && self.avoided.is_none_or(|(avoided, _)| avoided != *block)
-            })
+            .filter(|block| routes.is_free(*block) && self.avoided.is_none_or(|(avoided, _)| avoided != *block))
             .filter_map(|block| {
                 let standing = self.availability(block, claim)?;
                 let cost = goal.map_or(0, |goal| routes.to_goal(block, goal));
                 let goes_back = Some(block) == self.previous;
                 let aside = impatient && standing == Availability::Free;
                 if !makes_way
-                    && (cost == UNREACHABLE
-                        || (cost >= here && !aside)
-                        || (goes_back && self.avoided.is_some()))
+                    && (cost == UNREACHABLE || (cost >= here && !aside) || (goes_back && self.avoided.is_some()))
                 {
                     return None;
                 }
@@ -185,8 +175,7 @@ impl Traffic {
             return;
         }
         let toward = |block: &Block| claim.goal.map_or(0, |goal| routes.to_goal(*block, goal));
-        let first =
-            || claim.at.neighbours().into_iter().filter(|block| routes.is_free(*block)).min_by_key(toward);
+        let first = || claim.at.neighbours().into_iter().filter(|block| routes.is_free(*block)).min_by_key(toward);
         let blocked = self.wanted(claim.at).or_else(first);
         self.avoided = blocked.and_then(|block| Some((block, self.holder(block)?)));
         self.wanted = None;
@@ -195,8 +184,7 @@ impl Traffic {
     /// True if the robot that should make way has heard of it, as its priority shows, and cannot.
     fn is_stuck_for(&self, claim: &Claim) -> bool {
         self.wanted(claim.at).is_some_and(|wanted| {
-            let stays =
-                |peer: &&Position| peer.block == wanted && peer.next == wanted && peer.wanted == wanted;
+            let stays = |peer: &&Position| peer.block == wanted && peer.next == wanted && peer.wanted == wanted;
             self.near.iter().find(stays).is_some_and(|peer| peer.priority == claim.priority)
         })
     }

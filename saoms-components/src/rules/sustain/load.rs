@@ -91,15 +91,8 @@ fn rounded(number: f64) -> String {
 }
 
 /// Minimum number of robots that the lines keep busy.
-fn least_robots(
-    map: &Map,
-    ranges: &[Range],
-    chargers: &[Block],
-    lines: &[Line<'_>],
-    ways: &mut Ways<'_>,
-) -> f64 {
-    let mut way = |from: Spot, to: Spot, apart: fn(Spot, Spot, &Map) -> f64| match (from.block(), to.block())
-    {
+fn least_robots(map: &Map, ranges: &[Range], chargers: &[Block], lines: &[Line<'_>], ways: &mut Ways<'_>) -> f64 {
+    let mut way = |from: Spot, to: Spot, apart: fn(Spot, Spot, &Map) -> f64| match (from.block(), to.block()) {
         (Some(from), Some(to)) => f64::from(ways.moves(from, to).flatten().unwrap_or(from.distance(to))),
         _ => apart(from, to, map),
     };
@@ -142,8 +135,7 @@ fn usual_share(map: &Map, ranges: &[Range], lines: &[Line<'_>]) -> f64 {
     let approach = average(&|last| average(&|piece| mean(last.to.value, piece.from.value, map)));
     let done = ranges.iter().map(|range| {
         let charger = Spot::between(range.charger, range.charger);
-        let homeward =
-            average(&|piece| mean(charger, piece.from.value, map) + mean(piece.to.value, charger, map));
+        let homeward = average(&|piece| mean(charger, piece.from.value, map) + mean(piece.to.value, charger, map));
         1.0 / (range.period * range.usual_piece(way, approach, homeward))
     });
     pieces / done.sum::<f64>()
@@ -165,10 +157,7 @@ impl Range {
 fn sides(spot: Spot, map: &Map) -> [(i64, i64); 2] {
     let (first, last) = spot.corners(Some(map)).unwrap_or_default();
     let cut = |side: i32, length: u32| i64::from(side).min(i64::from(length) - 1);
-    [
-        (cut(first.x, map.width()), cut(last.x, map.width())),
-        (cut(first.y, map.height()), cut(last.y, map.height())),
-    ]
+    [(cut(first.x, map.width()), cut(last.x, map.width())), (cut(first.y, map.height()), cut(last.y, map.height()))]
 }
 
 fn contains(spot: Spot, block: Block, map: &Map) -> bool {
@@ -179,8 +168,7 @@ fn contains(spot: Spot, block: Block, map: &Map) -> bool {
 
 /// Minimum number of moves between two spots.
 fn apart(one: Spot, other: Spot, map: &Map) -> f64 {
-    let gap =
-        |((first, last), (start, end)): ((i64, i64), (i64, i64))| (start - last).max(first - end).max(0);
+    let gap = |((first, last), (start, end)): ((i64, i64), (i64, i64))| (start - last).max(first - end).max(0);
     sides(one, map).into_iter().zip(sides(other, map)).map(|sides| number(gap(sides))).sum()
 }
 

@@ -174,11 +174,7 @@ mod tests {
             ((9, 9), (0, 0), None),
         ];
         for ((x, y), (to_x, to_y), moves) in asked {
-            assert_eq!(
-                ways.moves(block(x, y), block(to_x, to_y)),
-                Some(moves),
-                "({x},{y}) to ({to_x},{to_y})"
-            );
+            assert_eq!(ways.moves(block(x, y), block(to_x, to_y)), Some(moves), "({x},{y}) to ({to_x},{to_y})");
         }
     }
 }

@@ -32,17 +32,12 @@ impl ImportedRule {
         let values: Vec<_> = components.iter().map(|one| PropertyViews::of(one.values)).collect();
         let texts: Vec<_> = components
             .iter()
-            .map(|one| {
-                [&one.class.extends, &one.class.publishes, &one.class.loops].map(|texts| Texts::of(texts))
-            })
+            .map(|one| [&one.class.extends, &one.class.publishes, &one.class.loops].map(|texts| Texts::of(texts)))
             .collect();
         let wires: Vec<Vec<_>> = components
             .iter()
             .map(|one| {
-                let wire = |(name, target): &(&str, usize)| WireView {
-                    reference: Bytes::text(name),
-                    target: *target,
-                };
+                let wire = |(name, target): &(&str, usize)| WireView { reference: Bytes::text(name), target: *target };
                 one.wires.iter().map(wire).collect()
             })
             .collect();
@@ -64,8 +59,7 @@ impl ImportedRule {
                 wire_count: wires[place].len(),
             })
             .collect();
-        let missing: Vec<_> =
-            fleet.missing().iter().map(|one| Texts::of(one.as_deref().unwrap_or_default())).collect();
+        let missing: Vec<_> = fleet.missing().iter().map(|one| Texts::of(one.as_deref().unwrap_or_default())).collect();
         let missing: Vec<_> = missing.iter().map(Texts::list).collect();
         let list = FleetList {
             components: views.as_ptr(),

@@ -94,9 +94,7 @@ impl std::error::Error for StartError {
 impl From<ChangeError> for StartError {
     fn from(error: ChangeError) -> StartError {
         match error {
-            ChangeError::Failed { component, class, failure } => {
-                StartError::Component { component, class, failure }
-            }
+            ChangeError::Failed { component, class, failure } => StartError::Component { component, class, failure },
             // The other errors need a running fleet.
             other => StartError::Observer(Failure::new(other.to_string())),
         }

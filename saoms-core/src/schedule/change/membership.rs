@@ -132,13 +132,7 @@ impl Engine {
         }
     }
 
-    pub(super) fn commit_takeover(
-        &mut self,
-        number: u32,
-        predecessor: Predecessor,
-        done: Takeover,
-        now: u64,
-    ) {
+    pub(super) fn commit_takeover(&mut self, number: u32, predecessor: Predecessor, done: Takeover, now: u64) {
         let Some(mut body) = self.slots[number as usize].body.take() else { return };
         body.inherit(&mut self.bus, predecessor);
         self.release(number, &mut body, now);

@@ -73,8 +73,7 @@ impl<'a> Change<'a> {
             numbers[one.wanted] = one.current as u32;
             member_changes[one.wanted] = MemberChange::Replaced(one.current as u32);
         }
-        let mut added: Vec<usize> =
-            plan.add.iter().copied().chain(anew.iter().map(|one| one.wanted)).collect();
+        let mut added: Vec<usize> = plan.add.iter().copied().chain(anew.iter().map(|one| one.wanted)).collect();
         added.sort_unstable();
         self.added = engine.number(added.iter().filter_map(|&place| wanted[place].as_ref()));
         for (&place, &number) in added.iter().zip(&self.added) {
@@ -84,11 +83,7 @@ impl<'a> Change<'a> {
             wanted[place] = wanted[place].take().map(|spec| retargeted(spec, &numbers));
         }
         engine.prepare(self.shared, added.iter().filter_map(|&place| wanted[place].clone()), &self.added);
-        self.take_out(
-            &mut engine,
-            &removed,
-            &replaced.iter().map(|one| one.current as u32).collect::<Vec<_>>(),
-        );
+        self.take_out(&mut engine, &removed, &replaced.iter().map(|one| one.current as u32).collect::<Vec<_>>());
         self.shared.release(engine);
         for place in order {
             let Some(spec) = wanted[place].take() else { continue };

@@ -109,9 +109,7 @@ impl Body {
                 self.call(shared, execute).unwrap_or_else(Err)
             }
             Job::Start => self.start(shared),
-            Job::Shutdown => {
-                self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err)
-            }
+            Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };
         for inbox in &mut self.inboxes {
             inbox.clear();

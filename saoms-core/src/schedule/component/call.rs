@@ -20,9 +20,7 @@ pub(crate) fn call(
 ) -> Result<(), CallError> {
     let place = reference & ((1 << TARGET_SHIFT) - 1);
     let Some(wire) = caller.spec.references.get(place as usize) else {
-        return Err(CallError::NotWired {
-            reference: "(a handle that `Context::reference` did not give)".to_owned(),
-        });
+        return Err(CallError::NotWired { reference: "(a handle that `Context::reference` did not give)".to_owned() });
     };
     let Some(target) = wire.targets.get((reference >> TARGET_SHIFT) as usize) else {
         return Err(CallError::NotWired { reference: wire.reference.clone() });
@@ -76,9 +74,8 @@ fn task(shared: &Shared, caller: &Part, provider: u32, call: &mut dyn ServiceCal
         2 => Some(Request::Unschedule),
         3 => None,
         other => {
-            let message = format!(
-                "interface `unibg.robotics.tca.TaskInterface` has no operation with the number {other}"
-            );
+            let message =
+                format!("interface `unibg.robotics.tca.TaskInterface` has no operation with the number {other}");
             return Err(CallError::Mismatch { message });
         }
     };

@@ -70,14 +70,13 @@ impl ComponentHost<'_> {
     /// Checks a message that a plugin sent as bytes, before it is published.
     #[cold]
     fn check(&mut self, topic: TopicId, message: &SharedMessage) -> Result<(), Failure> {
-        let known =
-            self.part.schemas.iter().find(|(known, _)| *known == topic).map(|(_, schema)| Arc::clone(schema));
+        let known = self.part.schemas.iter().find(|(known, _)| *known == topic).map(|(_, schema)| Arc::clone(schema));
         let schema = match known {
             Some(schema) => schema,
             None => {
                 let text = self.shared.lock().bus.schema(topic).to_owned();
-                let schema = Schema::parse(&text)
-                    .map_err(|error| Failure::new(format!("the schema of a topic: {error}")))?;
+                let schema =
+                    Schema::parse(&text).map_err(|error| Failure::new(format!("the schema of a topic: {error}")))?;
                 let schema = Arc::new(schema);
                 self.part.schemas.push((topic, Arc::clone(&schema)));
                 schema
@@ -187,9 +186,7 @@ impl Host for ComponentHost<'_> {
         let name = renamed(task, topic.name);
         let observers = self.shared.observers.of_topic(name, topic);
         let bus = &mut self.shared.lock().bus;
-        let id = bus
-            .publisher(name, topic, &self.part.name)
-            .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
+        let id = bus.publisher(name, topic, &self.part.name).map_err(|mismatch| Failure::new(mismatch.to_string()))?;
         bus.observe(id, &observers);
         self.part.publishers.push(id);
         Ok((self.part.publishers.len() - 1) as u32)
@@ -284,9 +281,7 @@ impl Host for ComponentHost<'_> {
 
     fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
         if !self.part.initializing {
-            return Err(Failure::new(
-                "a component can only take its loops in `initialize`; keep what `loops` returns",
-            ));
+            return Err(Failure::new("a component can only take its loops in `initialize`; keep what `loops` returns"));
         }
         let one = self.spec().loops.get(place as usize).ok_or("there are not so many loops")?;
         let constructed = one.class.construct(&one.values);
@@ -359,21 +354,14 @@ impl Host for ComponentHost<'_> {
 
 impl ComponentHost<'_> {
     fn emit(&self, what: Occurrence) {
-        self.shared.events.put(RunEvent {
-            time: self.now(),
-            component: Some(Arc::clone(&self.part.name)),
-            what,
-        });
+        self.shared.events.put(RunEvent { time: self.now(), component: Some(Arc::clone(&self.part.name)), what });
     }
 
     /// True if the path is not one of the report's own fields.
     fn may_report(&mut self, path: &str) -> bool {
         let reserved = Sections::is_reserved(path);
         if reserved {
-            self.log(
-                Level::Warning,
-                format_args!("`{path}` of the report is the program's own, and stays as it is"),
-            );
+            self.log(Level::Warning, format_args!("`{path}` of the report is the program's own, and stays as it is"));
         }
         !reserved
     }

@@ -42,11 +42,7 @@ fn spawn_timer(shared: &Arc<Shared>, role: u64) -> io::Result<()> {
     spawn_thread(shared, "saoms-timer", move |shared| drive(shared, role))
 }
 
-fn spawn_thread(
-    shared: &Arc<Shared>,
-    name: &str,
-    run: impl FnOnce(&Arc<Shared>) + Send + 'static,
-) -> io::Result<()> {
+fn spawn_thread(shared: &Arc<Shared>, name: &str, run: impl FnOnce(&Arc<Shared>) + Send + 'static) -> io::Result<()> {
     let shared = Arc::clone(shared);
     let contained = move || {
         // Component code is contained elsewhere: this is a fault of the engine itself. The program must not wait for

@@ -87,10 +87,7 @@ fn wait_for_journal<'a>(
 }
 
 /// Waits until another thread changes the engine.
-fn sleep<'a>(
-    shared: &'a Shared,
-    mut engine: std::sync::MutexGuard<'a, Engine>,
-) -> std::sync::MutexGuard<'a, Engine> {
+fn sleep<'a>(shared: &'a Shared, mut engine: std::sync::MutexGuard<'a, Engine>) -> std::sync::MutexGuard<'a, Engine> {
     let ticket = shared.timer.ticket();
     engine.roles.asleep_until = NEVER;
     shared.release(engine);
@@ -103,8 +100,7 @@ fn sleep<'a>(
 
 /// The warning about a run without an end.
 fn endless_warning() -> String {
-    let voters: String =
-        RunSummary::linked().iter().map(|summary| format!(", or {}", summary.voters)).collect();
+    let voters: String = RunSummary::linked().iter().map(|summary| format!(", or {}", summary.voters)).collect();
     format!(
         "no component says when its work is done, so virtual time goes on until Ctrl-C: \
          give the run an end with `--for`{voters}"

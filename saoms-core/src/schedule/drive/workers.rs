@@ -53,10 +53,7 @@ pub(super) fn work(shared: &Arc<Shared>) {
 }
 
 /// Makes sure that a worker takes the queued components.
-pub(super) fn hand_over<'a>(
-    shared: &'a Arc<Shared>,
-    mut engine: MutexGuard<'a, Engine>,
-) -> MutexGuard<'a, Engine> {
+pub(super) fn hand_over<'a>(shared: &'a Arc<Shared>, mut engine: MutexGuard<'a, Engine>) -> MutexGuard<'a, Engine> {
     let enough = engine.roles.work.len() <= engine.roles.idle_workers;
     if enough || engine.roles.workers >= WORKERS {
         shared.work.notify_one();
@@ -77,10 +74,7 @@ pub(super) fn hand_over<'a>(
                 engine.enqueue(index, 0);
             }
         }
-        shared.note(
-            Level::Warning,
-            format!("slow components have to wait: the system gives no thread: {error}"),
-        );
+        shared.note(Level::Warning, format!("slow components have to wait: the system gives no thread: {error}"));
     }
     engine
 }

@@ -40,8 +40,7 @@ impl Engine {
         }
         // The end of a run is the change to a fleet without components.
         let members: Vec<_> = self.slots.iter().map(|slot| slot.is_member().then_some(&*slot.spec)).collect();
-        self.ending =
-            ChangePlan::between(&members, &[]).remove.into_iter().map(|number| number as u32).collect();
+        self.ending = ChangePlan::between(&members, &[]).remove.into_iter().map(|number| number as u32).collect();
     }
 
     /// Ends the run after a fault of the engine itself.

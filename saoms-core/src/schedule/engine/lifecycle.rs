@@ -182,8 +182,7 @@ impl Engine {
             self.emit(now, index, Occurrence::Failed { message, restart: None });
             return;
         }
-        let stays =
-            self.phase == RunPhase::Running && job != Job::Shutdown && slot.pending == PendingRequest::None;
+        let stays = self.phase == RunPhase::Running && job != Job::Shutdown && slot.pending == PendingRequest::None;
         let policy = slot.policy;
         let longer = 1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX);
         let pause = (stays && slot.restarts < policy.restarts).then(|| policy.backoff.saturating_mul(longer));

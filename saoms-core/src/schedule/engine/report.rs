@@ -2,9 +2,7 @@ use super::Engine;
 use super::ending::EndCause;
 use super::trace::Trace;
 use crate::journal::Journal;
-use crate::report::{
-    ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes,
-};
+use crate::report::{ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes};
 
 impl Engine {
     /// The report of a run that has ended.
@@ -66,8 +64,7 @@ impl Engine {
             _ if !reasons.is_empty() => RunStatus::Failed,
             Some(EndCause::Elapsed) => RunStatus::Elapsed,
             Some(EndCause::Idle) => {
-                reasons
-                    .push("no component is scheduled, and in virtual time nothing else happens".to_owned());
+                reasons.push("no component is scheduled, and in virtual time nothing else happens".to_owned());
                 RunStatus::Done
             }
             Some(EndCause::Done | EndCause::Lost) | None => RunStatus::Done,

@@ -106,10 +106,8 @@ const MAX_EXECUTIONS_TO_RETURN: u32 = 1 << 20;
 impl Isolation {
     /// Moves it to a worker thread, because it held up the others.
     pub(crate) fn isolate(&mut self) {
-        let required =
-            if self.required == 0 { EXECUTIONS_TO_RETURN } else { self.required.saturating_mul(2) };
-        *self =
-            Isolation { active: true, within_budget: 0, required: required.min(MAX_EXECUTIONS_TO_RETURN) };
+        let required = if self.required == 0 { EXECUTIONS_TO_RETURN } else { self.required.saturating_mul(2) };
+        *self = Isolation { active: true, within_budget: 0, required: required.min(MAX_EXECUTIONS_TO_RETURN) };
     }
 
     /// Counts an execution on a worker thread, within the budget or not.
@@ -185,8 +183,7 @@ impl Slot {
         let name: Arc<str> = Arc::from(spec.path.as_str());
         let policy = TaskPolicy::of(&spec);
         let cancelled = Arc::new(AtomicBool::new(false));
-        let body =
-            Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
+        let body = Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
         Slot {
             body: Some(Box::new(body)),
             spec,

@@ -2,8 +2,8 @@
 
 use saoms_api::host::{DynLoop, Registration};
 use saoms_api::{
-    Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
-    Publisher, Record, Subscription, Topic, record,
+    Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties, Publisher,
+    Record, Subscription, Topic, record,
 };
 use saoms_lang::assembly::Assembly;
 use saoms_lang::registry::Registry;
@@ -226,10 +226,8 @@ impl Component for Robot {
     type Properties = RobotProperties;
 
     fn new(properties: RobotProperties) -> Result<Self, Failure> {
-        let loops: [(String, Box<dyn DynLoop>); 2] = [
-            ("Battery".to_owned(), Box::new(BatteryLoop)),
-            ("Jobs".to_owned(), Box::new(JobLoop::default())),
-        ];
+        let loops: [(String, Box<dyn DynLoop>); 2] =
+            [("Battery".to_owned(), Box::new(BatteryLoop)), ("Jobs".to_owned(), Box::new(JobLoop::default()))];
         let mind = Mind { charge: properties.charge, ..Mind::default() };
         Ok(Robot { properties, mind, loops: Loops::of(loops) })
     }

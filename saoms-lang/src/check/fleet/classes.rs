@@ -90,12 +90,7 @@ impl<'r> ClassIndex<'r> {
 }
 
 /// Finds the class of every component.
-pub(crate) fn resolve<'a>(
-    fleet: &mut Fleet<'a>,
-    registry: &'a Registry,
-    options: &Options,
-    report: &mut Report<'_>,
-) {
+pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options: &Options, report: &mut Report<'_>) {
     let contribution = fleet.contribution;
     let mut known: HashMap<&str, usize> = HashMap::default();
     // What is near an unknown name, which a whole fleet may have.
@@ -147,11 +142,7 @@ pub(crate) fn resolve<'a>(
 }
 
 /// The name of the class of a component that names one.
-fn runnable<'a>(
-    component: &'a ComponentElement,
-    assume_classes: bool,
-    report: &mut Report<'_>,
-) -> Option<&'a Text> {
+fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &mut Report<'_>) -> Option<&'a Text> {
     const SUPPORTED: &str = "components are implemented by a class: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
     let Some(implementation) = &component.implementation else {
         if assume_classes {
@@ -218,9 +209,7 @@ fn is_in_library(
             match has.map(|has| has.origin()) {
                 None => one,
                 Some(None) => one.help("the class is linked into this program: leave `library` out"),
-                Some(Some(other)) => {
-                    one.help(format!("the class is in {}", quoted(&other.display().to_string())))
-                }
+                Some(Some(other)) => one.help(format!("the class is in {}", quoted(&other.display().to_string()))),
             }
         }
         Some(LibraryLink::Faulty(message)) => wrong(message.clone()),
@@ -239,11 +228,7 @@ fn is_in_library(
 }
 
 /// The library that a component's composite names for its class, as the first composite would name it.
-pub(crate) fn library(
-    component: &ComponentElement,
-    contribution: &Contribution,
-    sources: &Sources,
-) -> Option<String> {
+pub(crate) fn library(component: &ComponentElement, contribution: &Contribution, sources: &Sources) -> Option<String> {
     let implementation = component.implementation.as_ref()?;
     let Some(LibraryLink::To(path)) = contribution.library(implementation.origin) else { return None };
     let first = contribution.asked_for().first()?;
@@ -266,10 +251,9 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
     }
     let looked = match registry.len() {
         0 => "no class is linked into this program".to_owned(),
-        1..=SHOWN => format!(
-            "the classes linked into this program are {}",
-            list(registry.iter().map(|class| class.name()))
-        ),
+        1..=SHOWN => {
+            format!("the classes linked into this program are {}", list(registry.iter().map(|class| class.name())))
+        }
         count => format!(
             "looked among the {count} classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin"
         ),

@@ -109,7 +109,9 @@ pub(crate) fn not_found(
         one = one.help(format!("the prefix {} is bound to no namespace", quoted(prefix)));
     }
     if local.ends_with(".composite") {
-        one = one.help("it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file");
+        one = one.help(
+            "it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file",
+        );
     }
     for near in &missing.near {
         let replacement = escaped(near);

@@ -43,12 +43,7 @@ pub(crate) enum Kind {
 }
 
 impl<'a> Member<'a> {
-    pub(crate) fn new(
-        composite: &'a Composite,
-        unit: usize,
-        scope: usize,
-        component: &'a ComponentElement,
-    ) -> Self {
+    pub(crate) fn new(composite: &'a Composite, unit: usize, scope: usize, component: &'a ComponentElement) -> Self {
         Self {
             composite,
             unit,

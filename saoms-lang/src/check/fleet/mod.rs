@@ -116,15 +116,12 @@ impl<'a> Fleet<'a> {
     /// The names of all groups of replicas of a scope, in order.
     pub(crate) fn group_names(&self, scope: usize) -> impl Iterator<Item = &str> + Clone {
         let from = self.groups.range((scope, String::new())..);
-        from.map(|((of, name), _)| (*of, name.as_str()))
-            .take_while(move |(of, _)| *of == scope)
-            .map(|(_, name)| name)
+        from.map(|((of, name), _)| (*of, name.as_str())).take_while(move |(of, _)| *of == scope).map(|(_, name)| name)
     }
 
     /// True if a condition keeps a wire away.
     pub(crate) fn is_absent_wire(&self, unit: usize, wire: &WireElement) -> bool {
-        !self.absent_wires.is_empty()
-            && self.absent_wires.contains(&(unit, wire.origin.file(), wire.origin.element))
+        !self.absent_wires.is_empty() && self.absent_wires.contains(&(unit, wire.origin.file(), wire.origin.element))
     }
 
     /// The names of all components of a scope, in order.

@@ -34,11 +34,7 @@ impl<'t> Similar<'t> {
     }
 
     /// The topic with the most similar name among those that fit.
-    pub(crate) fn nearest(
-        &self,
-        topic: &TrafficTopic,
-        fits: impl Fn(&Known<'t>) -> bool,
-    ) -> Option<&'t TrafficTopic> {
+    pub(crate) fn nearest(&self, topic: &TrafficTopic, fits: impl Fn(&Known<'t>) -> bool) -> Option<&'t TrafficTopic> {
         let group = self.groups.get(&key(topic))?;
         if !self.candidates.borrow_mut().admit(group.len()) {
             return None;
@@ -54,11 +50,8 @@ impl Known<'_> {
     /// True if its name and another one are different on purpose: one adds something to the other, or they differ in
     /// their numbers.
     pub(crate) fn is_apart(&self, name: &Name) -> bool {
-        let adds =
-            |long: &str, short: &str| long != short && (long.starts_with(short) || long.ends_with(short));
-        adds(&self.name.lower, &name.lower)
-            || adds(&name.lower, &self.name.lower)
-            || self.has_other_numbers(name)
+        let adds = |long: &str, short: &str| long != short && (long.starts_with(short) || long.ends_with(short));
+        adds(&self.name.lower, &name.lower) || adds(&name.lower, &self.name.lower) || self.has_other_numbers(name)
     }
 
     /// True if its name and another one differ in their numbers alone.

@@ -66,9 +66,7 @@ pub(super) fn plan<'a>(
             let found = registry.get_loop(class);
             if found.is_none() {
                 is_sound = false;
-                if !options.assume_classes
-                    && !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location)
-                {
+                if !options.assume_classes && !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) {
                     report.push(unknown_class(class, registry));
                 }
             }
@@ -175,18 +173,13 @@ fn unchanged(one: &LoopElement, member: &Member<'_>, report: &mut Report<'_>) {
     let document = &member.composite.document;
     let span = one.origin().element(document).span();
     let is_inside = |at: Location| at.file == document.file() && span.contains(at.span);
-    if says_something
-        || !one.properties.is_empty()
-        || report.diagnostics().iter().any(|told| is_inside(told.location))
+    if says_something || !one.properties.is_empty() || report.diagnostics().iter().any(|told| is_inside(told.location))
     {
         return;
     }
-    let message =
-        format!("this changes nothing: the component has the loop {} by its class", quoted(&one.name));
+    let message = format!("this changes nothing: the component has the loop {} by its class", quoted(&one.name));
     let one = Diagnostic::new(&codes::LOOP_UNCHANGED, one.tag(), message);
-    report.push(
-        one.help("remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties"),
-    );
+    report.push(one.help("remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties"));
 }
 
 /// Reports a name that is none of a component's loops.
@@ -211,8 +204,7 @@ fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
     if registry.get(class).is_some() {
         let component = format!("`<implementation.rust class=\"{class}\"/>`");
-        return one
-            .help(format!("it is a class of components: those are implemented by it, with {component}"));
+        return one.help(format!("it is a class of components: those are implemented by it, with {component}"));
     }
     for meant in registry.nearest_loops(class) {
         one = one.suggest(replacing(class, meant), class.location, escaped(meant));

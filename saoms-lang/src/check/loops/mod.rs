@@ -172,8 +172,7 @@ fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, repor
     let loops = member.component.loops();
     sources(loops.iter().flat_map(|one| &one.properties), member, parameters, report);
     if let (Kind::Composite(_), Some(first)) = (member.kind, loops.first()) {
-        let message =
-            format!("component {} is a composite, which has no loops", quoted(&member.component.name));
+        let message = format!("component {} is a composite, which has no loops", quoted(&member.component.name));
         let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, first.origin.tag, message);
         report.push(one.help("write it in the component that has the loops"));
     }

@@ -39,8 +39,7 @@ pub(super) fn sort<'a>(
             _ => continue,
         };
         if let Some(removal) = removed.get(target.as_str()) {
-            let message =
-                format!("the loop {} stands beside {}, which is removed", quoted(&one.name), quoted(target));
+            let message = format!("the loop {} stands beside {}, which is removed", quoted(&one.name), quoted(target));
             let one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message);
             let one = one.label(removal.name.location, "removed here");
             report.push(one.help("let it stand beside another loop, or keep that one"));
@@ -79,8 +78,7 @@ pub(super) fn sort<'a>(
             .help("let one of them stand beside a loop that is not moved");
         for other in others.iter().take(MOST_SHOWN) {
             let target = moved[other.name.as_str()];
-            one = one
-                .label(target.location, format!("{} stands beside {}", quoted(&other.name), quoted(target)));
+            one = one.label(target.location, format!("{} stands beside {}", quoted(&other.name), quoted(target)));
         }
         report.push(one);
         return false;

@@ -19,8 +19,7 @@ pub(super) fn check(
     if member.component.loops().is_empty() {
         return true;
     }
-    let declarations: Vec<&LoopDeclaration> =
-        loops.iter().filter_map(|one| Some(one.class?.declaration())).collect();
+    let declarations: Vec<&LoopDeclaration> = loops.iter().filter_map(|one| Some(one.class?.declaration())).collect();
     if declarations.len() < loops.len() {
         return false;
     }
@@ -120,9 +119,7 @@ impl TeamDiagnostics<'_, '_> {
     /// file.
     fn clash(&self, later: usize, entry: &str, earlier: usize) -> Diagnostic {
         let (at, with) = match (self.place(later), self.place(earlier)) {
-            (Some(later_at), Some(earlier_at)) if later_at.span.start < earlier_at.span.start => {
-                (earlier, later)
-            }
+            (Some(later_at), Some(earlier_at)) if later_at.span.start < earlier_at.span.start => (earlier, later),
             (None, Some(_)) => (earlier, later),
             _ => (later, earlier),
         };

@@ -18,8 +18,7 @@ pub(crate) fn check(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'
         return;
     }
     let composites = inner.composites.iter();
-    let declared =
-        composites.flat_map(|one| one.properties.iter().map(|property| (property, &*one.document)));
+    let declared = composites.flat_map(|one| one.properties.iter().map(|property| (property, &*one.document)));
     let declared = declared.map(|(property, document)| Typed { property, document });
     let names: Vec<&str> = declared.clone().map(|one| one.property.name.as_str()).collect();
     // The first of each name.

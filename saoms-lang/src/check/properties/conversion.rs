@@ -81,8 +81,7 @@ impl Conversion {
             return values.into_iter().collect::<Option<_>>().map(PropertyValue::Many);
         }
         if let [first, second, ..] = &pieces[..] {
-            let message =
-                format!("the property {} takes one value, and here are {}", target.quoted(), pieces.len());
+            let message = format!("the property {} takes one value, and here are {}", target.quoted(), pieces.len());
             let one = Diagnostic::new(&codes::MANY_VALUES, second.location(), message);
             self.report(one.label(first.location(), "the first"), target, report);
             return None;
@@ -94,12 +93,7 @@ impl Conversion {
         self.piece(pieces.pop().unwrap_or_else(nothing), target, report)
     }
 
-    fn piece(
-        &mut self,
-        piece: Piece<'_>,
-        target: Target<'_>,
-        report: &mut Report<'_>,
-    ) -> Option<PropertyValue> {
+    fn piece(&mut self, piece: Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
         let declaration = target.declaration;
         let one = match (piece, declaration.kind) {
             (Piece::Elements(elements, instance), PropertyKind::Complex) => {

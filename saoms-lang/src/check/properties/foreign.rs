@@ -5,9 +5,7 @@ use crate::check::report::{Report, replacing};
 use crate::check::values::parameters::{Parameters, ValueSite};
 use crate::check::wiring::offer::Side;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
-use crate::model::{
-    ComponentElement, ComponentType, ImplementationKind, Part, ReferenceElement, ServiceElement,
-};
+use crate::model::{ComponentElement, ComponentType, ImplementationKind, Part, ReferenceElement, ServiceElement};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
 use std::collections::HashSet;
@@ -29,8 +27,7 @@ impl<'a> Fleet<'a> {
             return None;
         }
         let kind = &self.members[member].component.implementation.as_ref()?.kind;
-        let is_whole =
-            matches!(kind, ImplementationKind::Other { kind, .. } if kind == "script" || kind == "osgi");
+        let is_whole = matches!(kind, ImplementationKind::Other { kind, .. } if kind == "script" || kind == "osgi");
         Some(ForeignType { described: self.component_type(member)?, is_whole })
     }
 
@@ -65,17 +62,13 @@ impl<'a> Fleet<'a> {
         if let Some((known, names)) = known.filter(|(known, names)| known.is_whole || !names.is_empty()) {
             return known.lacks((code, rule), side.name(), (&component.name, name, at), &names, report);
         }
-        let Some(meant) =
-            nearest(name, self.written_names(member, side)).filter(|meant| is_slip(name, meant))
-        else {
+        let Some(meant) = nearest(name, self.written_names(member, side)).filter(|meant| is_slip(name, meant)) else {
             return;
         };
         let what = side.name();
         let message = format!("component {} declares no {what} {}", quoted(&component.name), quoted(name));
         let mut one = Diagnostic::new(code, at, message).severity(Severity::Warning);
-        if let Some(declared) =
-            names(side, &component.services, &component.references).find(|own| *own == meant)
-        {
+        if let Some(declared) = names(side, &component.services, &component.references).find(|own| *own == meant) {
             one = one.label(declared.location, "what it declares");
         }
         one = one.suggest(replacing(name, meant), at, escaped(meant));
@@ -129,9 +122,8 @@ impl<'a> ForeignType<'a> {
         let mut one = report.unknown(code, at, message, name, known);
         one = one.label(self.described.tag(), "what it has is described here");
         if !self.is_whole {
-            one = one
-                .severity(Severity::Warning)
-                .help(format!("if its class has it, add the {what} to the description"));
+            one =
+                one.severity(Severity::Warning).help(format!("if its class has it, add the {what} to the description"));
         }
         if let Some(rule) = rule {
             one = one.rule(rule);
@@ -142,9 +134,7 @@ impl<'a> ForeignType<'a> {
 
 /// Checks the services and references that a component writes against what is known of it.
 pub(crate) fn contracts(component: &ComponentElement, known: ForeignType<'_>, report: &mut Report<'_>) {
-    for (side, code) in
-        [(Side::Service, &codes::UNKNOWN_SERVICE), (Side::Reference, &codes::UNKNOWN_REFERENCE)]
-    {
+    for (side, code) in [(Side::Service, &codes::UNKNOWN_SERVICE), (Side::Reference, &codes::UNKNOWN_REFERENCE)] {
         let described: Vec<&str> = known.names(side).collect();
         for name in names(side, &component.services, &component.references) {
             let wrong = (&component.name, name.as_str(), name.location);

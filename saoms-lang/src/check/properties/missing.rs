@@ -12,16 +12,10 @@ use crate::source::{Location, Text};
 use crate::syntax::Element;
 
 /// Reports a property that a class or a loop does not have.
-pub(crate) fn unknown(
-    property: &Property,
-    giver: &Giver<'_, '_>,
-    table: &PropertyTable<'_>,
-    report: &mut Report<'_>,
-) {
+pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &PropertyTable<'_>, report: &mut Report<'_>) {
     let (name, at) = (&property.name, property.name.location);
     let of = quoted(table.name);
-    let is_task =
-        table.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
+    let is_task = table.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
     let message = format!("{} {of} has no property {}", table.what, quoted(name));
     // What is given already is not meant a second time.
     let is_given = |meant: &str| giver.properties.iter().any(|one| one.name == *meant);

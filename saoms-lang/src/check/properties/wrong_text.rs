@@ -30,8 +30,7 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
             return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
         }
         Some(meant) => {
-            return one
-                .help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant)));
+            return one.help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant)));
         }
         None => {}
     }

@@ -166,9 +166,7 @@ impl<'a> Report<'a> {
                 self.diagnostics.push(one);
             }
         }
-        for ReplicaDiagnostic { mut one, first: Copied { path, index }, more, .. } in
-            std::mem::take(&mut self.copies)
-        {
+        for ReplicaDiagnostic { mut one, first: Copied { path, index }, more, .. } in std::mem::take(&mut self.copies) {
             // What a component around them is told at this place is the same mistake.
             if self.said.contains(&said(&one)) {
                 continue;
@@ -341,9 +339,7 @@ impl Parts {
         let Location { file, span } = self.written;
         let end = part.end.min(self.length);
         match self.writing.as_ref().and_then(|writing| writing.part(part.start.min(end)..end)) {
-            Some(part) => {
-                Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file)
-            }
+            Some(part) => Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file),
             None => self.written,
         }
     }

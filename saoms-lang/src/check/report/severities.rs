@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 
 use crate::check::options::Options;
-use crate::diagnostic::{
-    Code, Diagnostic, Diagnostics, SetBy, Severity, SeverityLevel, codes, nearest, quoted,
-};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, SetBy, Severity, SeverityLevel, codes, nearest, quoted};
 use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::{FileId, Located, Location, Sources, Span, Text};
@@ -24,12 +22,7 @@ pub struct SeveritySetting {
 impl SeveritySetting {
     /// Reads `CODE=LEVEL` or `CODE=LEVEL:REASON`, the value of the option `option` (as `--severity`). It becomes a
     /// source text of that name, so that diagnostics can point into it. `None`, and a diagnostic, when it is none.
-    pub fn parse(
-        option: &str,
-        text: &str,
-        sources: &mut Sources,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Self> {
+    pub fn parse(option: &str, text: &str, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Self> {
         let file = sources.add(option, text);
         let split = text.find('=').unwrap_or(text.len());
         let (code, level) = (text[..split].trim(), &text[(split + 1).min(text.len())..]);
@@ -127,23 +120,14 @@ impl Severities {
         let mut rules: Vec<Rule> = Vec::new();
         // The rules of each place about each code.
         let mut said: HashMap<(&str, Scope), Vec<usize>> = HashMap::new();
-        let mut add = |code: &'o Text,
-                       level: SeverityLevel,
-                       reason: Option<&Text>,
-                       scope: Scope,
-                       is_wrong: bool| {
+        let mut add = |code: &'o Text, level: SeverityLevel, reason: Option<&Text>, scope: Scope, is_wrong: bool| {
             let is_known = known.iter().any(|known| known.id == code.as_str());
             if !is_known {
                 diagnostics.push(unknown(code, &known));
             }
             if is_wrong || !is_known {
                 if let Some(meant) = meant(code, &known) {
-                    let set = SetBy {
-                        level: SeverityLevel::Allow,
-                        at: code.location,
-                        is_option: false,
-                        reason: None,
-                    };
+                    let set = SetBy { level: SeverityLevel::Allow, at: code.location, is_option: false, reason: None };
                     let code = meant.to_owned();
                     rules.push(Rule { code, set, scope, is_used: true, is_wrong: true });
                 }
@@ -241,11 +225,9 @@ impl Severities {
     /// Reports what composites say that changed nothing, without the codes that were not looked for.
     pub(crate) fn finish(&self, wiring: bool, diagnostics: &mut Diagnostics) {
         let in_files = self.rules.iter().filter(|rule| !matches!(rule.scope, Scope::Option));
-        let unused =
-            in_files.filter(|rule| !rule.is_used && rule.set.level != SeverityLevel::Set(Severity::Error));
+        let unused = in_files.filter(|rule| !rule.is_used && rule.set.level != SeverityLevel::Set(Severity::Error));
         for rule in unused.filter(|rule| wiring || !codes::is_of_wiring(&rule.code)) {
-            let message =
-                format!("there is no {} here that could be set to `{}`", rule.code, rule.set.level.name());
+            let message = format!("there is no {} here that could be set to `{}`", rule.code, rule.set.level.name());
             let one = Diagnostic::new(&codes::SEVERITY_UNUSED, rule.set.at, message);
             diagnostics.push(one.help("remove it, or it hides what somebody adds later"));
         }
@@ -260,14 +242,12 @@ impl Severities {
                 |rule: &&Rule| rule.code == option.code && rule.is_used && rule.set.level != option.set.level;
             let Some(by) = self.rules.iter().find(is_other) else { continue };
             let (code, asked, level) = (&option.code, option.set.level.name(), by.set.level.name());
-            let message =
-                format!("{code} is not set to `{asked}`: a composite sets it to `{level}`, and counts first");
+            let message = format!("{code} is not set to `{asked}`: a composite sets it to `{level}`, and counts first");
             let one = Diagnostic::new(&codes::SEVERITY_UNUSED, option.set.at, message);
             // One for all fleets is stricter than what one of them gives a reason for.
             let is_stricter = option.set.level.hides() < by.set.level.hides();
             let one = if is_stricter { one.severity(Severity::Note) } else { one };
-            diagnostics
-                .push(one.label(by.set.at, "set here").help("change it there, or leave the option out"));
+            diagnostics.push(one.label(by.set.at, "set here").help("change it there, or leave the option out"));
         }
     }
 }
@@ -278,9 +258,7 @@ fn twice(code: &Text, level: SeverityLevel, first: &SetBy) -> Diagnostic {
         true => format!("the severity of {code} is set twice"),
         false => format!("the severity of {code} is set to `{other}` and to `{one}`"),
     };
-    Diagnostic::new(&codes::SEVERITY, code.location, message)
-        .label(first.at, "first here")
-        .help("keep one of them")
+    Diagnostic::new(&codes::SEVERITY, code.location, message).label(first.at, "first here").help("keep one of them")
 }
 
 fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {

@@ -35,16 +35,8 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         };
         let ComponentType { services, references, properties, .. } = described;
         repeated_names::check(services.iter().map(|one| &one.name), repeated("services", "ASM40003"), report);
-        repeated_names::check(
-            references.iter().map(|one| &one.name),
-            repeated("references", "ASM40004"),
-            report,
-        );
-        repeated_names::check(
-            properties.iter().map(|one| &one.name),
-            repeated("properties", "ASM40005"),
-            report,
-        );
+        repeated_names::check(references.iter().map(|one| &one.name), repeated("references", "ASM40004"), report);
+        repeated_names::check(properties.iter().map(|one| &one.name), repeated("properties", "ASM40005"), report);
     }
     if !fleet.contribution.describes_any() {
         return;
@@ -62,8 +54,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         } else if let Some(implementation) = &member.component.implementation
             && fleet.contribution.lacks_component_type(implementation.origin)
         {
-            let message =
-                format!("nothing describes what component {} offers", quoted(&member.component.name));
+            let message = format!("nothing describes what component {} offers", quoted(&member.component.name));
             let one = Diagnostic::new(&codes::COMPONENT_TYPE_MISSING, implementation.tag(), message);
             let kind = implementation.origin.element(&member.composite.document).local_name();
             report.push(one.help(format!(
@@ -93,10 +84,7 @@ fn of_class(described: &ComponentType, class: &ClassIndex<'_>, report: &mut Repo
     let services: Vec<&str> = class.services.iter().map(|one| one.name.as_str()).collect();
     let references: Vec<&str> = class.references.iter().map(|one| one.name.as_str()).collect();
     let properties: Vec<&str> = class.table.names().collect();
-    described
-        .services
-        .iter()
-        .for_each(|one| unknown(&codes::UNKNOWN_SERVICE, "service", &one.name, &services));
+    described.services.iter().for_each(|one| unknown(&codes::UNKNOWN_SERVICE, "service", &one.name, &services));
     for one in &described.references {
         unknown(&codes::UNKNOWN_REFERENCE, "reference", &one.name, &references);
     }

@@ -51,8 +51,7 @@ pub(crate) fn partly(
     (repeated, options): (&RepeatedValues, &Options),
     report: &mut Report<'_>,
 ) {
-    let unsure: Vec<&PropertyDeclaration> =
-        unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
+    let unsure: Vec<&PropertyDeclaration> = unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
     if unsure.is_empty() {
         return component(subject, class, (repeated, options), report);
     }
@@ -74,8 +73,7 @@ pub(crate) fn partly(
     }
     let mut found: Option<Vec<Finding>> = None;
     for values in tries.iter().rev() {
-        let Err(failure) = contained(|| class.class.construct(values).map(drop)).and_then(|result| result)
-        else {
+        let Err(failure) = contained(|| class.class.construct(values).map(drop)).and_then(|result| result) else {
             return;
         };
         match &mut found {

@@ -18,8 +18,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         let component = member.component;
         let repeated = |what: &'static str, rule: &'static str| {
             move |name: &Text| {
-                let message =
-                    format!("component {} has two {what} {}", quoted(&component.name), quoted(name));
+                let message = format!("component {} has two {what} {}", quoted(&component.name), quoted(name));
                 let one = Diagnostic::new(&codes::CONTRACT_REPEATED, name.location, message);
                 one.rule(rule).help("keep one of them")
             }
@@ -66,8 +65,7 @@ fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
             }
             Offer::Open => {}
             Offer::Missing => {
-                let is_reference =
-                    fleet.reference_names(member).is_some_and(|names| names.contains(&name.as_str()));
+                let is_reference = fleet.reference_names(member).is_some_and(|names| names.contains(&name.as_str()));
                 if is_reference {
                     swapped(service, &whose, &fleet.members[member].composite.document, report);
                     continue;
@@ -86,15 +84,13 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let class = fleet.class_of(member);
     for reference in &fleet.members[member].component.references {
         let name = &reference.name;
-        let declared =
-            class.and_then(|class| class.references.iter().find(|known| known.name == name.as_str()));
+        let declared = class.and_then(|class| class.references.iter().find(|known| known.name == name.as_str()));
         // Of most nothing is said but where they lead.
         if declared.is_some() && reference.contract.is_none() && reference.details.is_none() {
             continue;
         }
         let Some(whose) = whose(member, fleet) else { return };
-        let inner =
-            fleet.inner(member).and_then(|inner| inner.references().find(|known| known.name == *name.value));
+        let inner = fleet.inner(member).and_then(|inner| inner.references().find(|known| known.name == *name.value));
         if let Some(declared) = declared {
             interface::check(reference.interface(), &declared.interface, name, "ASM50011", report);
             multiplicity::check(reference, multiplicity::of_class(declared), &whose, report);
@@ -108,10 +104,8 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
             if let Some(inner) = inner {
                 let message = format!("{whose} has no reference {}", quoted(name));
                 let one = Diagnostic::new(&codes::UNKNOWN_REFERENCE, name.location, message);
-                let promoting =
-                    format!("`<reference name=\"{}\" promote=\"COMPONENT/reference\"/>`", escaped(name));
-                let help =
-                    format!("it has those of its components that it promotes: write {promoting} in it");
+                let promoting = format!("`<reference name=\"{}\" promote=\"COMPONENT/reference\"/>`", escaped(name));
+                let help = format!("it has those of its components that it promotes: write {promoting} in it");
                 report.push(one.label(inner.main().name.location, "this one").help(help));
                 continue;
             }
@@ -160,10 +154,6 @@ fn bindings(bindings: &[Binding], so: &str, report: &mut Report<'_>) {
         }
         let message = format!("{} is not served: {so}", quoted(&format!("binding.{}", binding.kind)));
         let one = Diagnostic::new(&codes::BINDING_NOT_SERVED, binding.tag(), message);
-        report.push(
-            one.help(
-                "remove it; other machines are reached through topics and the `url` of a message broker",
-            ),
-        );
+        report.push(one.help("remove it; other machines are reached through topics and the `url` of a message broker"));
     }
 }

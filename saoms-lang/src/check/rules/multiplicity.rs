@@ -39,9 +39,6 @@ pub(crate) fn check(
     let names: Vec<&str> = narrower.map(Multiplicity::name).collect();
     report.push(match own {
         Multiplicity::One => one.help("leave `multiplicity` out: `1..1` is the default"),
-        _ => one.help(format!(
-            "it can be {}",
-            names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(" or ")
-        )),
+        _ => one.help(format!("it can be {}", names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(" or "))),
     });
 }

@@ -14,8 +14,7 @@ pub(crate) fn check<'a>(
 ) {
     /// So many are compared with each other sooner than they are in a table.
     const FEW: usize = 8;
-    let is_repeated =
-        |(place, name): (usize, &Text)| names.clone().take(place).any(|one| one.value == name.value);
+    let is_repeated = |(place, name): (usize, &Text)| names.clone().take(place).any(|one| one.value == name.value);
     if names.clone().nth(FEW).is_none() && !names.clone().enumerate().any(is_repeated) {
         return;
     }

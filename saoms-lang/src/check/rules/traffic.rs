@@ -25,11 +25,7 @@ pub(crate) struct ComponentPlaces {
 }
 
 /// The places of the components of the assembly.
-pub(crate) fn places(
-    fleet: &Fleet<'_>,
-    checks: &[ComponentCheck<'_>],
-    report: &Report<'_>,
-) -> Vec<ComponentPlaces> {
+pub(crate) fn places(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], report: &Report<'_>) -> Vec<ComponentPlaces> {
     let runs = fleet.members.iter().enumerate().filter(|(_, member)| member.runs());
     let place = |(place, member): (usize, &Member<'_>)| {
         let (component, given) = (member.component, &checks[place].given);
@@ -117,9 +113,7 @@ impl All<'_> {
     /// which is the one that it has without renaming. Names that only add something to another one, or differ in their
     /// numbers, keep parts of a fleet apart.
     fn missed<'t>(&self, topic: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
-        if topic.writers.is_empty()
-            || topic.readers.is_empty()
-            || !topic.ends().all(|end| self.is_renamed(end, topic))
+        if topic.writers.is_empty() || topic.readers.is_empty() || !topic.ends().all(|end| self.is_renamed(end, topic))
         {
             return None;
         }
@@ -140,19 +134,11 @@ impl All<'_> {
             1 => "hears nobody but itself",
             _ => "hear nobody but each other",
         };
-        let message = format!(
-            "{} {hear} on topic {}: others use {}",
-            self.who(&users),
-            quoted(&topic.name),
-            quoted(&meant.name)
-        );
+        let message =
+            format!("{} {hear} on topic {}: others use {}", self.who(&users), quoted(&topic.name), quoted(&meant.name));
         let one = Diagnostic::new(&codes::TOPIC_NEAR, self.at(end, topic), message)
             .label(self.at(other, meant), format!("uses {}", quoted(&meant.name)));
-        report.push(
-            one.help(
-                "`topicRename` gives topics other names: remove a pair from it, or correct its new name",
-            ),
-        );
+        report.push(one.help("`topicRename` gives topics other names: remove a pair from it, or correct its new name"));
     }
 
     fn near(&self, lone: &TrafficTopic, meant: &TrafficTopic, report: &mut Report<'_>) {
@@ -172,11 +158,7 @@ impl All<'_> {
         one = one.label(there, format!("{do_not} {}", quoted(&meant.name)));
         let is_renamed = at != self.places[end.component].name;
         report.push(match is_renamed {
-            true => one.suggest(
-                crate::check::report::replacing(&lone.name, &meant.name),
-                at,
-                escaped(&meant.name),
-            ),
+            true => one.suggest(crate::check::report::replacing(&lone.name, &meant.name), at, escaped(&meant.name)),
             false => one.help("`topicRename` gives topics other names"),
         });
     }
@@ -188,8 +170,7 @@ impl All<'_> {
             false => (&codes::TOPIC_UNREAD, "publishes", &topic.writers, "reads"),
         };
         let Some(end) = ends.first() else { return };
-        let message =
-            format!("{} topic {}, which nobody {missing}", self.who_does(ends, does), quoted(&topic.name));
+        let message = format!("{} topic {}, which nobody {missing}", self.who_does(ends, does), quoted(&topic.name));
         let one = Diagnostic::new(code, self.at(end, topic), message);
         let kind = topic.kind.name();
         report.push(one.help(format!("it is {} {kind} topic of {}", article(kind), quoted(&topic.message))));

@@ -129,9 +129,9 @@ fn shared(
     let is_own = own.clone().any(|text| text.location == user.place);
     report.push(match first.place == user.place {
         // Of replicas, whose expression is not different for each.
-        true if later.instance.is_some() && is_own && report.has_expression_at(user.place) => one.help(
-            "what stands here comes to the same for several replicas: `${index}` is different for each",
-        ),
+        true if later.instance.is_some() && is_own && report.has_expression_at(user.place) => {
+            one.help("what stands here comes to the same for several replicas: `${index}` is different for each")
+        }
         // Of replicas.
         true if later.instance.is_some() && is_own => {
             let meant = match value {
@@ -141,9 +141,7 @@ fn shared(
             one.suggest(replacing(&value.to_string(), &meant), user.place, escaped(&meant))
         }
         // In a composite that is there several times.
-        true => {
-            one.help("both have it from here: let each get its own from outside, by a property or an index")
-        }
+        true => one.help("both have it from here: let each get its own from outside, by a property or an index"),
         false => one.label(first.place, "the first"),
     });
 }
@@ -155,12 +153,8 @@ fn task(value: &Canonical, first: User<'_>, user: User<'_>, fleet: &Fleet<'_>, r
     if is_told || earlier == later {
         return;
     }
-    let message = format!(
-        "components {} and {} share the ID {}",
-        quoted(earlier),
-        quoted(later),
-        quoted(&value.to_string())
-    );
+    let message =
+        format!("components {} and {} share the ID {}", quoted(earlier), quoted(later), quoted(&value.to_string()));
     report.push(
         Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message)
             .label(first.place, "the first")

@@ -87,9 +87,7 @@ impl<'a> Task<'_, 'a> {
             return;
         }
         let mut uses = Vec::new();
-        for (verb, topics) in
-            [("publishes", &self.class.publishes), ("subscribes to", &self.class.subscribes)]
-        {
+        for (verb, topics) in [("publishes", &self.class.publishes), ("subscribes to", &self.class.subscribes)] {
             // Where loops declare a topic in other ways, which is reported, it is there several times.
             let mut names: Vec<&str> = Vec::new();
             for topic in topics {
@@ -101,11 +99,8 @@ impl<'a> Task<'_, 'a> {
                 uses.push(format!("{verb} {}", list(names)));
             }
         }
-        let message = format!(
-            "`useJMS` is false, and component {} {}",
-            quoted(&self.component.name),
-            uses.join(" and ")
-        );
+        let message =
+            format!("`useJMS` is false, and component {} {}", quoted(&self.component.name), uses.join(" and "));
         report.push(
             Diagnostic::new(&codes::USE_JMS, given.place, message)
                 .help("set `useJMS` to true: without it a component cannot publish or subscribe"),
@@ -122,12 +117,9 @@ impl<'a> Task<'_, 'a> {
                 shown(deadline),
                 shown(properties.period)
             );
-            let one = Diagnostic::new(
-                &codes::DEADLINE,
-                self.place("deadline").unwrap_or(self.component.tag()),
-                message,
-            )
-            .help("a deadline is at most the period");
+            let one =
+                Diagnostic::new(&codes::DEADLINE, self.place("deadline").unwrap_or(self.component.tag()), message)
+                    .help("a deadline is at most the period");
             report.push(match self.place("period") {
                 Some(period) => one.label(period, "the period"),
                 None => one,
@@ -167,8 +159,7 @@ impl<'a> Task<'_, 'a> {
 fn check_url(url: &Text, report: &mut Report<'_>) {
     let Some(fault) = broker_address::fault(url) else {
         if !broker_address::is_loopback(url) {
-            let message =
-                format!("messages do not leave this program yet: {} is not connected to", quoted(url));
+            let message = format!("messages do not leave this program yet: {} is not connected to", quoted(url));
             report.push(
                 Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message)
                     .help("the topics are served inside the program: let it run the whole fleet"),

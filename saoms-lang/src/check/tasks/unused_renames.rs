@@ -74,8 +74,7 @@ impl<'a> Renames<'a> {
                 _ => format!("none of the {} classes that share this uses a topic", classes.len()),
             };
             let message = format!("{whose} {}: nothing is renamed", quoted(&name));
-            let mut others: Vec<&str> =
-                users.iter().flat_map(|(_, unused)| unused.others.iter().copied()).collect();
+            let mut others: Vec<&str> = users.iter().flat_map(|(_, unused)| unused.others.iter().copied()).collect();
             others.sort_unstable();
             others.dedup();
             let known = ("topics that keep their names are", others.iter().copied());

@@ -69,8 +69,7 @@ impl Names {
                     let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
                     // What has to be supplied and is not is told where it should be.
                     let must = property.must_supply().is_some_and(|must| must.value);
-                    let is_misspelt =
-                        |owner: &ComponentElement| is_misspelt(&property.name, owner, is_declared);
+                    let is_misspelt = |owner: &ComponentElement| is_misspelt(&property.name, owner, is_declared);
                     let is_told = is_faulty || is_unset && (must || owner.is_some_and(is_misspelt));
                     Name { mistyped, is_told: Cell::new(is_told), is_faulty, text, value }
                 });
@@ -136,8 +135,7 @@ impl Names {
             return problem.instead(truth);
         }
         if name == INDEX {
-            return problem
-                .help("`index` is what replicas are counted by: give the component a `saoms:count`");
+            return problem.help("`index` is what replicas are counted by: give the component a `saoms:count`");
         }
         match nearest(name, known.iter().copied()) {
             Some(meant) => problem.instead(meant),
@@ -155,11 +153,13 @@ fn value(property: &Property, supplied: &Supplied) -> Result<ExpressionValue, Ex
     let text = match supplied {
         Supplied::Text(text) => text,
         Supplied::Nothing => {
-            let help = "write it in the file, or give it with `--set`, or in the component that the composite implements";
+            let help =
+                "write it in the file, or give it with `--set`, or in the component that the composite implements";
             return Err(ExpressionError::new(format!("the property {name} has no value")).help(help));
         }
         Supplied::Other | Supplied::Faulty => {
-            let help = "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`";
+            let help =
+                "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`";
             return Err(ExpressionError::new(format!("the property {name} has no simple value")).help(help));
         }
     };
@@ -173,19 +173,13 @@ fn value(property: &Property, supplied: &Supplied) -> Result<ExpressionValue, Ex
         _ => None,
     };
     let wrong = |expected: &str| {
-        Err(ExpressionError::new(format!(
-            "the property {name} is {}, and its type asks for {expected}",
-            quoted(text)
-        )))
+        Err(ExpressionError::new(format!("the property {name} is {}, and its type asks for {expected}", quoted(text))))
     };
     match of {
-        "boolean" => {
-            boolean.map_or_else(|| wrong("`true` or `false`"), |value| Ok(ExpressionValue::Boolean(value)))
-        }
-        _ if SimpleType::find(of).is_some_and(SimpleType::is_whole) => text.parse().map_or_else(
-            |_| wrong("a whole number of at most 64 bits"),
-            |value| Ok(ExpressionValue::Integer(value)),
-        ),
+        "boolean" => boolean.map_or_else(|| wrong("`true` or `false`"), |value| Ok(ExpressionValue::Boolean(value))),
+        _ if SimpleType::find(of).is_some_and(SimpleType::is_whole) => text
+            .parse()
+            .map_or_else(|_| wrong("a whole number of at most 64 bits"), |value| Ok(ExpressionValue::Integer(value))),
         "" => Ok(match (boolean, text.parse()) {
             (Some(value), _) => ExpressionValue::Boolean(value),
             (None, Ok(number)) => ExpressionValue::Integer(number),

@@ -34,13 +34,7 @@ fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut Hash
 
 impl<'a> Unfolding<'a> {
     /// Opens the composite that implements a component.
-    pub(super) fn inner(
-        &mut self,
-        member: usize,
-        naming: Naming<'a>,
-        is_absent: bool,
-        report: &mut Report<'_>,
-    ) {
+    pub(super) fn inner(&mut self, member: usize, naming: Naming<'a>, is_absent: bool, report: &mut Report<'_>) {
         let Some((place, composite)) = self.find(naming, report) else {
             let is_given = self.options.assume_classes
                 && !matches!(self.fleet.contribution.link(naming.origin), Some(Link::Faulty));
@@ -78,20 +72,14 @@ impl<'a> Unfolding<'a> {
     }
 
     /// The composite that a name leads to. A name that leads nowhere is reported.
-    pub(super) fn find(
-        &mut self,
-        naming: Naming<'a>,
-        report: &mut Report<'_>,
-    ) -> Option<(usize, &'a Composite)> {
+    pub(super) fn find(&mut self, naming: Naming<'a>, report: &mut Report<'_>) -> Option<(usize, &'a Composite)> {
         let contribution = self.fleet.contribution;
         let link = contribution.link(naming.origin)?;
         let around = self.open.last()?.composite;
         match link {
             Link::To(place) => {
                 let composite = &contribution.composites()[*place];
-                if !composite_names::is_exact(naming, around, composite)
-                    && self.loose.insert(naming.name.location)
-                {
+                if !composite_names::is_exact(naming, around, composite) && self.loose.insert(naming.name.location) {
                     report.push(composite_names::loose(naming, around, composite));
                 }
                 Some((*place, composite))
@@ -107,8 +95,7 @@ impl<'a> Unfolding<'a> {
     pub(super) fn is_circle(&self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
         let Some(start) = self.open.iter().position(|open| open.place == place) else { return false };
         let circle = &self.open[start..];
-        let mut names: Vec<String> =
-            circle.iter().take(SHOWN).map(|open| quoted(&open.composite.name)).collect();
+        let mut names: Vec<String> = circle.iter().take(SHOWN).map(|open| quoted(&open.composite.name)).collect();
         if circle.len() > SHOWN {
             names.push(format!("{} more", circle.len() - SHOWN));
         }

@@ -97,10 +97,8 @@ impl<'a> Unfolding<'a> {
 /// True if two elements say the same in the same words, however they are laid out.
 fn is_same(one: Element<'_>, other: Element<'_>) -> bool {
     let says = |element: Element<'_>| {
-        let attributes: Vec<_> = element
-            .written_attributes()
-            .map(|one| (one.name().to_owned(), one.value().into_owned()))
-            .collect();
+        let attributes: Vec<_> =
+            element.written_attributes().map(|one| (one.name().to_owned(), one.value().into_owned())).collect();
         let text = element.trimmed_text().map(|text| text.value);
         (element.name().to_owned(), attributes, text, element.children().count())
     };

@@ -252,14 +252,11 @@ impl<'a> Unfolding<'a> {
         if is_again {
             let message = format!("the composite {} is included twice", quoted(&composite.name));
             let one = Diagnostic::new(&codes::INCLUDED_TWICE, naming.name.location, message);
-            return report
-                .push(one.help("remove one of the includes: all of its components are there already"));
+            return report.push(one.help("remove one of the includes: all of its components are there already"));
         }
         if composite.local.is_some_and(|local| local.value) && around.local.is_none_or(|local| !local.value) {
-            let message = format!(
-                "the composite {} is `local`, and the one that includes it is not",
-                quoted(&composite.name)
-            );
+            let message =
+                format!("the composite {} is `local`, and the one that includes it is not", quoted(&composite.name));
             let one = Diagnostic::new(&codes::INCLUDE_LOCAL, naming.name.location, message)
                 .help("give both composites the same `local`");
             report.push(match composite.local {

@@ -5,8 +5,7 @@ use crate::check::fleet::{Fleet, Kind};
 
 /// Removes the components that are not there, and what belongs to them.
 pub(crate) fn remove<'a>(fleet: &mut Fleet<'a>, checks: &mut Vec<ComponentCheck<'a>>) {
-    if fleet.units.iter().all(|unit| !unit.is_absent) && fleet.members.iter().all(|member| !member.is_absent)
-    {
+    if fleet.units.iter().all(|unit| !unit.is_absent) && fleet.members.iter().all(|member| !member.is_absent) {
         return;
     }
     let is_there: Vec<bool> = fleet.members.iter().map(|member| !member.is_absent).collect();
@@ -15,8 +14,7 @@ pub(crate) fn remove<'a>(fleet: &mut Fleet<'a>, checks: &mut Vec<ComponentCheck<
     for (place, scope) in fleet.scopes.iter_mut().enumerate() {
         scope.owner = scope.owner.and_then(|owner| members[owner]);
         scope.members = scope.members.iter().filter_map(|member| members[*member]).collect();
-        scope.by_name =
-            scope.by_name.drain().filter_map(|(name, member)| Some((name, members[member]?))).collect();
+        scope.by_name = scope.by_name.drain().filter_map(|(name, member)| Some((name, members[member]?))).collect();
         scope.units = scope.units.iter().filter_map(|unit| units[*unit]).collect();
         debug_assert!(place == 0 || scope.owner.is_some() || scope.units.is_empty());
     }

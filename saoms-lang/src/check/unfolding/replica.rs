@@ -64,8 +64,7 @@ impl Instance {
     pub(crate) fn hides(&self, property: &Property, document: &Document) -> bool {
         self.partial.is_some()
             && (texts(property).any(|text| has_expression(text))
-                || complex_texts(property, document)
-                    .any(|text| render(&text, &mut |name| self.value(name)).is_err()))
+                || complex_texts(property, document).any(|text| render(&text, &mut |name| self.value(name)).is_err()))
     }
 
     /// A component with the numbers of this index in all its texts; and the faults in these, each with the text it is
@@ -94,8 +93,7 @@ impl Instance {
             component.services.retain(|service| !has_expression(&service.name));
             component.references.retain(|reference| !has_expression(&reference.name));
             let is_known = |one: &LoopElement| {
-                let texts =
-                    [Some(&one.name), one.class.as_deref(), one.before.as_deref(), one.after.as_deref()];
+                let texts = [Some(&one.name), one.class.as_deref(), one.before.as_deref(), one.after.as_deref()];
                 !texts.into_iter().flatten().any(|text| has_expression(text))
             };
             component.details.iter_mut().for_each(|details| details.loops.retain(is_known));
@@ -153,10 +151,7 @@ fn of_property(property: &mut Property, each: &mut dyn FnMut(&mut Text)) {
     each(&mut property.name);
     property.simple.iter_mut().for_each(&mut *each);
     if let Some(details) = &mut property.details {
-        [&mut details.inside, &mut details.source, &mut details.from_file]
-            .into_iter()
-            .flatten()
-            .for_each(&mut *each);
+        [&mut details.inside, &mut details.source, &mut details.from_file].into_iter().flatten().for_each(&mut *each);
         details.values.iter_mut().for_each(|value| each(&mut value.text));
     }
 }

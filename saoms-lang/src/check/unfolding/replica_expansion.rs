@@ -24,14 +24,9 @@ impl<'a> Unfolding<'a> {
             return self.member(component, component, None, presence, report);
         };
         let names = self.names(unit);
-        let Some(plan) = Plan::of(
-            component,
-            replicas,
-            document,
-            &names,
-            (self.replicas_left, self.lowers_attributes),
-            report,
-        ) else {
+        let Some(plan) =
+            Plan::of(component, replicas, document, &names, (self.replicas_left, self.lowers_attributes), report)
+        else {
             return self.unplanned(component, replicas, &names, report);
         };
         let (is_empty, index) = (plan.count == 0, plan.sample());
@@ -48,8 +43,7 @@ impl<'a> Unfolding<'a> {
             if let Some(asked) = component.condition() {
                 _ = condition(asked, &names, &mut |name| instance.value(name), report);
             }
-            let Replica { component: made, instance } =
-                self.replicas.add(Replica { component: made, instance });
+            let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });
             return self.member(component, made, Some(instance), Presence::Absent, report);
         }
         self.replicas_left -= plan.cost;
@@ -108,12 +102,7 @@ impl<'a> Unfolding<'a> {
     }
 
     /// Reports the faults in the texts of a replica that is not made, and in its condition.
-    fn faults_of(
-        &self,
-        component: &ComponentElement,
-        instance: &Instance,
-        report: &mut Report<'_>,
-    ) -> Presence {
+    fn faults_of(&self, component: &ComponentElement, instance: &Instance, report: &mut Report<'_>) -> Presence {
         let (made, faults) = instance.of(component, None);
         report.about_replica(&made.name, instance.index);
         self.faults(&instance.names, faults, report);

@@ -10,8 +10,8 @@ use crate::check::fleet::name_pattern::is_like;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::expression::{
-    self, Expression, ExpressionError, ExpressionFault, ExpressionValue, INDEX, boolean, integer, parse,
-    pattern, render,
+    self, Expression, ExpressionError, ExpressionFault, ExpressionValue, INDEX, boolean, integer, parse, pattern,
+    render,
 };
 use crate::model::{ComponentElement, Property, Replicas, Table};
 use crate::source::Text;
@@ -150,11 +150,8 @@ impl<'a> Plan<'a> {
         let last = self.next.saturating_add(self.count as i64 - 1);
         let by_name = (table.key == *"name").then(|| self.by_name());
         if let Some(other) = self.other_key(table, by_name.as_ref()) {
-            let message = format!(
-                "the first column is {}, and its values are of {}",
-                quoted(&table.key),
-                quoted(other)
-            );
+            let message =
+                format!("the first column is {}, and its values are of {}", quoted(&table.key), quoted(other));
             let one = Diagnostic::new(&codes::OVERRIDES, table.key.location, message);
             report.push(one.suggest(replacing(&table.key, other), table.key.location, other));
             return;
@@ -178,8 +175,7 @@ impl<'a> Plan<'a> {
                     Some(by_name) => {
                         let names = free.get_or_init(|| without_line(by_name, table));
                         let known = ("the table says nothing of", names.iter().copied());
-                        let one =
-                            report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known);
+                        let one = report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known);
                         match one.suggestions.is_empty() {
                             true => one.help(format!("they are called {}", quoted(&self.component.name))),
                             false => one,
@@ -289,10 +285,8 @@ fn is_count_misread(
     // Its namespace may be nearly that of SAOMS.
     let is_near = report.has_diagnostic_about(&codes::NAMESPACE_NEAR, file, meant.namespace());
     if is_near {
-        let why = format!(
-            "{} in it says how many replicas there are, and they cannot be made without",
-            quoted(meant.name())
-        );
+        let why =
+            format!("{} in it says how many replicas there are, and they cannot be made without", quoted(meant.name()));
         report.escalate(&codes::NAMESPACE_NEAR, file, &why);
     }
     is_near

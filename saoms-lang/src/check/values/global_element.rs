@@ -15,9 +15,7 @@ impl<'a> Raw<'a> {
             Piece::Elements(elements, instance) if elements.iter().all(|one| one.local_name() == name) => {
                 Raw::of_elements(&elements, instance).0
             }
-            Piece::Whole(_, root, instance) if root.local_name() == name => {
-                Raw::of_elements(&[root], instance).0
-            }
+            Piece::Whole(_, root, instance) if root.local_name() == name => Raw::of_elements(&[root], instance).0,
             other => vec![other],
         });
         Self(pieces.collect())

@@ -174,8 +174,7 @@ impl<'p> Test<'p> {
             return None;
         }
         let predicate = if rest.is_empty() { None } else { Some(predicate(rest)?) };
-        let name =
-            if name == "*" { None } else { Some(local(name)).filter(|name| is_name(name)).map(Some)? };
+        let name = if name == "*" { None } else { Some(local(name)).filter(|name| is_name(name)).map(Some)? };
         Some(Self { name, predicate })
     }
 
@@ -237,9 +236,7 @@ impl Test<'_> {
             [_] | [] => format!("there {counted}, from `[1]` on"),
             _ => {
                 let (most, count) = (groups.iter().max().copied().unwrap_or_default(), groups.len());
-                format!(
-                    "there {counted} in {count} elements, at most {most} in each, and a place counts in each"
-                )
+                format!("there {counted} in {count} elements, at most {most} in each, and a place counts in each")
             }
         }
     }

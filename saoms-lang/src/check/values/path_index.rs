@@ -80,8 +80,7 @@ impl<'a> PathIndex<'a> {
             if !is_deep && let Some(end) = ends(&level.around, (at.clone(), step), is_last, self.instance) {
                 return end;
             }
-            let test =
-                if is_deep { None } else { Some(Test::of(step).ok_or_else(|| no_step(step, at.clone()))?) };
+            let test = if is_deep { None } else { Some(Test::of(step).ok_or_else(|| no_step(step, at.clone()))?) };
             if let Some(test) = test.as_ref().filter(|_| is_last) {
                 let found = level.find(at, test)?;
                 return Ok(Raw::of_elements(&found, self.instance));

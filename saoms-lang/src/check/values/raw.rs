@@ -89,9 +89,9 @@ pub(crate) fn raw<'a>(
         WaysFault::Two(first, second) => {
             let message = format!("the property {} is given a value in two ways", quoted(&property.name));
             report.push(
-                Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other one").help(
-                    "write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
-                ),
+                Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message)
+                    .label(first, "the other one")
+                    .help("write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`"),
             );
         }
         // As a rule it was reported by who tried to read it.
@@ -161,12 +161,7 @@ fn ways<'a>(
 
 /// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's
 /// property has no value of its own, it is what counts until somebody gives one from outside.
-pub(crate) fn beside_source(
-    property: &Property,
-    source: &Text,
-    document: &Document,
-    report: &mut Report<'_>,
-) {
+pub(crate) fn beside_source(property: &Property, source: &Text, document: &Document, report: &mut Report<'_>) {
     let texts = [property.value(), property.text(), property.file()];
     let listed = property.values().first().map(Part::tag);
     let content = property.content().first().map(|id| document.element(*id).name_location());
@@ -175,17 +170,11 @@ pub(crate) fn beside_source(
     let message = format!("the property {} is given a value beside its `source`", quoted(&property.name));
     let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message).severity(Severity::Warning);
     let one = Diagnostic { rule: None, ..one };
-    report.push(
-        one.label(source.location, "this counts").help("this value counts for nothing: keep one of them"),
-    );
+    report.push(one.label(source.location, "this counts").help("this value counts for nothing: keep one of them"));
 }
 
 /// The values of XML in a file.
-fn document_value<'a>(
-    from: &'a ValueDocument,
-    property: &'a Property,
-    instance: Option<&'a Instance>,
-) -> Raw<'a> {
+fn document_value<'a>(from: &'a ValueDocument, property: &'a Property, instance: Option<&'a Instance>) -> Raw<'a> {
     let root = from.document.root();
     if let (false, Some(text)) = (from.is_list, property.from_file()) {
         return Raw(vec![Piece::Whole(text, root, instance)]);

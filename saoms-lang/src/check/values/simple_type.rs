@@ -69,9 +69,7 @@ impl SimpleType {
     /// True if each of its values is one of another type.
     pub(crate) fn is_within(&self, other: &Self) -> bool {
         match (&self.values, &other.values) {
-            (Values::Whole(own), Values::Whole(range)) => {
-                range.contains(own.start()) && range.contains(own.end())
-            }
+            (Values::Whole(own), Values::Whole(range)) => range.contains(own.start()) && range.contains(own.end()),
             (Values::Whole(_), _) => other.name == "decimal",
             _ => self.name == other.name,
         }
@@ -104,7 +102,6 @@ fn is_duration(text: &str) -> bool {
 
 /// Nearly everything: behind each `%` stand two hexadecimal digits.
 fn is_uri(text: &str) -> bool {
-    let is_hexadecimal =
-        |part: &str| part.len() >= 2 && part.bytes().take(2).all(|digit| digit.is_ascii_hexdigit());
+    let is_hexadecimal = |part: &str| part.len() >= 2 && part.bytes().take(2).all(|digit| digit.is_ascii_hexdigit());
     text.split('%').skip(1).all(is_hexadecimal)
 }

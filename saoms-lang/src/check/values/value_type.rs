@@ -43,12 +43,7 @@ pub(crate) fn holds_by_name(property: &Property, value: &Text, report: &mut Repo
     of.is_none_or(|of| holds(property, of, value, report))
 }
 
-fn holds(
-    property: &Property,
-    (named, of): (&Text, &SimpleType),
-    value: &Text,
-    report: &mut Report<'_>,
-) -> bool {
+fn holds(property: &Property, (named, of): (&Text, &SimpleType), value: &Text, report: &mut Report<'_>) -> bool {
     // Many values may be written as a list, as in files of SCA 1.0.
     let is_list = property.many().is_some_and(|many| many.value) && !value.trim().is_empty();
     if of.accepts(value) || is_list && value.split_whitespace().all(|one| of.accepts(one)) {

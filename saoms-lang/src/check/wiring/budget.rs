@@ -32,7 +32,11 @@ impl WireBudget {
             self.0.set(0);
             let message = format!("groups of replicas come to more than {MOST_ENDS} ends of wires");
             let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message);
-            report.push(one.help("each replica of a group that calls a group has a wire to each of that: is this what is meant?"));
+            report.push(
+                one.help(
+                    "each replica of a group that calls a group has a wire to each of that: is this what is meant?",
+                ),
+            );
         }
         is_enough
     }

@@ -29,14 +29,7 @@ struct Wire<'f> {
 impl<'f> CallCycles<'f> {
     /// Adds a wire, unless no circle can go through it: what the host serves for a component does not disturb the
     /// component, and one without references calls nobody.
-    pub(crate) fn add(
-        &mut self,
-        member: usize,
-        reference: &'f str,
-        to: Provider,
-        place: Location,
-        fleet: &Fleet<'_>,
-    ) {
+    pub(crate) fn add(&mut self, member: usize, reference: &'f str, to: Provider, place: Location, fleet: &Fleet<'_>) {
         let ends = fleet
             .class_of(to.member)
             .is_some_and(|class| class.references.is_empty() || class.services[to.service].is_of_host());
@@ -58,13 +51,11 @@ impl<'f> CallCycles<'f> {
             return;
         }
         if circle.len() == 1 {
-            let message =
-                format!("component {} is wired to itself: it would call while it is busy", name(last.member));
+            let message = format!("component {} is wired to itself: it would call while it is busy", name(last.member));
             let one = Diagnostic::new(&codes::CALL_CYCLE, last.place, message);
             return report.push(one.help("wire the reference to another component, or remove the target"));
         }
-        let mut names: Vec<String> =
-            circle.iter().take(SHOWN).map(|wire| name(self.wires[*wire].member)).collect();
+        let mut names: Vec<String> = circle.iter().take(SHOWN).map(|wire| name(self.wires[*wire].member)).collect();
         if circle.len() > SHOWN {
             names.push(format!("{} more", circle.len() - SHOWN));
         }
@@ -74,8 +65,7 @@ impl<'f> CallCycles<'f> {
             .at(format!("{} calls {}", name(last.member), name(last.to)))
             .help("a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic");
         for wire in circle[..circle.len() - 1].iter().take(SHOWN).map(|wire| &self.wires[*wire]) {
-            let text =
-                format!("{} calls {} through {}", name(wire.member), name(wire.to), quoted(wire.reference));
+            let text = format!("{} calls {} through {}", name(wire.member), name(wire.to), quoted(wire.reference));
             one = one.label(wire.place, text);
         }
         report.push(one);

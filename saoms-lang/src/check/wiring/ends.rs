@@ -87,10 +87,8 @@ impl<'f> Wires<'f, '_> {
         let mut level = Level::default();
         let mut is_said = !wires.is_empty();
         if let Some(reference) = fleet.members[member].component.reference(name) {
-            let by_binding =
-                reference.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
-            for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref()))
-            {
+            let by_binding = reference.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+            for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref())) {
                 is_said = true;
                 self.add(text, (scope, own), !is_replaced, interface, &mut level, report);
             }
@@ -151,11 +149,7 @@ impl<'f> Wires<'f, '_> {
     }
 
     /// True if targets are to be found by interface: said by the reference, its component, or the composite.
-    pub(super) fn is_autowired(
-        &self,
-        (member, _): ReferenceId<'_>,
-        reference: Option<&ReferenceElement>,
-    ) -> bool {
+    pub(super) fn is_autowired(&self, (member, _): ReferenceId<'_>, reference: Option<&ReferenceElement>) -> bool {
         let member = &self.fleet.members[member];
         let own = reference.and_then(|reference| reference.autowire());
         own.or(member.component.autowire()).map_or(member.autowire, |said| said.value)

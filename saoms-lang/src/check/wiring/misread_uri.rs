@@ -44,10 +44,7 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
     if text.contains(LISTED) {
         let named: Vec<&str> = text.split(LISTED).filter(|name| !name.is_empty()).collect();
         let is_known = |name: &&str| fleet.find(scope, parts(name).0).is_some();
-        return named
-            .iter()
-            .any(is_known)
-            .then(|| Misread::new(named.join(" "), "several stand between blanks"));
+        return named.iter().any(is_known).then(|| Misread::new(named.join(" "), "several stand between blanks"));
     }
     let places = text.char_indices().filter(|(_, character)| BEHIND.contains(character));
     let mut split = places.map(|(at, _)| (&text[..at], text[at..].trim_start_matches(BEHIND)));
@@ -84,8 +81,7 @@ pub(crate) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'
         }
     };
     let (inner_name, outer) = (quoted(first), quoted(name));
-    let why =
-        format!("{inner_name} is inside of {outer}, and reached by what the composite of {outer} promotes");
+    let why = format!("{inner_name} is inside of {outer}, and reached by what the composite of {outer} promotes");
     Some(match promoted[..] {
         [only] => Misread { meant: Some(format!("{name}/{only}")), help: why },
         [] => Misread { meant: None, help: format!("{why}: of {inner_name} it promotes no {}", side.name()) },

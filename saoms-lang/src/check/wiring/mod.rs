@@ -77,12 +77,7 @@ impl Wiring {
 }
 
 /// Resolves all targets and wires, and checks what they come to.
-pub(crate) fn check(
-    fleet: &Fleet<'_>,
-    promoted: &Promoted<'_>,
-    options: &Options,
-    report: &mut Report<'_>,
-) -> Wiring {
+pub(crate) fn check(fleet: &Fleet<'_>, promoted: &Promoted<'_>, options: &Options, report: &mut Report<'_>) -> Wiring {
     let room = WireBudget::default();
     let (mut wires, dangling) = wires(fleet, options, &room, report);
     // They are looked up by the names of their references.
@@ -207,8 +202,7 @@ impl<'f, 'a> Wires<'f, 'a> {
             if let Some(places) = ends.written.first_two
                 && !multiplicity.is_many()
             {
-                let found =
-                    TooMany { place: (member, name), places, count: ends.written.count, is_again: false };
+                let found = TooMany { place: (member, name), places, count: ends.written.count, is_again: false };
                 self.too_many(found, multiplicity, Severity::Error, report);
             }
         }

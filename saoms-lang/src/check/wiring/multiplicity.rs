@@ -7,11 +7,7 @@ use crate::source::Located;
 
 /// True if the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1):
 /// only with `nonOverridable`. In SCA 1.0 those of a reference that takes several do.
-pub(crate) fn keeps_own(
-    fleet: &Fleet<'_>,
-    (member, _): ReferenceId<'_>,
-    reference: Option<&ReferenceElement>,
-) -> bool {
+pub(crate) fn keeps_own(fleet: &Fleet<'_>, (member, _): ReferenceId<'_>, reference: Option<&ReferenceElement>) -> bool {
     let Some(reference) = reference else { return false };
     if reference.non_overridable().is_some_and(|fixed| fixed.value) {
         return true;
@@ -27,10 +23,7 @@ impl Fleet<'_> {
     }
 
     /// The multiplicity that the component or the composite that implements it writes.
-    pub(crate) fn given_multiplicity(
-        &self,
-        (member, name): ReferenceId<'_>,
-    ) -> Option<&Located<Multiplicity>> {
+    pub(crate) fn given_multiplicity(&self, (member, name): ReferenceId<'_>) -> Option<&Located<Multiplicity>> {
         let own = self.members[member].component.reference(name);
         let inner = self.inner(member).and_then(|inner| inner.references().find(|one| one.name == name));
         [own, inner].into_iter().flatten().find_map(|one| one.multiplicity())

@@ -48,9 +48,7 @@ impl<'a> Fleet<'a> {
             Kind::Class(class) => {
                 Some(self.classes[class].services.iter().map(|service| service.name.as_str()).collect())
             }
-            Kind::Composite(_) => {
-                Some(self.inner(member)?.services().map(|service| service.name.as_str()).collect())
-            }
+            Kind::Composite(_) => Some(self.inner(member)?.services().map(|service| service.name.as_str()).collect()),
             Kind::Given | Kind::Nothing => None,
         }
     }
@@ -95,8 +93,7 @@ impl<'a> Fleet<'a> {
                 Kind::Composite(scope) => scope,
                 Kind::Given | Kind::Nothing => return Offer::Open,
             };
-            let service =
-                self.inner(member).and_then(|inner| inner.services().find(|service| service.name == name));
+            let service = self.inner(member).and_then(|inner| inner.services().find(|service| service.name == name));
             let Some(service) = service else { return missing };
             missing = Offer::Open;
             // Each step leads one composite further in. What does not lead on is reported where it is written.

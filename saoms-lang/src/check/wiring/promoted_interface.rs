@@ -28,8 +28,7 @@ impl Fleet<'_> {
             let inner = self.inner(member)?;
             let promote = inner.references().find(|one| one.name == name.as_str())?.promote().first()?;
             let (component, part) = parts(promote);
-            member =
-                self.find(scope, component).or_else(|| self.group(scope, component)?.first().copied())?;
+            member = self.find(scope, component).or_else(|| self.group(scope, component)?.first().copied())?;
             name = match part {
                 Some(part) => part.to_owned(),
                 None => self.reference_names(member)?.first()?.to_string(),

@@ -112,9 +112,8 @@ fn widened(
             quoted(outer.name())
         ),
         _ => {
-            let named = narrower
-                .iter()
-                .map(|one| format!("{} takes {}", uri(one.place, fleet), quoted(one.takes.name())));
+            let named =
+                narrower.iter().map(|one| format!("{} takes {}", uri(one.place, fleet), quoted(one.takes.name())));
             let named: Vec<String> = named.collect();
             format!(
                 "{} promotes {} references that {} does not narrow: {}",

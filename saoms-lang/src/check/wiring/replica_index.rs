@@ -16,13 +16,7 @@ pub(crate) struct Beyond<'f> {
 
 impl Beyond<'_> {
     /// The diagnostic about the name, which `own` has written: that means another one.
-    pub(crate) fn diagnostic(
-        self,
-        name: &str,
-        own: Option<&str>,
-        at: Location,
-        message: String,
-    ) -> Diagnostic {
+    pub(crate) fn diagnostic(self, name: &str, own: Option<&str>, at: Location, message: String) -> Diagnostic {
         let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(self.help);
         match Some(self.meant) == own {
             true => one,

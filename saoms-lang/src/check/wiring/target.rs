@@ -50,8 +50,7 @@ pub(crate) fn target(
         return Target::Open;
     }
     let Some(uri) = Uri::of(text, (3, Side::Service), (scope, fleet), report) else { return Target::Wrong };
-    let is_elsewhere =
-        || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
+    let is_elsewhere = || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
     if scope == 0 && options.assume_classes && is_elsewhere() {
         elsewhere(text, (uri.component, own), fleet, report);
         return Target::Open;
@@ -144,12 +143,8 @@ fn bound(
         return true;
     }
     let at = report.part(text, at.clone());
-    let message = format!(
-        "service {} of component {} has no binding {}",
-        quoted(name),
-        quoted(&component.name),
-        quoted(binding)
-    );
+    let message =
+        format!("service {} of component {} has no binding {}", quoted(name), quoted(&component.name), quoted(binding));
     let known = declared.iter().map(|known| known.name.as_ref().map_or(name, |name| name.as_str()));
     let known: Vec<&str> = if declared.is_empty() { vec![name] } else { known.collect() };
     let known = ("its bindings are", known.iter().copied());
@@ -160,12 +155,7 @@ fn bound(
 
 /// Says that a target is not in the composites at hand. Where things are taken as given, it may be in others of its
 /// domain.
-fn elsewhere(
-    text: &Text,
-    (component, own): (&str, Option<usize>),
-    fleet: &Fleet<'_>,
-    report: &mut Report<'_>,
-) {
+fn elsewhere(text: &Text, (component, own): (&str, Option<usize>), fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let message = format!("there is no component {} in these composites", quoted(component));
     let at = report.part(text, 0..component.len());
     let own = own.map(|own| fleet.members[own].component.name.as_str());
@@ -175,8 +165,7 @@ fn elsewhere(
         None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, component, known),
     };
     report.push(
-        one.severity(Severity::Warning)
-            .help("it is taken as given: another composite of the domain may have it"),
+        one.severity(Severity::Warning).help("it is taken as given: another composite of the domain may have it"),
     );
 }
 
@@ -205,11 +194,8 @@ fn only_service(
         (Some((_, Offer::Service(provider))), None) => Target::Service(*provider),
         (None, _) if offers.iter().any(|(_, offer)| *offer == Offer::Open) => Target::Open,
         (None, _) => {
-            let message = format!(
-                "component {} offers no service with the interface {}",
-                quoted(text),
-                quoted(&interface.name)
-            );
+            let message =
+                format!("component {} offers no service with the interface {}", quoted(text), quoted(&interface.name));
             let one = Diagnostic::new(&codes::WIRE_INTERFACE, text.location, message);
             report.push(one.help(offered(member, interface, fleet)));
             Target::Wrong
@@ -236,8 +222,7 @@ fn offered(member: usize, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -
         let Offer::Service(provider) = offer else { continue };
         let Some(found) = fleet.interface_of(provider) else { continue };
         if found.name == interface.name {
-            return "it offers the interface with other operations: build both components from one version"
-                .to_owned();
+            return "it offers the interface with other operations: build both components from one version".to_owned();
         }
         all.push(format!("{} ({})", quoted(name), found.name));
     }

@@ -38,8 +38,7 @@ fn cycles_that_have_most_of_their_edges_in_common_cost_no_memory() {
 fn has_cycle(nodes: usize, wires: &[(usize, usize)]) -> bool {
     let mut left: HashSet<usize> = (0..nodes).collect();
     loop {
-        let reached: HashSet<usize> =
-            wires.iter().filter(|(from, _)| left.contains(from)).map(|(_, to)| *to).collect();
+        let reached: HashSet<usize> = wires.iter().filter(|(from, _)| left.contains(from)).map(|(_, to)| *to).collect();
         let before = left.len();
         left.retain(|node| reached.contains(node));
         if left.len() == before {

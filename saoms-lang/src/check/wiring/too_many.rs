@@ -48,7 +48,9 @@ impl<'f> Wires<'f, '_> {
         let one = one.label(first, "the first");
         report.push(match self.wire_instead((member, name), first, second) {
             _ if is_again => one.help("they lead to one service: keep one of them"),
-            true => one.help("keep one of them, or write `replace=\"true\"` at the wire, which counts in place of the `target` then"),
+            true => one.help(
+                "keep one of them, or write `replace=\"true\"` at the wire, which counts in place of the `target` then",
+            ),
             false => one.help("keep one of them"),
         });
     }

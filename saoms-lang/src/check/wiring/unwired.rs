@@ -60,15 +60,14 @@ impl Wires<'_, '_> {
             return true;
         }
         // A wire or a promotion of a component that does not exist may be meant for this one.
-        let is_unknown = fleet.is_misread
-            || dangling.iter().any(|one| one.names_unknown_component(fleet.members[member].scope));
+        let is_unknown =
+            fleet.is_misread || dangling.iter().any(|one| one.names_unknown_component(fleet.members[member].scope));
         if !is_required {
             return is_unknown;
         }
         let (interface, component) = (&declared.interface.name, &fleet.members[member].component.name);
         let place = reference.map(|reference| reference.name.location);
-        let message =
-            format!("reference {} of component {} leads to no service", quoted(name), quoted(component));
+        let message = format!("reference {} of component {} leads to no service", quoted(name), quoted(component));
         let is_1_1 = fleet.members[member].composite.version.is_1_1();
         // One that is there and empty is told already.
         if let Some(empty) = reference.and_then(|one| {

@@ -14,8 +14,7 @@ use crate::syntax::escaped;
 
 /// The component of a URI, and the name behind it.
 pub(crate) fn parts(uri: &str) -> (&str, Option<&str>) {
-    let (component, rest) =
-        uri.split_once('/').map_or((uri, None), |(component, rest)| (component, Some(rest)));
+    let (component, rest) = uri.split_once('/').map_or((uri, None), |(component, rest)| (component, Some(rest)));
     (component, rest.map(|rest| rest.split('/').next().unwrap_or(rest)))
 }
 
@@ -107,8 +106,7 @@ impl<'t> Uri<'t> {
             }
             let at = report.part(text, 0..self.component.len());
             if let Some([first, ..]) = fleet.group(scope, self.component) {
-                let message =
-                    format!("{} names all replicas, and one component is expected", quoted(self.component));
+                let message = format!("{} names all replicas, and one component is expected", quoted(self.component));
                 let first = fleet.members[*first].component.name.as_str();
                 let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
                 let one = one.help(format!("name one of them, such as {}", quoted(first)));
@@ -126,8 +124,7 @@ impl<'t> Uri<'t> {
             let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
             let own = own.map(|own| fleet.members[own].component.name.as_str());
             let names = fleet.names(scope).filter(|name| Some(*name) != own);
-            let known =
-                ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
+            let known = ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
             let one = match beyond(self.component, scope, fleet) {
                 Some(beyond) => beyond.diagnostic(self.component, own, at, message),
                 None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known),
@@ -159,7 +156,5 @@ pub(crate) fn spread<'t>(
 /// True if a target is an address on a network rather than a component.
 pub(crate) fn is_address(text: &str) -> bool {
     let scheme = text.split(':').next().unwrap_or_default();
-    scheme.len() < text.len()
-        && !scheme.contains('/')
-        && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
+    scheme.len() < text.len() && !scheme.contains('/') && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
 }

@@ -54,10 +54,7 @@ pub(crate) fn wires<'f>(
                 );
                 let one = Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, source.location, message);
                 let swapped = [(source, to), (to, source)];
-                let edit = |(one, other): (&Text, &Text)| Edit {
-                    location: one.location,
-                    replacement: escaped(other),
-                };
+                let edit = |(one, other): (&Text, &Text)| Edit { location: one.location, replacement: escaped(other) };
                 report.push(one.suggest_edits("swap `source` and `target`", swapped.map(edit).into()));
                 all.entry(member).or_default().push(Wire { name, target: source, scope, is_replacing });
                 continue;
@@ -82,16 +79,11 @@ pub(crate) fn wires<'f>(
 }
 
 /// The component and the reference that are the target of a wire, where the source is a service.
-fn backwards<'f>(
-    (source, to): (&Text, &'f Text),
-    scope: usize,
-    fleet: &'f Fleet<'_>,
-) -> Option<(usize, &'f str)> {
+fn backwards<'f>((source, to): (&Text, &'f Text), scope: usize, fleet: &'f Fleet<'_>) -> Option<(usize, &'f str)> {
     let reference = parts(to).1?;
     let ends = [source, to].map(|end| fleet.find(scope, parts(end).0));
     let [Some(from), Some(member)] = ends else { return None };
-    let is_reference =
-        |member, name| fleet.reference_names(member).is_some_and(|names| names.contains(&name));
+    let is_reference = |member, name| fleet.reference_names(member).is_some_and(|names| names.contains(&name));
     let is_service = |member, name| matches!(fleet.offer(member, name), Offer::Service(_));
     let starts_at_service = match parts(source).1 {
         Some(service) => !is_reference(from, service) && is_service(from, service),
@@ -117,13 +109,7 @@ fn source_of<'f>(
     let Some(names) = fleet.reference_names(member) else {
         if let Some((name, at)) = &uri.part {
             let at = report.part(source, at.clone());
-            fleet.unknown_name(
-                member,
-                Side::Reference,
-                (&codes::UNKNOWN_WIRE_SOURCE, None),
-                (name, at),
-                report,
-            );
+            fleet.unknown_name(member, Side::Reference, (&codes::UNKNOWN_WIRE_SOURCE, None), (name, at), report);
         }
         return (fleet.members[member].kind == Kind::Given).then_some((member, named));
     };
@@ -135,8 +121,7 @@ fn source_of<'f>(
             let message = format!("component {component} has no reference {}", quoted(name));
             if fleet.offer(member, name) != Offer::Missing {
                 let one = Diagnostic::new(&codes::UNKNOWN_WIRE_SOURCE, at, message);
-                let help =
-                    format!("{} is a service: a wire goes from a reference to a service", quoted(name));
+                let help = format!("{} is a service: a wire goes from a reference to a service", quoted(name));
                 report.push(one.help(help));
                 return None;
             }

@@ -5,10 +5,7 @@ use super::*;
 /// Asserts the faults of a service of SCA 1.0 that has this binding.
 #[track_caller]
 fn binding(inside: &str, expected: &str) {
-    faults_1_0(
-        &format!("<component name='a'>\n{JAVA}<service name='s'>\n{inside}\n</service></component>"),
-        expected,
-    );
+    faults_1_0(&format!("<component name='a'>\n{JAVA}<service name='s'>\n{inside}\n</service></component>"), expected);
 }
 
 #[test]

@@ -4,10 +4,7 @@ use super::*;
 
 #[test]
 fn a_million_faults_are_counted_and_a_few_shown() {
-    let text = format!(
-        "<composite xmlns='{OSOA}' name='c' targetNamespace='u'>{}</composite>",
-        "<x/>".repeat(50_000)
-    );
+    let text = format!("<composite xmlns='{OSOA}' name='c' targetNamespace='u'>{}</composite>", "<x/>".repeat(50_000));
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let file = sources.add("t", text);
     load_file(file, &sources, &mut diagnostics);
@@ -25,9 +22,7 @@ fn an_element_of_endless_attributes_takes_no_time() {
 
 #[test]
 fn depth_is_no_matter_wherever_it_is() {
-    let deep = |name: &str| {
-        format!("{}{}", format!("<{name}>").repeat(100_000), format!("</{name}>").repeat(100_000))
-    };
+    let deep = |name: &str| format!("{}{}", format!("<{name}>").repeat(100_000), format!("</{name}>").repeat(100_000));
     let (composite, faults) = loaded(&format!(
         "<composite xmlns='{OSOA}' name='c' targetNamespace='u'><component name='a'>{JAVA}<property name='p'>{}</property>\
          </component>{}</composite>",
@@ -37,10 +32,7 @@ fn depth_is_no_matter_wherever_it_is() {
     let composite = composite.unwrap();
     assert_eq!(composite.components.len(), 2);
     assert_eq!(composite.components[0].properties[0].content().len(), 1);
-    assert!(
-        faults.starts_with("1:") && faults.contains("`component` cannot stand in `component`"),
-        "{faults}"
-    );
+    assert!(faults.starts_with("1:") && faults.contains("`component` cannot stand in `component`"), "{faults}");
 }
 
 #[test]

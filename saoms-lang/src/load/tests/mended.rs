@@ -23,10 +23,7 @@ const LINES: &[(&str, &str)] = &[
     ("<property name='nine' value='9'/>", "<property name='nine' & value='9'/>"),
     ("<property name='ten' source='$text'/>", "<property name='ten' source='$text' wiredByImpl/>"),
     ("<property name='eleven' value='11'/>", "<property name='eleven' valeu='11'/>"),
-    (
-        "<reference name='r' target='B'/></component>",
-        "<reference name='r' target='B' autowire='ja'/></component>",
-    ),
+    ("<reference name='r' target='B'/></component>", "<reference name='r' target='B' autowire='ja'/></component>"),
     ("<component name='B'>", "<component name='B' foo:is='x'>"),
     ("<implementation.java class='x.B'/></component>", "<implementation.java class='x.B'/></componnt>"),
     ("</composite>", ""),
@@ -40,8 +37,7 @@ fn told(lines: &[usize]) -> Vec<String> {
     };
     let text: Vec<String> = LINES.iter().enumerate().map(written).collect();
     let (composite, told) = loaded(&text.join("\n"));
-    let components: Vec<String> =
-        composite.unwrap().components.iter().map(|one| one.name.to_string()).collect();
+    let components: Vec<String> = composite.unwrap().components.iter().map(|one| one.name.to_string()).collect();
     assert_eq!(components, ["A", "B"], "{told}");
     let without_column = |line: &str| {
         let (place, rest) = line.split_once(' ').unwrap();

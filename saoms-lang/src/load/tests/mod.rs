@@ -130,11 +130,8 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
     let interface = service.interface().unwrap();
     assert_eq!(interface.kind, InterfaceKind::Java);
     assert_eq!(both(interface.interface.as_ref().unwrap()).1, "a.Move");
-    let uris: Vec<_> = service
-        .bindings()
-        .iter()
-        .map(|one| (one.kind.as_str(), one.is_sca, both(one.uri.as_ref().unwrap())))
-        .collect();
+    let uris: Vec<_> =
+        service.bindings().iter().map(|one| (one.kind.as_str(), one.is_sca, both(one.uri.as_ref().unwrap()))).collect();
     assert_eq!(uris, [("ws", true, ("http://h/&x", "http://h/&amp;x")), ("http", false, ("/h", "/h"))]);
     assert_eq!(service.callback().unwrap().bindings[0].kind, "sca");
 
@@ -215,9 +212,7 @@ fn unknown_names_come_with_the_nearest() {
 2:65 [nam] error S1007 `property` has no attribute `nam` | replace `nam` with `name`",
     );
     faults_1_0(
-        &format!(
-            "<component name='a'>{JAVA}<reference name='r' targt='b'/><propery name='x'>1</propery></component>"
-        ),
+        &format!("<component name='a'>{JAVA}<reference name='r' targt='b'/><propery name='x'>1</propery></component>"),
         "
 2:75 [targt] error S1007 `reference` has no attribute `targt` | replace `targt` with `target`
 2:87 [propery] error S1004 SCA 1.0 has no element `propery` | replace `propery` with `property`",
@@ -228,9 +223,7 @@ fn unknown_names_come_with_the_nearest() {
          | replace `implementation.jav` with `implementation.java`",
     );
     faults_1_0(
-        &format!(
-            "<component name='a'>{JAVA}<service name='s'><interface.jva interface='i'/></service></component>"
-        ),
+        &format!("<component name='a'>{JAVA}<service name='s'><interface.jva interface='i'/></service></component>"),
         "2:74 [interface.jva] error S1004 SCA 1.0 has no element `interface.jva` \
          | replace `interface.jva` with `interface.java`",
     );
@@ -335,9 +328,7 @@ fn what_cannot_be_is_found_at_its_place() {
 2:97 [interface.java] error S1005 `interface.java` cannot stand in `composite`",
     );
     faults_1_0(
-        &format!(
-            "<component name='a'>{JAVA}<property name='p'>1<component name='b'/></property></component>"
-        ),
+        &format!("<component name='a'>{JAVA}<property name='p'>1<component name='b'/></property></component>"),
         "2:76 [component] error S1005 `component` cannot stand in `property`",
     );
     faults_1_1(
@@ -366,14 +357,8 @@ fn what_cannot_be_is_found_at_its_place() {
 
 #[test]
 fn the_versions_differ_where_they_do() {
-    faults_1_0(
-        "<component name='a'/>",
-        "2:2 [component] warning S1010 the component `a` has no implementation",
-    );
-    faults_1_1(
-        "<component name='a'/>",
-        "2:2 [component] error S1010 the component `a` has no implementation",
-    );
+    faults_1_0("<component name='a'/>", "2:2 [component] warning S1010 the component `a` has no implementation");
+    faults_1_1("<component name='a'/>", "2:2 [component] error S1010 the component `a` has no implementation");
     let bare = |namespace: &str| format!("<composite xmlns='{namespace}' name='c'/>");
     faults(&bare(OSOA), "1:2 [composite] warning S1009 `composite` has no `targetNamespace`");
     faults(&bare(OASIS), "1:2 [composite] error S1009 `composite` has no `targetNamespace`");
@@ -403,9 +388,7 @@ fn what_others_add_is_kept_and_what_is_nobodys_is_not() {
         "2:2 [component] error S1004 `component` is in no namespace",
     );
     faults_1_0(
-        &format!(
-            "<component name='a' xmlns:saoms='urn:saoms:1' saoms:colour='red'>{JAVA}<saoms:robot/></component>"
-        ),
+        &format!("<component name='a' xmlns:saoms='urn:saoms:1' saoms:colour='red'>{JAVA}<saoms:robot/></component>"),
         "
 2:47 [saoms:colour] error S1007 `component` has no attribute `saoms:colour`
 2:101 [saoms:robot] error S1004 SAOMS has no element `robot`",
@@ -415,15 +398,10 @@ fn what_others_add_is_kept_and_what_is_nobodys_is_not() {
         "2:56 [libary] error S1007 `implementation.rust` has no attribute `libary` | replace `libary` with `library`",
     );
     // As FraSCAti's users write it.
-    faults_1_0(
-        &format!("<component name='a'><service name='s'/><reference name='r'/>{JAVA}</component>"),
-        "",
-    );
+    faults_1_0(&format!("<component name='a'><service name='s'/><reference name='r'/>{JAVA}</component>"), "");
     // A value of the user's own, in the default namespace.
     faults_1_0(
-        &format!(
-            "<component name='a'>{JAVA}<property name='p'><order><total/></order></property></component>"
-        ),
+        &format!("<component name='a'>{JAVA}<property name='p'><order><total/></order></property></component>"),
         "",
     );
 }

@@ -34,10 +34,7 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     says(b"", empty);
     assert!(reading(b" \r\n\t", MAX_SIZE).contains("the file is empty"));
     assert!(reading(b"\xef\xbb\xbf", MAX_SIZE).contains("the file is empty"));
-    says(
-        b"<a>\0</a>",
-        "1:1 [] error S0006 the file is binary: byte 3 is zero\na composite is an XML text in UTF-8",
-    );
+    says(b"<a>\0</a>", "1:1 [] error S0006 the file is binary: byte 3 is zero\na composite is an XML text in UTF-8");
     says(
         b"PK\x03\x04....",
         "1:1 [] error S0006 the file is a ZIP or JAR archive, and no XML text\na composite is an XML text in UTF-8",
@@ -45,10 +42,7 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     let utf16: Vec<u8> = "\u{feff}<a/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
     let converted = "convert it: `iconv -f UTF-16LE -t UTF-8 DIR/f.composite`";
     says(&utf16, &format!("1:1 [] error S0007 the file is in UTF-16LE, and UTF-8 is expected\n{converted}"));
-    says(
-        &utf16[2..],
-        &format!("1:1 [] error S0007 the file is in UTF-16LE, and UTF-8 is expected\n{converted}"),
-    );
+    says(&utf16[2..], &format!("1:1 [] error S0007 the file is in UTF-16LE, and UTF-8 is expected\n{converted}"));
     assert!(reading(b"\xfe\xff\0<\0a", MAX_SIZE).contains("UTF-16BE"));
     assert!(reading(b"\0\0\0<\0\0\0a", MAX_SIZE).contains("UTF-32BE"));
     says(
@@ -65,7 +59,8 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
 
 #[test]
 fn a_file_past_the_limit_is_not_read() {
-    let expected = "1:1 [] error S0004 the file has 5 bytes, and the limit is 4 bytes\nthe limit is set with `--max-size`";
+    let expected =
+        "1:1 [] error S0004 the file has 5 bytes, and the limit is 4 bytes\nthe limit is set with `--max-size`";
     assert_eq!(reading(b"<aa/>", 4), expected);
     assert_eq!(reading(b"<aa/>", 5), "");
     assert!(read_shown(Path::new("/dev/zero"), 1000).contains("S0004"), "a device has no length");
@@ -89,10 +84,7 @@ fn a_file_that_is_not_there_has_neighbours() {
         format!("{missing}there is `DIR/airport.composite`, `DIR/airport2.composite`")
     );
     assert_eq!(shown("notes"), format!("{missing}there is `DIR/notes.txt`"));
-    assert_eq!(
-        shown("xyz"),
-        format!("{missing}the folder has `DIR/airport.composite`, `DIR/airport2.composite`")
-    );
+    assert_eq!(shown("xyz"), format!("{missing}the folder has `DIR/airport.composite`, `DIR/airport2.composite`"));
     assert_eq!(shown("sup/a"), format!("{missing}there is no directory `DIR/sup` either"));
     assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file and no directory"));
     let directory = "1:1 [] error S0002 a directory, where a file is expected\n";

@@ -17,15 +17,9 @@ fn a_namespace_that_is_nearly_one_of_ours_is_told() {
              | replace it with `urn:saoms:1`"
         )
     };
-    for written in [
-        "urn:saom:1",
-        "urn:soams:1",
-        "urn:saoms:2",
-        "urn:SAOMS:1",
-        "urn:saoms",
-        "urn:saoms:1/",
-        "urn:saomss:1",
-    ] {
+    for written in
+        ["urn:saom:1", "urn:soams:1", "urn:saoms:2", "urn:SAOMS:1", "urn:saoms", "urn:saoms:1/", "urn:saomss:1"]
+    {
         with(&format!("xmlns:x='{written}'"), "x:if='false'", &ours(written));
         with(&format!("xmlns:x='{written}'"), "", "");
     }
@@ -64,13 +58,10 @@ fn the_end_tag_of_a_misspelt_element_is_right() {
 
 #[test]
 fn an_element_that_is_closed_too_late_or_too_early_is_told_once() {
-    let component = |inside: &str| {
-        format!("<component name='a'>{inside}</component>\n<component name='b'>{JAVA}</component>")
-    };
+    let component =
+        |inside: &str| format!("<component name='a'>{inside}</component>\n<component name='b'>{JAVA}</component>");
     faults_1_1(
-        &component(
-            "<implementation.java class='x.Y'><property name='p'>1</property><property name='q'>2</property>",
-        ),
+        &component("<implementation.java class='x.Y'><property name='p'>1</property><property name='q'>2</property>"),
         "2:22 [implementation.java] error S0103 `implementation.java` is not closed before `property` | end `implementation.java` with `/>`",
     );
     faults_1_1(

@@ -36,12 +36,7 @@ fn what_the_tables_call_required_is_required() {
         for known in kind.attributes {
             let text = lacking(&path, if known.required { known.name } else { "" });
             let needs = format!("`{}` needs the attribute `{}`", kind.name, known.name);
-            assert_eq!(
-                loaded(&text).1.contains(&needs),
-                known.required,
-                "{needs}: {text}\n{}",
-                loaded(&text).1
-            );
+            assert_eq!(loaded(&text).1.contains(&needs), known.required, "{needs}: {text}\n{}", loaded(&text).1);
         }
     }
 }

@@ -53,14 +53,7 @@ kinds! {
 }
 
 const CONTRACT: &[&str] = &[
-    "interface.",
-    "binding.",
-    "callback",
-    "operation",
-    "requires",
-    "policySetAttachment",
-    "documentation",
-    "extensions",
+    "interface.", "binding.", "callback", "operation", "requires", "policySetAttachment", "documentation", "extensions",
 ];
 
 kinds! {
@@ -127,8 +120,7 @@ kinds! {
     } ["binding.", "requires", "policySetAttachment", "documentation", "extensions"]
 }
 
-const POLICY_CHILDREN: &[&str] =
-    &["operation", "requires", "policySetAttachment", "documentation", "extensions"];
+const POLICY_CHILDREN: &[&str] = &["operation", "requires", "policySetAttachment", "documentation", "extensions"];
 
 attributes! {
     INTERFACE = required "interface" Interface: "The interface's name.";
@@ -187,26 +179,15 @@ pub const VARIANTS: &[(&str, &[&str])] = &[
     (
         "implementation.",
         &[
-            "implementation.java",
-            "implementation.composite",
-            "implementation.rust",
-            "implementation.bpel",
-            "implementation.spring",
-            "implementation.ejb",
-            "implementation.jee",
-            "implementation.web",
-            "implementation.c",
-            "implementation.cpp",
+            "implementation.java", "implementation.composite", "implementation.rust", "implementation.bpel",
+            "implementation.spring", "implementation.ejb", "implementation.jee", "implementation.web",
+            "implementation.c", "implementation.cpp",
         ],
     ),
     (
         "interface.",
         &[
-            "interface.java",
-            "interface.rust",
-            "interface.wsdl",
-            "interface.c",
-            "interface.cpp",
+            "interface.java", "interface.rust", "interface.wsdl", "interface.c", "interface.cpp",
             "interface.partnerLinkType",
         ],
     ),

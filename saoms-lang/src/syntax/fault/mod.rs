@@ -73,24 +73,12 @@ impl<'a> Input<'a> {
     }
 
     /// A diagnostic at the bytes from `start` to `end`.
-    pub(super) fn fault(
-        self,
-        code: &'static Code,
-        start: u32,
-        end: u32,
-        message: impl Into<String>,
-    ) -> Diagnostic {
+    pub(super) fn fault(self, code: &'static Code, start: u32, end: u32, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(code, Span::new(start, end).in_file(self.file), message)
     }
 
     /// The diagnostic for a text that ends inside something that starts at `start`.
-    pub(super) fn ended(
-        self,
-        code: &'static Code,
-        start: u32,
-        end: u32,
-        message: impl Into<String>,
-    ) -> Diagnostic {
+    pub(super) fn ended(self, code: &'static Code, start: u32, end: u32, message: impl Into<String>) -> Diagnostic {
         let behind = Span::empty(self.len()).in_file(self.file);
         self.fault(code, start, end, message).label(behind, "the file ends here")
     }

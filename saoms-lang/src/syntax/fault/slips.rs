@@ -83,12 +83,7 @@ pub(in crate::syntax) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
 }
 
 /// The fault of a value from `at` to `end` without its first quote.
-pub(in crate::syntax) fn without_first_quote(
-    input: Input<'_>,
-    one: &RawAttribute,
-    at: u32,
-    end: u32,
-) -> Diagnostic {
+pub(in crate::syntax) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32, end: u32) -> Diagnostic {
     let name = quoted(input.slice(one.start, one.start + one.name_len));
     let quote = input.slice(end, end + 1);
     let message = format!("the value of {name} has no quote before it");
@@ -188,8 +183,7 @@ pub(in crate::syntax) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32)
     let length = memchr::memchr3(quote, b'<', b'>', behind.as_bytes())?;
     // `a="<b c="d"`: the quote found is that of an attribute of the next tag.
     let before = behind[..length].trim_end().strip_suffix('=').map(str::trim_end);
-    let is_of_next =
-        before.is_some_and(|tag| ends_with_attribute_name(tag) && name_length(tag.as_bytes()) > 0);
+    let is_of_next = before.is_some_and(|tag| ends_with_attribute_name(tag) && name_length(tag.as_bytes()) > 0);
     (behind.as_bytes()[length] == quote && !is_of_next).then_some(at + 1 + length as u32)
 }
 
@@ -208,8 +202,7 @@ pub(in crate::syntax) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32
     while let Some(next) = memchr::memchr3(b'\n', b'>', b'<', &rest.as_bytes()[length..]) {
         length += next;
         let byte = rest.as_bytes()[length];
-        let is_tag =
-            rest[length + 1..].starts_with(|c: char| c.is_alphabetic() || matches!(c, '_' | '/' | '!' | '?'));
+        let is_tag = rest[length + 1..].starts_with(|c: char| c.is_alphabetic() || matches!(c, '_' | '/' | '!' | '?'));
         if byte != b'<' || is_tag {
             found = Some(byte);
             break;

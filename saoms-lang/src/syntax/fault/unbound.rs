@@ -34,8 +34,7 @@ pub(in crate::syntax) fn prefix<'a>(
         );
         return (one, Some(Meant::Namespace(uri)));
     }
-    let one =
-        one.help(format!("declare it, as `xmlns:{prefix}=\"...\"`, in this element or in one around it"));
+    let one = one.help(format!("declare it, as `xmlns:{prefix}=\"...\"`, in this element or in one around it"));
     match nearest(prefix, bound.iter().copied().filter(|known| *known != "xml")) {
         Some(meant) => {
             let place = Span::new(start, end).in_file(input.file);

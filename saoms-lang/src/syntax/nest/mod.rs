@@ -55,15 +55,7 @@ struct Nest<'l, 'a> {
 impl<'l, 'a> Nest<'l, 'a> {
     fn new(lexer: &'l mut Lexer<'a>) -> Self {
         let input = lexer.input;
-        Self {
-            input,
-            lexer,
-            counts: None,
-            open: Vec::new(),
-            count: 0,
-            has_second_root: false,
-            has_other_root: false,
-        }
+        Self { input, lexer, counts: None, open: Vec::new(), count: 0, has_second_root: false, has_other_root: false }
     }
 
     /// Counts all tags.
@@ -184,9 +176,7 @@ impl<'l, 'a> Nest<'l, 'a> {
         {
             let name = self.name(self.node(top)).as_bytes();
             let behind = &self.input.bytes()[start as usize + 2..];
-            if behind.starts_with(name)
-                && matches!(behind.get(name.len()), Some(b'>' | b' ' | b'\t' | b'\r' | b'\n'))
-            {
+            if behind.starts_with(name) && matches!(behind.get(name.len()), Some(b'>' | b' ' | b'\t' | b'\r' | b'\n')) {
                 self.close(at, true);
                 return Ok(());
             }
@@ -205,8 +195,7 @@ impl<'l, 'a> Nest<'l, 'a> {
             None => {
                 let end = self.span(at).end;
                 self.lexer.faults.add(|| {
-                    let message =
-                        format!("{} closes nothing: no element is open", quoted(&format!("</{found}>")));
+                    let message = format!("{} closes nothing: no element is open", quoted(&format!("</{found}>")));
                     self.input.fault(&codes::XML_TAG_MISMATCH, start, end, message)
                 });
                 self.lexer.tokens[at as usize].kind = TokenKind::Error;
@@ -254,8 +243,7 @@ impl<'l, 'a> Nest<'l, 'a> {
             if is_outside && token.kind != TokenKind::Error {
                 let written = self.input.slice(span.start, span.end);
                 let text = value::trim(written);
-                let start =
-                    span.start + (written.len() - written.trim_start_matches(value::is_space).len()) as u32;
+                let start = span.start + (written.len() - written.trim_start_matches(value::is_space).len()) as u32;
                 let place = Span::new(start, start + text.len() as u32);
                 let root = (self.count > 0).then(|| self.named(self.node(0)));
                 self.lexer.faults.add(|| tags::outside(self.input, place, root));
@@ -297,9 +285,7 @@ impl<'l, 'a> Nest<'l, 'a> {
         let is_nothing = self.lexer.elements.len() == 1 && self.node(0).name_len == 0;
         if is_nothing && self.lexer.faults.len() == 0 {
             let at = self.input.len();
-            self.lexer
-                .faults
-                .add(|| self.input.ended(&codes::XML_SYNTAX, at, at, "the file holds no element"));
+            self.lexer.faults.add(|| self.input.ended(&codes::XML_SYNTAX, at, at, "the file holds no element"));
         }
         Ok(())
     }

@@ -14,8 +14,7 @@ impl<'a> Nest<'_, 'a> {
     pub(super) fn makes_room(&mut self, at: u32, named: Named<'a>, is_bare: bool) -> bool {
         let Some(holders) = holders(local(named.name)) else { return false };
         let is_holder = |one: &&u32| tags::is_one_of(local(self.name(self.node(**one))), holders);
-        let Some(above) = self.open.iter().rev().take(OPEN_ELEMENTS_SEARCHED).position(|one| is_holder(&one))
-        else {
+        let Some(above) = self.open.iter().rev().take(OPEN_ELEMENTS_SEARCHED).position(|one| is_holder(&one)) else {
             return false;
         };
         let above: Vec<u32> = self.open.iter().rev().take(above).copied().collect();

@@ -37,9 +37,7 @@ pub(super) fn holders(name: &str) -> Option<&'static [&'static str]> {
 /// True if a name, without its prefix, is one of these or a misspelling of one.
 pub(super) fn is_one_of(name: &str, holders: &[&str]) -> bool {
     holders.contains(&name)
-        || self::holders(name).is_none()
-            && !is_holder(name)
-            && nearest(name, holders.iter().copied()).is_some()
+        || self::holders(name).is_none() && !is_holder(name) && nearest(name, holders.iter().copied()).is_some()
 }
 
 /// True if others stand in an element of this name, without its prefix.
@@ -67,13 +65,7 @@ pub(super) fn replaced(one: Diagnostic, tag: Location, open: Named<'_>) -> Diagn
 }
 
 /// The suggestion to close the open element before the end tag at `end` of one around it.
-pub(super) fn closed_first(
-    input: Input<'_>,
-    one: Diagnostic,
-    end: u32,
-    open: Named<'_>,
-    is_bare: bool,
-) -> Diagnostic {
+pub(super) fn closed_first(input: Input<'_>, one: Diagnostic, end: u32, open: Named<'_>, is_bare: bool) -> Diagnostic {
     let name = quoted(open.name);
     if is_bare && !ends_with_slash(input, open) {
         let slash = Span::empty(open.start_tag.end - 1).in_file(input.file);

@@ -76,8 +76,7 @@ impl Lexer<'_> {
         let name = Span::new(from, end);
         self.push_element(start, TokenKind::StartTag, 0, name);
         let (limit, close, quote, measures) = (0, None, 0, 0);
-        let mut tag =
-            Tag { lexer: self, input, start, name, first, at, limit, close, quote, measures, flags };
+        let mut tag = Tag { lexer: self, input, start, name, first, at, limit, close, quote, measures, flags };
         let is_empty = tag.read();
         let (at, flags) = (tag.at, tag.flags);
         let one = &mut self.tokens[token];
@@ -210,13 +209,8 @@ impl Tag<'_, '_> {
         let name = scan(&input.bytes()[start as usize..]);
         let name_end = start + name.len;
         let raw = &input.bytes()[start as usize..name_end as usize];
-        let mut one = RawAttribute {
-            start,
-            name_len: name.len,
-            value: Span::empty(name_end),
-            namespace: NO_NAMESPACE,
-            flags: 0,
-        };
+        let mut one =
+            RawAttribute { start, name_len: name.len, value: Span::empty(name_end), namespace: NO_NAMESPACE, flags: 0 };
         let equals = input.skip_space(name_end);
         let has_equals = input.byte(equals) == Some(b'=');
         let colon = if has_equals { None } else { slips::colon(input, start, name_end, equals) };

@@ -109,8 +109,7 @@ impl Tag<'_, '_> {
         if last.end() != at || !last.value.is_empty() || last.flags & (NO_VALUE | OPEN) != 0 {
             return false;
         }
-        let Some(end) = slips::first_quote(input, at).filter(|end| input.byte(*end) == input.byte(at - 1))
-        else {
+        let Some(end) = slips::first_quote(input, at).filter(|end| input.byte(*end) == input.byte(at - 1)) else {
             return false;
         };
         last.value = Span::new(at, end);

@@ -17,8 +17,7 @@ fn assembly(texts: &[&str], settings: &[&str]) -> String {
             let _ = writeln!(out, "  {name} = {value:?}");
         }
         for wire in &component.references {
-            let targets =
-                wire.targets.iter().map(|target| format!("{} {}", target.component, target.service));
+            let targets = wire.targets.iter().map(|target| format!("{} {}", target.component, target.service));
             let targets: Vec<String> = targets.collect();
             let target = if targets.is_empty() { "nothing".to_owned() } else { targets.join(", ") };
             let _ = writeln!(out, "  {} ({}) -> {target}", wire.reference, wire.interface);
@@ -130,8 +129,7 @@ fn values_have_the_order_of_the_class_however_they_are_written() {
     let assembly = assembly.unwrap();
     assert_eq!(assembly.components.len(), 2 * lines.len());
     for (place, component) in assembly.components.iter().enumerate() {
-        let values: Vec<String> =
-            component.values.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
+        let values: Vec<String> = component.values.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
         let expected = format!(
             r#"ID=Text("R{place}") number=Text("{}") awake=Text("false") stops=Many([Text("1"), Text("2")])"#,
             place + 1

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use saoms_api::host::Registration;
 use saoms_api::{
-    Class, Component, Context, Failure, Finding, Message, Place, Properties, PropertyField, TaskInterface,
-    Topic, interface,
+    Class, Component, Context, Failure, Finding, Message, Place, Properties, PropertyField, TaskInterface, Topic,
+    interface,
 };
 use saoms_lang::registry::Registry;
 
@@ -334,8 +334,7 @@ impl Component for Board {
         let BoardProperties { width, height, marks, label } = properties;
         let judge = |text: &String| {
             let (x, y) = text.split_once(',').ok_or("is no mark")?;
-            let (x, y): (u32, u32) =
-                (x.parse().map_err(|_| "has no column")?, y.parse().map_err(|_| "has no row")?);
+            let (x, y): (u32, u32) = (x.parse().map_err(|_| "has no column")?, y.parse().map_err(|_| "has no row")?);
             if x < width && y < height { Ok(()) } else { Err("is beside the board") }
         };
         let judged = marks.iter().enumerate().map(|(place, text)| (place, text, judge(text)));

@@ -25,16 +25,14 @@ pub(crate) fn found(inside: &str, types: &[(&str, &str)], assume_classes: bool) 
         fs::write(folder.path().join(name), text).unwrap();
     }
     let path = folder.path().join("fleet.composite");
-    let text =
-        fleet(inside).replacen('>', " xmlns:t='urn:t' xmlns:xsd='http://www.w3.org/2001/XMLSchema'>", 1);
+    let text = fleet(inside).replacen('>', " xmlns:t='urn:t' xmlns:xsd='http://www.w3.org/2001/XMLSchema'>", 1);
     fs::write(&path, text).unwrap();
     compiled_in(folder.path(), &Project::new().file(path).assume_classes(assume_classes)).1
 }
 
 /// A component of a script that is described as above.
 fn script(inside: &str) -> String {
-    let inside =
-        format!("<component name='S'><t:implementation.script script='run.py'/>\n{inside}</component>");
+    let inside = format!("<component name='S'><t:implementation.script script='run.py'/>\n{inside}</component>");
     found(&inside, &[("run.componentType", DESCRIPTION)], true)
 }
 
@@ -138,8 +136,7 @@ fn a_class_may_have_more_than_its_file_says() {
     "#]]
     .assert_eq(&class(&wrong).replace("Run.", "run."));
     let one = |inside| {
-        let component =
-            format!("<component name='S'><implementation.java class='a.Run'/>{inside}</component>");
+        let component = format!("<component name='S'><implementation.java class='a.Run'/>{inside}</component>");
         found(&component, &[("Run.componentType", "<service name='tick'/>")], true)
     };
     assert_eq!(one("<property name='sped'>1</property><reference name='r' target='S/tick'/>"), "");
@@ -225,8 +222,7 @@ fn a_value_in_a_component_type_is_one_and_written_once() {
 #[test]
 fn a_file_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
     let damaged = "<property name='speed' type=xsd:int/>\n<servce name='tick'/>\n<reference/>\n";
-    let inside =
-        "<component name='S'><implementation.java class='a.Run'/><service name='other'/></component>";
+    let inside = "<component name='S'><implementation.java class='a.Run'/><service name='other'/></component>";
     expect![[r#"
         Run.componentType:2:29-36 error S0105: the value of `type` is not in quotes
           fix: put it in quotes [Run.componentType:2:29-36 "\"xsd:int\""]

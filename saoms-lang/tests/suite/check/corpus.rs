@@ -56,11 +56,7 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("org/apache/tuscany/sca/policy/xml/Calculator.composite", "S1007", "requiers"),
     // A component gives one property two values in two elements, of which nothing says which counts (ASM50031): what
     // this file is there to show. The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
-    (
-        "vtest/assembly/component/src/main/resources/component_duplicate_property.composite",
-        "S3005",
-        "strProperty",
-    ),
+    ("vtest/assembly/component/src/main/resources/component_duplicate_property.composite", "S3005", "strProperty"),
     // A component has one reference twice (ASM50007): what this file is there to show.
     ("vtest/assembly/component/src/main/resources/referencename_2.composite", "S2004", "b"),
 ];
@@ -224,10 +220,7 @@ const GIVEN_UP: &[(&str, &str)] = &[
         "bindingjms/InvalidJMSDeliveryMode/service.composite",
         "What `binding.jms` holds is judged by those who serve it.",
     ),
-    (
-        "bindingjms/InvalidJMSPriority/service.composite",
-        "What `binding.jms` holds is judged by those who serve it.",
-    ),
+    ("bindingjms/InvalidJMSPriority/service.composite", "What `binding.jms` holds is judged by those who serve it."),
     (
         "bindingjms/MissingActivationSpecName/service.composite",
         "What `binding.jms` holds is judged by those who serve it.",
@@ -236,18 +229,9 @@ const GIVEN_UP: &[(&str, &str)] = &[
         "bindingjms/MissingResponseActivationSpec/service.composite",
         "What `binding.jms` holds is judged by those who serve it.",
     ),
-    (
-        "bindingjms/MustStartWithSchema/service.composite",
-        "What `binding.jms` holds is judged by those who serve it.",
-    ),
-    (
-        "bindingjms/UnexpectedElement/service.composite",
-        "What `binding.jms` holds is judged by those who serve it.",
-    ),
-    (
-        "impl/bpel/AttributeWithoutNamespace/helloworld.composite",
-        "The process is a name that BPEL gives a meaning.",
-    ),
+    ("bindingjms/MustStartWithSchema/service.composite", "What `binding.jms` holds is judged by those who serve it."),
+    ("bindingjms/UnexpectedElement/service.composite", "What `binding.jms` holds is judged by those who serve it."),
+    ("impl/bpel/AttributeWithoutNamespace/helloworld.composite", "The process is a name that BPEL gives a meaning."),
     (
         "impl/resource/LocationAttributeMissing/resource.composite",
         "`implementation.resource` of Tuscany is judged by Tuscany.",
@@ -280,10 +264,7 @@ const GIVEN_UP: &[(&str, &str)] = &[
         "bindingjms/MissingConnectionFactoryName/service.composite",
         "What `binding.jms` holds is judged by those who serve it.",
     ),
-    (
-        "bindingjms/UnknownTokenInURI/service.composite",
-        "What `binding.jms` holds is judged by those who serve it.",
-    ),
+    ("bindingjms/UnknownTokenInURI/service.composite", "What `binding.jms` holds is judged by those who serve it."),
     (
         "impl/bpel/AttributeUnrecognizedNamespace/helloworld.composite",
         "The process is a name that BPEL gives a meaning.",
@@ -391,9 +372,8 @@ fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
 fn is_part(place: Location, value: Span, text: &str) -> bool {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let (start, end) = (place.span.start as usize, place.span.end as usize);
-    let is_cut = |before: Option<char>, behind: Option<char>| {
-        before.is_some_and(is_word) && behind.is_some_and(is_word)
-    };
+    let is_cut =
+        |before: Option<char>, behind: Option<char>| before.is_some_and(is_word) && behind.is_some_and(is_word);
     let starts = !is_cut(text[..start].chars().next_back(), text[start..].chars().next());
     let ends = !is_cut(text[..end].chars().next_back(), text[end..].chars().next());
     value.contains(place.span) && !place.span.is_empty() && starts && ends

@@ -2,8 +2,8 @@
 
 use saoms_api::host::{LoopRegistration, Registration};
 use saoms_api::{
-    Class, Component, Context, Entries, Extras, Failure, Finding, Knowledge, Loop, LoopClass, Place,
-    Properties, PropertyField, Record, Topic,
+    Class, Component, Context, Entries, Extras, Failure, Finding, Knowledge, Loop, LoopClass, Place, Properties,
+    PropertyField, Record, Topic,
 };
 use saoms_lang::registry::Registry;
 
@@ -91,20 +91,11 @@ macro_rules! idle {
                 judge(properties).map(|()| $name)
             }
 
-            fn analyze(
-                &mut self,
-                _: &mut $knowledge,
-                _: &mut Context<'_>,
-            ) -> Result<Option<Record>, Failure> {
+            fn analyze(&mut self, _: &mut $knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
                 Ok(None)
             }
 
-            fn plan(
-                &mut self,
-                _: Record,
-                _: &mut $knowledge,
-                _: &mut Context<'_>,
-            ) -> Result<Option<Record>, Failure> {
+            fn plan(&mut self, _: Record, _: &mut $knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
                 Ok(None)
             }
 

@@ -75,10 +75,8 @@ fn a_loop_of_which_nothing_changes_is_told() {
 
 #[test]
 fn values_of_loops_come_from_properties_of_the_composite() {
-    let text = cart(
-        "<saoms:loop name=\"CollisionMS\"><property name=\"patience\" source=\"$patience\"/></saoms:loop>",
-    )
-    .replacen("<component", "<property name=\"patience\">9</property><component", 1);
+    let text = cart("<saoms:loop name=\"CollisionMS\"><property name=\"patience\" source=\"$patience\"/></saoms:loop>")
+        .replacen("<component", "<property name=\"patience\">9</property><component", 1);
     assert!(loops(&text).contains("patience=Text(\"9\")\n"));
 }
 
@@ -98,10 +96,7 @@ fn names_of_loops_and_their_classes_are_known() {
   fix: replace `PathSM` with `PathMS` [4:63-69 \"PathMS\"]
 "
     );
-    assert!(
-        faults("<saoms:loop name=\"x\" class=\"example.Cart\"/>")
-            .contains("help: it is a class of components")
-    );
+    assert!(faults("<saoms:loop name=\"x\" class=\"example.Cart\"/>").contains("help: it is a class of components"));
 }
 
 #[test]
@@ -128,9 +123,7 @@ fn what_is_said_of_a_loop_makes_sense() {
 #[test]
 fn orders_lead_somewhere() {
     assert_eq!(
-        faults(
-            "<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" before=\"PathMS\"/>"
-        ),
+        faults("<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" before=\"PathMS\"/>"),
         "4:38-44 error S4504: the order of the loops `PathMS` and `BatteryMS` goes in a circle
   3:34-43 `PathMS` stands beside `BatteryMS`
   help: let one of them stand beside a loop that is not moved
@@ -143,9 +136,7 @@ fn orders_lead_somewhere() {
 "
     );
     assert_eq!(
-        faults(
-            "<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" remove=\"true\"/>"
-        ),
+        faults("<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" remove=\"true\"/>"),
         "3:34-43 error S4504: the loop `PathMS` stands beside `BatteryMS`, which is removed
   4:19-28 removed here
   help: let it stand beside another loop, or keep that one
@@ -196,7 +187,8 @@ fn loops_fit_the_component() {
   help: class `example.Cart` has the reference itself
 "
     );
-    let two = "<saoms:loop name=\"A\" class=\"example.BatterySaver\"><property name=\"threshold\">1</property></saoms:loop>";
+    let two =
+        "<saoms:loop name=\"A\" class=\"example.BatterySaver\"><property name=\"threshold\">1</property></saoms:loop>";
     assert_eq!(
         faults(&format!("{two}\n{}", two.replace("\"A\"", "\"B\""))),
         "4:29-49 error S4508: the loop `B` adds the entry `saved`, which is there already
@@ -242,24 +234,18 @@ fn properties_of_loops_are_checked_as_those_of_components() {
 fn topics_and_references_of_loops_are_those_of_the_component() {
     let renamed = "<property name=\"topicRename\">GIVEWAY,way</property>";
     assert_eq!(faults(renamed), "");
-    assert!(
-        faults(&format!("{renamed}<saoms:loop name=\"CollisionMS\" remove=\"true\"/>")).contains("S4003")
-    );
+    assert!(faults(&format!("{renamed}<saoms:loop name=\"CollisionMS\" remove=\"true\"/>")).contains("S4003"));
     assert!(faults("<property name=\"useJMS\">false</property>").contains("S4004"));
     let talker = "<saoms:loop name=\"Talker\" class=\"example.Talker\"/>";
     let said = faults(talker);
-    assert!(
-        said.contains("S4009: component `Cart` subscribes to topic `GIVEWAY` as a state topic"),
-        "{said}"
-    );
+    assert!(said.contains("S4009: component `Cart` subscribes to topic `GIVEWAY` as a state topic"), "{said}");
     assert!(said.contains("S2018"), "its reference is to be wired: {said}");
 }
 
 #[test]
 fn a_loop_is_in_the_namespace_of_saoms() {
-    let bare = fleet_1_0(&format!(
-        "<component name=\"Cart\">{CART}\n<loop name=\"PathMS\" remove=\"true\"/></component>"
-    ));
+    let bare =
+        fleet_1_0(&format!("<component name=\"Cart\">{CART}\n<loop name=\"PathMS\" remove=\"true\"/></component>"));
     assert_eq!(
         faults_of(&[&bare], &[]),
         "3:2-6 error S1004: `loop` is an element of SAOMS: it has to be in the namespace `urn:saoms:1`

@@ -15,10 +15,7 @@ static TEXTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let texts = paths.iter().filter(|path| path.extension().is_some_and(|kind| kind == "composite"));
-    texts
-        .map(|path| fs::read_to_string(path).unwrap())
-        .chain([crate::check::support::fleet(EVERYTHING)])
-        .collect()
+    texts.map(|path| fs::read_to_string(path).unwrap()).chain([crate::check::support::fleet(EVERYTHING)]).collect()
 });
 
 const EVERYTHING: &str = r#"<property name="pace">250us</property>
@@ -38,31 +35,8 @@ const EVERYTHING: &str = r#"<property name="pace">250us</property>
 
 /// What words of one text are replaced with: words that mean something elsewhere, and some that break forms.
 const WORDS: &[&str] = &[
-    "",
-    "$",
-    "$pace",
-    "$where/at/x",
-    "/",
-    "R/move",
-    "G/position/b",
-    "::",
-    ",",
-    "POSTOPIC",
-    "-1",
-    "0",
-    "1e99",
-    "é",
-    "&lt;",
-    "true",
-    "test",
-    "R",
-    "N",
-    "G/other",
-    "0..n",
-    "1..1",
-    "example.Gps",
-    "example.Fragile",
-    "localhost:0",
+    "", "$", "$pace", "$where/at/x", "/", "R/move", "G/position/b", "::", ",", "POSTOPIC", "-1", "0", "1e99", "é",
+    "&lt;", "true", "test", "R", "N", "G/other", "0..n", "1..1", "example.Gps", "example.Fragile", "localhost:0",
     "x:y",
 ];
 

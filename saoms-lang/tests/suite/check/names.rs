@@ -131,10 +131,7 @@ fn promotions_have_to_exist() {
           help: give each its own name
         2:63-64 error S2011: there is no component `X`
     "#]]
-    .assert_eq(&faults_of(
-        &[&fleet(r#"<reference name="a" promote="X"/><reference name="a" promote="X"/>"#)],
-        &[],
-    ));
+    .assert_eq(&faults_of(&[&fleet(r#"<reference name="a" promote="X"/><reference name="a" promote="X"/>"#)], &[]));
 }
 
 #[test]

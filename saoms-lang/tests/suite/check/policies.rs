@@ -14,8 +14,7 @@ fn given(text: &str) -> String {
     diagnostics.iter().map(|one| shown(one, &sources)).collect()
 }
 
-const COMPONENT: &str =
-    r#"<component name="C"><implementation.java class="a.C"/><service name="S"/></component>"#;
+const COMPONENT: &str = r#"<component name="C"><implementation.java class="a.C"/><service name="S"/></component>"#;
 
 #[test]
 fn elements_of_policies_say_what_they_are_about() {

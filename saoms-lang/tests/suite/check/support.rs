@@ -50,9 +50,7 @@ pub(crate) fn nested(
     settings: &[&str],
     assume_classes: bool,
 ) -> (Option<Assembly>, Vec<Diagnostic>, Sources) {
-    let name = |text: &str| {
-        text.split(" name=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap().to_owned()
-    };
+    let name = |text: &str| text.split(" name=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap().to_owned();
     let project = Project::new().in_memory().assume_classes(assume_classes);
     let project = project.set_all(settings.iter().copied()).text(name(texts[0]), texts[0]);
     compiled(&texts[1..].iter().fold(project, |project, text| project.other_text(name(text), *text)))
@@ -114,8 +112,7 @@ pub(crate) fn told(diagnostics: &[Diagnostic], sources: &Sources) -> String {
 
 /// One diagnostic, a line for each part of it.
 pub(crate) fn shown(one: &Diagnostic, sources: &Sources) -> String {
-    let mut out =
-        format!("{} {} {}: {}\n", at(one.location, sources), one.severity.name(), one.code.id, one.message);
+    let mut out = format!("{} {} {}: {}\n", at(one.location, sources), one.severity.name(), one.code.id, one.message);
     for label in &one.labels {
         let _ = writeln!(out, "  {} {}", at(label.location, sources), label.text);
     }

@@ -77,7 +77,8 @@ fn topic_renames() {
         &#80;OSTOPIC,a::POSTOPIC,b
         3:46-54 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
           3:30-42 first here
-    "#]].assert_eq(&all);
+    "#]]
+    .assert_eq(&all);
 }
 
 #[test]
@@ -92,17 +93,8 @@ fn addresses_of_message_brokers() {
         assert!(!found.contains("error"), "{elsewhere}: {found}");
     }
     let all: String = [
-        "localhost",
-        "localhost:",
-        ":61616",
-        "localhost:0",
-        "localhost:65536",
-        "localhost:6161x",
-        "tcp://localhost:61616",
-        "::1:61616",
-        "local host:1",
-        "[::g]:1",
-        "localhost:+1",
+        "localhost", "localhost:", ":61616", "localhost:0", "localhost:65536", "localhost:6161x",
+        "tcp://localhost:61616", "::1:61616", "local host:1", "[::g]:1", "localhost:+1",
     ]
     .map(|text| format!("{text}\n{}", url(text)))
     .concat();
@@ -184,7 +176,8 @@ fn settings_that_do_not_go_together() {
         3:27-32 warning S4007: the deadline of 150ms is behind the period of 100ms: the next execution is due before it
           2:124-127 the period
           help: a deadline is at most the period
-    "#]].assert_eq(&robot(r#"<property name="deadline">150ms</property>"#));
+    "#]]
+    .assert_eq(&robot(r#"<property name="deadline">150ms</property>"#));
     expect![[r#"
         3:31-32 warning S4008: `restartLimit` has no effect: the component is never restarted
           help: set `restart` to `onFailure`
@@ -204,16 +197,11 @@ fn settings_that_do_not_go_together() {
         3:27-33 warning S4006: `password` is given without `user`
           help: give both, or neither
     "#]]
-    .assert_eq(&robot(
-        r#"<property name="password">secret</property><property name="url">localhost:1</property>"#,
-    ));
+    .assert_eq(&robot(r#"<property name="password">secret</property><property name="url">localhost:1</property>"#));
     expect![[r#"
         3:23-25 warning S4006: `user` and `password` have no effect: there is no `url` of a message broker
           help: give the `url` of the broker, or leave them out
     "#]]
     .assert_eq(&robot(r#"<property name="user">me</property><property name="password">secret</property>"#));
-    assert_eq!(
-        robot(r#"<property name="restart">onFailure</property><property name="restartLimit">3</property>"#),
-        ""
-    );
+    assert_eq!(robot(r#"<property name="restart">onFailure</property><property name="restartLimit">3</property>"#), "");
 }

@@ -149,10 +149,7 @@ fn values_are_written_as_their_types_ask_for() {
     assert_eq!(all(&right), "");
     let told = all(&wrong);
     for (place, one) in wrong.iter().enumerate() {
-        assert!(
-            told.contains(&format!("error S2042: the property `p{place}` is of the type")),
-            "{one:?}\n{told}"
-        );
+        assert!(told.contains(&format!("error S2042: the property `p{place}` is of the type")), "{one:?}\n{told}");
     }
     expect![[r#"
         3:60-61 error S2042: the property `p0` is of the type `xsd:duration`: found `5`, expected a duration such as `PT1H30M`
@@ -200,6 +197,7 @@ fn what_its_implementation_wires_nothing_else_wires() {
         7:15-18 error S2038: reference `d` is wired by its implementation, and starts a wire
           4:90-94 said here
           help: remove the target, or `wiredByImpl`
-    "#]].assert_eq(&found(inside, &[], true));
+    "#]]
+    .assert_eq(&found(inside, &[], true));
     assert!(!found(&inside.replace("='true' target", "='0' target"), &[], true).contains("`a`"));
 }

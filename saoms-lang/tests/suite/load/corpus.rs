@@ -60,14 +60,8 @@ fn files_that_are_invalid_by_the_vocabulary_have_an_error_there() {
     let Some(folder) = collection() else { return };
     let samples = files::all();
     for (path, expected) in [
-        (
-            "itest/validation/src/main/resources/XsdValidation/Calculator.composite",
-            "error S1005 [binding.ws]",
-        ),
-        (
-            "assemblyxml/UnexpectedImplementationElement/Calculator.composite",
-            "error S1005 [implementation.java]",
-        ),
+        ("itest/validation/src/main/resources/XsdValidation/Calculator.composite", "error S1005 [binding.ws]"),
+        ("assemblyxml/UnexpectedImplementationElement/Calculator.composite", "error S1005 [implementation.java]"),
         ("contribution/java/AttributePackageMissing/Calculator.composite", "error S1004 [export.java]"),
         ("DuplicateImplementationPropertyName/Calculator.composite", "error S1005 [property]"),
         ("DuplicateImplementationReferenceName/Calculator.composite", "error S1005 [reference]"),

@@ -150,8 +150,7 @@ fn only_files_of_sca_are_definitions() {
 
 #[test]
 fn a_file_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
-    let damaged =
-        definitions(OASIS, "<intent name=safe/>\n<intent/>\n<policySet nam='both'/>\n</definition>");
+    let damaged = definitions(OASIS, "<intent name=safe/>\n<intent/>\n<policySet nam='both'/>\n</definition>");
     expect![[r#"
         definitions.xml:2:14 [safe] error S0105 the value of `name` is not in quotes
           put it in quotes
@@ -162,5 +161,6 @@ fn a_file_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
         definitions.xml:5:1 [</definition>] error S0102 `</definition>` found where `</definitions>` is expected
           replace it with `</definitions>`
         definitions.xml:6:1 [</definitions>] error S0102 `</definitions>` closes nothing: no element is open
-    "#]].assert_eq(&alone("definitions.xml", damaged));
+    "#]]
+    .assert_eq(&alone("definitions.xml", damaged));
 }

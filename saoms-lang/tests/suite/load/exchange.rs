@@ -23,10 +23,7 @@ fn all_that_the_schemas_allow_is_right() {
         ("META-INF/sca-contribution.xml", description(OASIS, &inside.replace("t:fleet", "x:fleet"))),
         ("fleet.composite", composite("urn:airport")),
         ("more.composite", composite("urn:x")),
-        (
-            "w/t.xsd",
-            "<schema targetNamespace='urn:types' xmlns='http://www.w3.org/2001/XMLSchema'/>".to_owned(),
-        ),
+        ("w/t.xsd", "<schema targetNamespace='urn:types' xmlns='http://www.w3.org/2001/XMLSchema'/>".to_owned()),
         ("w/d.wsdl", "<definitions targetNamespace='urn:desk'/>".to_owned()),
     ];
     expect![""].assert_eq(&of_folder(&files));
@@ -83,8 +80,7 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
 #[test]
 fn what_is_said_twice_is_told() {
     let inside = "<import namespace='urn:a'/><import namespace='urn:a' location='http://x'/><import namespace='urn:a'/><export.java package='a'/><export.java package='a'/><export namespace='urn:t'/><export namespace='urn:t'/>";
-    let files =
-        [("sca-contribution.xml", description(OASIS, inside)), ("fleet.composite", composite("urn:t"))];
+    let files = [("sca-contribution.xml", description(OASIS, inside)), ("fleet.composite", composite("urn:t"))];
     expect![[r#"
         sca-contribution.xml:2:94 [urn:a] warning S1011 `urn:a` is imported twice
           keep one of them
@@ -98,24 +94,23 @@ fn what_is_said_twice_is_told() {
 
 #[test]
 fn what_is_exported_is_there() {
-    let inside =
-        "<export namespace='urn:airprt'/><export namespace='urn:other'/><export namespace='urn:airport'/>";
-    let mut files = vec![
-        ("sca-contribution.xml", description(OASIS, inside)),
-        ("fleet.composite", composite("urn:airport")),
-    ];
+    let inside = "<export namespace='urn:airprt'/><export namespace='urn:other'/><export namespace='urn:airport'/>";
+    let mut files =
+        vec![("sca-contribution.xml", description(OASIS, inside)), ("fleet.composite", composite("urn:airport"))];
     expect![[r#"
         sca-contribution.xml:2:20 [urn:airprt] warning S2059 the contribution has nothing of the namespace `urn:airprt`
           replace `urn:airprt` with `urn:airport`
         sca-contribution.xml:2:52 [urn:other] warning S2059 the contribution has nothing of the namespace `urn:other`
           it has `urn:airport`
-    "#]].assert_eq(&of_folder(&files));
+    "#]]
+    .assert_eq(&of_folder(&files));
     // A file of another kind may have the other one.
     files.push(("made.bpel", "<process/>".to_owned()));
     expect![[r#"
         sca-contribution.xml:2:20 [urn:airprt] warning S2059 the contribution has nothing of the namespace `urn:airprt`
           replace `urn:airprt` with `urn:airport`
-    "#]].assert_eq(&of_folder(&files));
+    "#]]
+    .assert_eq(&of_folder(&files));
     // Composites may be put beside it later.
     files.remove(1);
     assert!(!of_folder(&files).contains("S2059"));

@@ -120,10 +120,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
     // Real ones have this, as composites do.
     let with_namespace = description("").replace("<contribution", "<contribution targetNamespace='urn:a'");
     assert_eq!(
-        fleets(&[
-            ("sca-contribution.xml", with_namespace),
-            ("fleet.composite", composite("urn:a", "fleet", ""))
-        ]),
+        fleets(&[("sca-contribution.xml", with_namespace), ("fleet.composite", composite("urn:a", "fleet", ""))]),
         "fleet.composite\n"
     );
     expect![[r#"
@@ -199,17 +196,16 @@ fn what_a_tool_says_of_a_contribution_is_added_to_what_its_author_says() {
         four.composite
         META-INF/sca-contribution-generated.xml:2:86 [a:on] error S2051 the contribution has no composite `a:on`
           replace `a:on` with `a:one`
-    "#]].assert_eq(&fleets(&files));
-    files.push((
-        "sca-contribution.xml",
-        deployables(&["a:two"]).replace("</", "<export namespace='urn:a'/></"),
-    ));
+    "#]]
+    .assert_eq(&fleets(&files));
+    files.push(("sca-contribution.xml", deployables(&["a:two"]).replace("</", "<export namespace='urn:a'/></")));
     expect![[r#"
         two.composite + one.composite + META-INF/sca-deployables/three.composite runs
         four.composite
         META-INF/sca-contribution-generated.xml:2:86 [a:on] error S2051 the contribution has no composite `a:on`
           replace `a:on` with `a:one`
-    "#]].assert_eq(&fleets(&files));
+    "#]]
+    .assert_eq(&fleets(&files));
     // The folder alone makes a contribution of what is around it.
     let folder = [
         ("META-INF/sca-deployables/fleet.composite", composite("urn:a", "fleet", "<include name='a:hall'/>")),

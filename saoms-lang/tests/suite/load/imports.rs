@@ -48,10 +48,7 @@ fn what_is_not_imported_says_what_is_lacking() {
     "#]]
     .assert_eq(&between("", "<export namespace='urn:c'/>"));
     let files = [
-        (
-            "sca-contribution.xml",
-            description("<import namespace='urn:a'/><import/><import namespace='urn:unused'/>"),
-        ),
+        ("sca-contribution.xml", description("<import namespace='urn:a'/><import/><import namespace='urn:unused'/>")),
         ("fleet.composite", composite("urn:c", "fleet", "<include name='a:hall'/><include name='b:hall'/>")),
     ];
     expect![[r#"

@@ -98,7 +98,8 @@ fn a_description_above_makes_its_folder_the_contribution() {
             ("a/b/fleet.composite", composite("urn:a", "fleet", "<include name='b:hall'/>")),
             ("c/hall.composite", composite("urn:b", "hall", "<include name='a:fleet'/>")),
         ];
-        let expected = "a/b/fleet.composite: b:hall -> c/hall.composite\nc/hall.composite: a:fleet -> a/b/fleet.composite\n";
+        let expected =
+            "a/b/fleet.composite: b:hall -> c/hall.composite\nc/hall.composite: a:fleet -> a/b/fleet.composite\n";
         assert_eq!(links(&files, "a/b/fleet.composite"), expected);
     }
 }
@@ -160,8 +161,7 @@ fn thousands_of_composites_that_one_names_are_found_each_at_once() {
     let includes: String = (0..ALL).rev().map(|number| format!("<include name='a:c{number}'/>")).collect();
     write("fleet.composite", text("urn:a", "fleet", &includes));
     write("sca-contribution.xml", "<contribution xmlns='http://www.osoa.org/xmlns/sca/1.0'/>".to_owned());
-    let (all, _, diagnostics) =
-        loaded_with_named(&folder.path().join("fleet.composite"), OpenTexts::default());
+    let (all, _, diagnostics) = loaded_with_named(&folder.path().join("fleet.composite"), OpenTexts::default());
     for include in &all.asked_for()[0].includes {
         let name = include.name.as_str().trim_start_matches("a:");
         let number: usize = name[1..].parse().unwrap();
@@ -194,7 +194,8 @@ fn what_an_editor_holds_counts_in_place_of_files() {
     fs::write(path("outer.composite"), composite("urn:a", "outer", "<include name='other'/>")).unwrap();
     fs::write(path("inner.composite"), composite("urn:a", "inner", "")).unwrap();
     fs::write(path("value.txt"), "saved").unwrap();
-    let component = "<component name='c'><implementation.java class='C'/><property name='p' file='value.txt'/></component>";
+    let component =
+        "<component name='c'><implementation.java class='C'/><property name='p' file='value.txt'/></component>";
     let inside = format!("<include name='inner'/><include name='new'/>{component}");
     let mut open = OpenTexts::default();
     open.insert(&path("./outer.composite"), composite("urn:a", "outer", &inside));
@@ -211,8 +212,7 @@ fn what_an_editor_holds_counts_in_place_of_files() {
 
 #[test]
 fn of_two_composites_of_one_name_in_a_folder_one_is_taken_and_both_are_told() {
-    let twice =
-        "<include name='a:hall'/><component name='h'><implementation.composite name='a:hall'/></component>";
+    let twice = "<include name='a:hall'/><component name='h'><implementation.composite name='a:hall'/></component>";
     let files = [
         ("fleet.composite", composite("urn:a", "fleet", twice)),
         ("hall.composite", composite("urn:a", "hall", "")),
@@ -227,8 +227,7 @@ fn of_two_composites_of_one_name_in_a_folder_one_is_taken_and_both_are_told() {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, text).unwrap();
     }
-    let (_, sources, diagnostics) =
-        loaded_with_named(&folder.path().join("fleet.composite"), OpenTexts::default());
+    let (_, sources, diagnostics) = loaded_with_named(&folder.path().join("fleet.composite"), OpenTexts::default());
     let found: Vec<_> = diagnostics
         .iter()
         .map(|one| (one.code.id, one.severity.name(), sources.snippet(one.location), one.message.as_str()))
@@ -256,10 +255,8 @@ fn what_a_composite_names_is_no_pipe_and_no_device() {
     let properties = &all.composites()[0].components[0].properties;
     assert_eq!(properties[2].from_file().unwrap(), &"7", "links lead to files");
     assert!(matches!(all.link(all.composites()[0].includes[0].origin), Some(Link::Missing(_))));
-    let found: Vec<_> = diagnostics
-        .iter()
-        .map(|one| (one.code.id, sources.snippet(one.location), one.message.as_str()))
-        .collect();
+    let found: Vec<_> =
+        diagnostics.iter().map(|one| (one.code.id, sources.snippet(one.location), one.message.as_str())).collect();
     let message = "the file cannot be read: it is no regular file";
     assert_eq!(found, ["pipe", "/dev/zero", "pipe"].map(|at| ("S0003", at, message)));
 }

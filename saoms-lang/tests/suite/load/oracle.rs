@@ -75,11 +75,7 @@ fn theirs(text: &str) -> Option<String> {
     for element in document.descendants().filter(roxmltree::Node::is_element) {
         let parent = element.parent_element().map(|parent| parent.range().start);
         let namespace = element.tag_name().namespace().unwrap_or("");
-        out.push_str(&format!(
-            "{:?} {parent:?} {{{namespace}}}{}",
-            element.range(),
-            element.tag_name().name()
-        ));
+        out.push_str(&format!("{:?} {parent:?} {{{namespace}}}{}", element.range(), element.tag_name().name()));
         for attribute in element.attributes() {
             out.push_str(&format!(
                 " {:?} {{{}}}{}={:?} {:?}",
@@ -94,8 +90,7 @@ fn theirs(text: &str) -> Option<String> {
             let prefix = Some(prefix).filter(|prefix| !prefix.is_empty());
             element.lookup_namespace_uri(prefix).filter(|uri| !uri.is_empty())
         });
-        let text: String =
-            element.children().filter(roxmltree::Node::is_text).filter_map(|one| one.text()).collect();
+        let text: String = element.children().filter(roxmltree::Node::is_text).filter_map(|one| one.text()).collect();
         // It leaves a lone carriage return beside a reference as it is; XML 1.0, 2.11 wants a line feed.
         let text = text.replace('\r', "\n");
         out.push_str(&format!(

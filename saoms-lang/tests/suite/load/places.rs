@@ -43,10 +43,7 @@ pub(crate) fn checked(name: &str, text: &str) -> Vec<String> {
     human(&found, &sources, false);
     json(&found, &sources);
     let shown = |location: Location| sources.snippet(location).to_owned();
-    found
-        .iter()
-        .map(|one| format!("{} {} [{}]", one.severity.name(), one.code.id, shown(one.location)))
-        .collect()
+    found.iter().map(|one| format!("{} {} [{}]", one.severity.name(), one.code.id, shown(one.location))).collect()
 }
 
 /// The places of all names, attributes, values and texts of a well-formed text.
@@ -58,10 +55,7 @@ fn places(text: &str) -> Option<HashSet<Span>> {
         let slice = |span: Span| &text[span.start as usize..span.end as usize];
         assert_eq!(slice(element.name_span()), element.name());
         assert!(element.end_name_span().is_none_or(|end| slice(end) == element.name()));
-        assert!(
-            slice(element.start_tag_span()).starts_with('<')
-                && slice(element.start_tag_span()).ends_with('>')
-        );
+        assert!(slice(element.start_tag_span()).starts_with('<') && slice(element.start_tag_span()).ends_with('>'));
         assert_eq!(document.element_at(element.span().start + 1).id(), element.id());
         all.insert(element.name_span());
         all.extend(element.text_span());
@@ -117,9 +111,7 @@ fn property<'a>(property: &'a Property, all: &mut Vec<&'a Text>) {
     all.extend(property.value());
     // Text between markup is longer in the file than in the model.
     all.extend(property.text().into_iter().filter(|_| property.content().is_empty()));
-    all.extend(
-        [property.r#type(), property.element(), property.source(), property.file()].into_iter().flatten(),
-    );
+    all.extend([property.r#type(), property.element(), property.source(), property.file()].into_iter().flatten());
     all.extend(property.values().iter().filter(|one| one.content.is_empty()).map(|one| &one.text));
 }
 

@@ -50,14 +50,7 @@ pub(crate) fn shown(folder: &Path, sources: &Sources, diagnostics: Diagnostics) 
         let file = sources.get(one.location.file);
         let at = file.line_column(one.location.span.start);
         let (severity, code, what) = (one.severity.name(), one.code.id, sources.snippet(one.location));
-        let _ = writeln!(
-            out,
-            "{}:{}:{} [{what}] {severity} {code} {}",
-            file.path(),
-            at.line,
-            at.column,
-            one.message
-        );
+        let _ = writeln!(out, "{}:{}:{} [{what}] {severity} {code} {}", file.path(), at.line, at.column, one.message);
         one.help.iter().for_each(|help| _ = writeln!(out, "  {help}"));
         one.suggestions.iter().for_each(|one| _ = writeln!(out, "  {}", one.description));
     }

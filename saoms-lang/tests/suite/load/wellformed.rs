@@ -113,17 +113,8 @@ enum Step {
 const NAMES: [&str; 6] = ["a", "b", "ab", "p:a", "p:b", "q:a"];
 /// Attributes, some of which say what a prefix stands for in the tag and in what is in it.
 const ATTRIBUTES: [&str; 11] = [
-    " x='1'",
-    " xy='22'",
-    " p:x='1'",
-    "\n  q:x=\"\"",
-    " y='&lt;'",
-    " z='a b'",
-    " xmlns='d'",
-    " xmlns='e'",
-    " xmlns:p='u'",
-    " xmlns:p='w'",
-    " xmlns:q='u'",
+    " x='1'", " xy='22'", " p:x='1'", "\n  q:x=\"\"", " y='&lt;'", " z='a b'", " xmlns='d'", " xmlns='e'",
+    " xmlns:p='u'", " xmlns:p='w'", " xmlns:q='u'",
 ];
 
 fn step() -> impl Strategy<Value = Step> {

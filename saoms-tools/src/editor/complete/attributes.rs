@@ -19,8 +19,7 @@ pub(super) fn complete(scene: &Scene, element: Element<'_>, name: &Range<usize>)
     let is_here = |one: &Attribute<'_>| bytes(one.name_span()) == *name;
     // One that has its value already gets another name and nothing else.
     let has_value = element.written_attributes().any(|one| is_here(&one) && one.has_value());
-    let is_taken =
-        |written: &str| element.written_attributes().any(|one| !is_here(&one) && one.name() == written);
+    let is_taken = |written: &str| element.written_attributes().any(|one| !is_here(&one) && one.name() == written);
     let version = version(&file.document);
     let own = Own::at(scene, element.id());
     let added = own.iter().flat_map(|own| {

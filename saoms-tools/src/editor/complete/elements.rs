@@ -18,15 +18,8 @@ use crate::editor::syntax::{Places, prefix, root as root_of};
 
 /// Those that most files have come first.
 const USUAL: &[&str] = &[
-    "deployable",
-    "implementation.java",
-    "implementation.composite",
-    "component",
-    "property",
-    "reference",
-    "service",
-    "wire",
-    "include",
+    "deployable", "implementation.java", "implementation.composite", "component", "property", "reference", "service",
+    "wire", "include",
 ];
 
 /// The names behind a `<`.
@@ -37,8 +30,7 @@ pub(super) fn in_tag(
     name: &Range<usize>,
 ) -> Vec<Proposal> {
     // An element that has its attributes or its end gets another name and nothing else.
-    let is_new =
-        element.is_none_or(|one| !one.has_whole_start_tag() && one.written_attributes().next().is_none());
+    let is_new = element.is_none_or(|one| !one.has_whole_start_tag() && one.written_attributes().next().is_none());
     let start = element.map_or(name.start - 1, |one| one.tag().start);
     let range = start..name.end;
     let found = proposals(scene, parent, &range);
@@ -55,12 +47,7 @@ pub(super) fn in_content(scene: &Scene, parent: Option<Element<'_>>, at: usize) 
 }
 
 /// The end tag of an element.
-pub(super) fn end(
-    scene: &Scene,
-    element: Option<Element<'_>>,
-    name: &Range<usize>,
-    at: usize,
-) -> Vec<Proposal> {
+pub(super) fn end(scene: &Scene, element: Option<Element<'_>>, name: &Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     let Some(element) = element else { return Vec::new() };
     let wanted = element.name();
@@ -146,11 +133,7 @@ fn element(parent: &'static Kind, name: &'static str, written: &str, range: &Ran
     };
     let first = kind.map_or(doc.as_str(), |kind| kind.doc);
     let detail = first.split_inclusive('.').next().unwrap_or_default().trim_end_matches('.');
-    Proposal::new(written, ProposalKind::Class, range)
-        .detail(detail)
-        .doc(doc.clone())
-        .rank(rank)
-        .snippet(snippet)
+    Proposal::new(written, ProposalKind::Class, range).detail(detail).doc(doc.clone()).rank(rank).snippet(snippet)
 }
 
 /// The root of a new file.
@@ -158,9 +141,7 @@ fn root(scene: &Scene, range: &Range<usize>) -> Proposal {
     let namespace = Version::Oasis200912.namespace();
     let name = scene.file().path.file_name().unwrap_or_default();
     if name == "sca-contribution.xml" {
-        let text = format!(
-            "<contribution xmlns=\"{namespace}\">\n  <deployable composite=\"$1\"/>\n</contribution>"
-        );
+        let text = format!("<contribution xmlns=\"{namespace}\">\n  <deployable composite=\"$1\"/>\n</contribution>");
         let one = Proposal::new(CONTRIBUTION.name, ProposalKind::Class, range);
         return one.doc(describe::element(&CONTRIBUTION)).snippet(text);
     }

@@ -83,8 +83,7 @@ pub(super) fn complete(
             _ => Vec::new(),
         };
         let mut add = |name: String, detail: &str, rank: u8| {
-            let named =
-                |label| Proposal::new(label, ProposalKind::Variable, &range).detail(detail).rank(rank);
+            let named = |label| Proposal::new(label, ProposalKind::Variable, &range).detail(detail).rank(rank);
             match &parts[..] {
                 [] => all.push(named(name)),
                 parts => all.extend(parts.iter().map(|part| named(format!("{name}/{part}")))),

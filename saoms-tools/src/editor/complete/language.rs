@@ -12,16 +12,11 @@ use crate::editor::scene::outline::Component;
 use crate::editor::syntax::Places;
 
 /// The language of the text in a property of a component of a file.
-pub(super) fn of_property(
-    scene: &Scene,
-    file: usize,
-    property: ElementId,
-) -> Option<&'static PropertyLanguage> {
+pub(super) fn of_property(scene: &Scene, file: usize, property: ElementId) -> Option<&'static PropertyLanguage> {
     let of = &scene.files[file];
     let name = &of.text[of.element(property).value("name")?];
     let component = scene.component_in(file, property)?;
-    PropertyLanguage::linked()
-        .find(|language| language.property == name && is_a(scene, component, language.class))
+    PropertyLanguage::linked().find(|language| language.property == name && is_a(scene, component, language.class))
 }
 
 fn is_a(scene: &Scene, component: &Component, class: &str) -> bool {

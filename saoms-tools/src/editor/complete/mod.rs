@@ -19,8 +19,8 @@ use std::ops::Range;
 
 use saoms_lang::diagnostic::SeverityLevel;
 use saoms_lang::load::vocabulary::{
-    BINDING_SCA, COMPONENT, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE,
-    COMPOSITE_SERVICE, Holds, own_attributes,
+    BINDING_SCA, COMPONENT, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE,
+    Holds, own_attributes,
 };
 use saoms_lang::model::Multiplicity;
 use saoms_lang::syntax::{Element, ElementId};
@@ -62,13 +62,10 @@ fn entities(scene: &Scene, at: usize) -> Option<Vec<Proposal>> {
     let text = &scene.file().text;
     let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '#';
     let start = text[..at].trim_end_matches(is_part).strip_suffix('&')?.len();
-    let can_be =
-        matches!(scene.file().cursor(at), Cursor::Text { parent: Some(_) } | Cursor::AttributeValue { .. });
+    let can_be = matches!(scene.file().cursor(at), Cursor::Text { parent: Some(_) } | Cursor::AttributeValue { .. });
     let behind = text[at..].len() - text[at..].trim_start_matches(is_part).len();
     let end = at + behind + usize::from(text[at + behind..].starts_with(';'));
-    let one = |(name, meant): (&str, &str)| {
-        Proposal::new(name, ProposalKind::Constant, &(start..end)).detail(meant)
-    };
+    let one = |(name, meant): (&str, &str)| Proposal::new(name, ProposalKind::Constant, &(start..end)).detail(meant);
     can_be.then(|| ENTITIES.map(one).into())
 }
 
@@ -83,8 +80,7 @@ fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
         components.iter().find_map(|one| {
             let property = one.files.iter().find(|name| scene.is_first(file, name))?;
             let whole = 0..scene.file().text.len();
-            if let Some(inside) = one.is_replicated.then(|| template(scene, file, one, &whole, at)).flatten()
-            {
+            if let Some(inside) = one.is_replicated.then(|| template(scene, file, one, &whole, at)).flatten() {
                 return Some(inside);
             }
             let language = language::of_property(scene, file, property.element)?;
@@ -220,9 +216,7 @@ fn in_text(scene: &Scene, parent: Option<Element<'_>>, at: usize) -> Vec<Proposa
         return inside;
     }
     match file.kind(property) {
-        Some(kind) if std::ptr::eq(kind, &COMPOSITE_PROPERTY) => {
-            values::of_parameter(scene, property, range, at)
-        }
+        Some(kind) if std::ptr::eq(kind, &COMPOSITE_PROPERTY) => values::of_parameter(scene, property, range, at),
         _ => values::complete(scene, property, range, at),
     }
 }

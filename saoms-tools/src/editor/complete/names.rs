@@ -81,10 +81,7 @@ pub(super) fn properties(scene: &Scene, element: ElementId, range: &Range<usize>
 }
 
 /// The declared properties that a component lacks, each with what its class's name presets.
-pub(super) fn missing_properties(
-    scene: &Scene,
-    component: ElementId,
-) -> Vec<(&PropertyDeclaration, Option<&str>)> {
+pub(super) fn missing_properties(scene: &Scene, component: ElementId) -> Vec<(&PropertyDeclaration, Option<&str>)> {
     let given = given(scene, component, component);
     let all = declared(scene, component).into_iter();
     all.filter(|(one, preset)| preset.is_none() && !given.contains(&one.name.as_str())).collect()
@@ -104,20 +101,12 @@ pub(crate) fn declared(scene: &Scene, element: ElementId) -> Vec<(&PropertyDecla
 }
 
 /// The same of any file.
-pub(super) fn declared_in(
-    scene: &Scene,
-    file: usize,
-    element: ElementId,
-) -> Vec<(&PropertyDeclaration, Option<&str>)> {
+pub(super) fn declared_in(scene: &Scene, file: usize, element: ElementId) -> Vec<(&PropertyDeclaration, Option<&str>)> {
     let Some(component) = scene.component_in(file, element) else { return Vec::new() };
     if let Some(one) = component.loops.iter().find(|one| one.name.element == element) {
         let class = scene.class_of_loop((file, component), one);
         let class = class.and_then(|class| scene.registry.get_loop(&class));
-        return class
-            .into_iter()
-            .flat_map(|class| &class.declaration().properties)
-            .map(|one| (one, None))
-            .collect();
+        return class.into_iter().flat_map(|class| &class.declaration().properties).map(|one| (one, None)).collect();
     }
     let Some(class) = scene.class(component) else { return Vec::new() };
     let all = describe::properties(class.declaration());
@@ -125,12 +114,7 @@ pub(super) fn declared_in(
 }
 
 /// The names of loops: for `name` those that can be changed and are not yet, for `before` and `after` all others.
-pub(super) fn loops(
-    scene: &Scene,
-    element: ElementId,
-    attribute: &str,
-    range: &Range<usize>,
-) -> Vec<Proposal> {
+pub(super) fn loops(scene: &Scene, element: ElementId, attribute: &str, range: &Range<usize>) -> Vec<Proposal> {
     let Some(component) = scene.component_around(element) else { return Vec::new() };
     let is_own = |one: &&Loop| one.name.element == element;
     let others: Vec<&str> =
@@ -178,9 +162,11 @@ pub(super) fn contracts<'s>(all: impl Iterator<Item = Contract<'s>>, range: &Ran
     all.map(|one| {
         let interface = one.interface.map(|interface| interface.name.as_str());
         let facts: Vec<&str> = interface.into_iter().chain(one.multiplicity).collect();
-        Proposal::new(one.name, ProposalKind::Interface, range)
-            .detail(facts.join(", "))
-            .rank(if one.is_of_host { 6 } else { 5 })
+        Proposal::new(one.name, ProposalKind::Interface, range).detail(facts.join(", ")).rank(if one.is_of_host {
+            6
+        } else {
+            5
+        })
     })
     .collect()
 }
@@ -191,12 +177,10 @@ pub(super) fn interfaces(scene: &Scene, element: ElementId, range: &Range<usize>
     let own = file.element(element).parent().and_then(|contract| {
         let name = &file.text[contract.value("name")?];
         let of = (0, scene.component_around(contract.id())?);
-        let found =
-            [Side::Service, Side::Reference].into_iter().find_map(|side| scene.contract(of, side, name));
+        let found = [Side::Service, Side::Reference].into_iter().find_map(|side| scene.contract(of, side, name));
         Some(&found?.interface?.name)
     });
-    let all: BTreeSet<&str> =
-        scene.registry.iter().flat_map(|class| interfaces_of(class.declaration())).collect();
+    let all: BTreeSet<&str> = scene.registry.iter().flat_map(|class| interfaces_of(class.declaration())).collect();
     let rank = |name: &str| if own.is_some_and(|own: &String| own == name) { 0 } else { 5 };
     all.iter().map(|name| Proposal::new(*name, ProposalKind::Interface, range).rank(rank(name))).collect()
 }
@@ -215,8 +199,7 @@ pub(super) fn composites(scene: &Scene, element: ElementId, range: &Range<usize>
     let root = root_name_end(&file.document);
     let default = file.element(element).resolve_prefix("");
     // What a contribution runs is its own.
-    let is_hidden =
-        |place: usize| scene.imports_this(place) || file.is_description() && scene.is_imported(place);
+    let is_hidden = |place: usize| scene.imports_this(place) || file.is_description() && scene.is_imported(place);
     let others = scene.files.iter().enumerate().skip(1).filter(|(place, _)| !is_hidden(*place));
     others
         .filter_map(|(place, other)| {
@@ -231,9 +214,7 @@ pub(super) fn composites(scene: &Scene, element: ElementId, range: &Range<usize>
             let leads = scene.composite(0, &meant) == Some(place);
             let shown = other.path.file_name().unwrap_or_default().to_string_lossy();
             let one = |written: String| {
-                Proposal::new(written, ProposalKind::Module, range)
-                    .detail(shown)
-                    .doc(format!("`{namespace}`"))
+                Proposal::new(written, ProposalKind::Module, range).detail(shown).doc(format!("`{namespace}`"))
             };
             match root {
                 _ if deployed.contains(&place) => None,
@@ -292,11 +273,7 @@ pub(super) fn sources(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
 
 /// The names of expressions: the properties of the composite, each with its value, and the index of a component that is
 /// replicated.
-pub(super) fn parameters(
-    scene: &Scene,
-    replicated: Option<&Component>,
-    range: &Range<usize>,
-) -> Vec<Proposal> {
+pub(super) fn parameters(scene: &Scene, replicated: Option<&Component>, range: &Range<usize>) -> Vec<Proposal> {
     parameters_of(scene, 0, replicated, range)
 }
 
@@ -309,9 +286,11 @@ pub(super) fn parameters_of(
 ) -> Vec<Proposal> {
     let mut all = of_composite(scene, file, "", range);
     all.retain(|one| is_name(&one.label));
-    all.extend(replicated.map(|_| {
-        Proposal::new(INDEX, ProposalKind::Variable, range).detail("what replicas are counted by").rank(4)
-    }));
+    all.extend(
+        replicated.map(|_| {
+            Proposal::new(INDEX, ProposalKind::Variable, range).detail("what replicas are counted by").rank(4)
+        }),
+    );
     all
 }
 

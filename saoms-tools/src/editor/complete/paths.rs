@@ -17,12 +17,7 @@ use crate::editor::scene::outline::{Component, Implementation};
 const MOST: usize = 2_000;
 
 /// The files that a value can name, folder by folder: those for which `fits` says so.
-pub(super) fn complete(
-    scene: &Scene,
-    value: &Range<usize>,
-    at: usize,
-    fits: fn(&Path) -> bool,
-) -> Vec<Proposal> {
+pub(super) fn complete(scene: &Scene, value: &Range<usize>, at: usize, fits: fn(&Path) -> bool) -> Vec<Proposal> {
     let file = scene.file();
     let typed = &file.text[value.start..at];
     let inner = typed.rfind('/').map_or(0, |slash| slash + 1);

@@ -67,8 +67,8 @@ fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Proposal>
     let mut paths = paths(operand.strip_suffix('!').unwrap_or(operand).trim_end())?;
     let path = paths.pop()?;
     let (start, steps) = split(path, scene, around(scene, paths));
-    let (steps, last) = steps
-        .map(|steps| steps.rsplit_once('/').map_or((None, steps), |(steps, last)| (Some(steps), last)))?;
+    let (steps, last) =
+        steps.map(|steps| steps.rsplit_once('/').map_or((None, steps), |(steps, last)| (Some(steps), last)))?;
     let here = match steps {
         Some(steps) => walk(scene, start, steps.split('/')),
         None => start,
@@ -228,17 +228,16 @@ fn named(scene: &Scene, of: &[Part], name: &str) -> Vec<Part> {
 }
 
 fn children(scene: &Scene, of: &[Part]) -> impl Iterator<Item = Part> {
-    let all = of
-        .iter()
-        .flat_map(|&(file, one)| scene.files[file].element(one).children().map(move |one| (file, one.id())));
+    let all =
+        of.iter().flat_map(|&(file, one)| scene.files[file].element(one).children().map(move |one| (file, one.id())));
     all.take(MOST)
 }
 
 /// Elements with all that is inside them.
 fn descendants(scene: &Scene, of: &[Part]) -> Vec<Part> {
-    let all = of.iter().flat_map(|&(file, one)| {
-        scene.files[file].element(one).descendants().map(move |one| (file, one.id()))
-    });
+    let all = of
+        .iter()
+        .flat_map(|&(file, one)| scene.files[file].element(one).descendants().map(move |one| (file, one.id())));
     all.take(MOST).collect()
 }
 

@@ -20,8 +20,7 @@ const MOST: i64 = 200;
 pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec<Proposal> {
     let text = &scene.file().text;
     let lines = lines(text);
-    let Some(line) = lines.iter().position(|line| line.last().is_some_and(|last| at <= last.whole.end))
-    else {
+    let Some(line) = lines.iter().position(|line| line.last().is_some_and(|last| at <= last.whole.end)) else {
         return Vec::new();
     };
     let Some(column) = lines[line].iter().position(|cell| at <= cell.whole.end) else { return Vec::new() };
@@ -36,8 +35,7 @@ pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec
         }
         (0, _) => columns(scene, of, &head, column, &range),
         (_, 0) => {
-            let known: Vec<&str> =
-                lines[1..].iter().map(|line| text[line[0].inside.clone()].trim()).collect();
+            let known: Vec<&str> = lines[1..].iter().map(|line| text[line[0].inside.clone()].trim()).collect();
             let typed = text[range.clone()].trim();
             let all = replicas(scene, of, head[0] == "name").into_iter();
             let free = all.filter(|one| one == typed || !known.contains(&one.as_str()));
@@ -99,9 +97,7 @@ fn columns(
     let one = |name: &str| Proposal::new(name, ProposalKind::Property, range);
     let declared = names::declared_in(scene, of.0, of.1.name.element).into_iter();
     let declared = declared.filter(|(property, _)| is_free(&property.name)).map(|(property, preset)| {
-        one(&property.name)
-            .detail(describe::facts(property, preset))
-            .doc(describe::property(property, preset))
+        one(&property.name).detail(describe::facts(property, preset)).doc(describe::property(property, preset))
     });
     let inner = scene.inside(of.0, of.1).into_iter().flat_map(|file| &scene.files[file].outline.properties);
     let inner = inner.filter(|property| is_free(&property.text)).map(|property| one(&property.text));

@@ -36,9 +36,7 @@ pub(super) fn complete(scene: &Scene, property: ElementId, value: Range<usize>, 
 fn item(name: &str, topic: Option<&ClassTopic>, range: &Range<usize>) -> Proposal {
     let one = Proposal::new(name, ProposalKind::Event, range);
     match topic {
-        Some(topic) => {
-            one.detail(format!("{} ({})", topic.message, topic.kind.name())).doc(describe::topic(topic))
-        }
+        Some(topic) => one.detail(format!("{} ({})", topic.message, topic.kind.name())).doc(describe::topic(topic)),
         None => one.detail("a new name in this composite"),
     }
 }

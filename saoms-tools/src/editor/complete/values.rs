@@ -55,12 +55,7 @@ pub(super) fn explained(
 }
 
 /// The values that a property of the composite can have.
-pub(super) fn of_parameter(
-    scene: &Scene,
-    property: ElementId,
-    range: Range<usize>,
-    at: usize,
-) -> Vec<Proposal> {
+pub(super) fn of_parameter(scene: &Scene, property: ElementId, range: Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
     match file.element(property).value("name") {
         Some(name) => as_used(scene, 0, &file.text[name], &range, at),
@@ -70,13 +65,7 @@ pub(super) fn of_parameter(
 
 /// The values of a property of a composite: those of its type, or else those of the first property that takes its value
 /// from it.
-pub(super) fn as_used(
-    scene: &Scene,
-    file: usize,
-    name: &str,
-    range: &Range<usize>,
-    at: usize,
-) -> Vec<Proposal> {
+pub(super) fn as_used(scene: &Scene, file: usize, name: &str, range: &Range<usize>, at: usize) -> Vec<Proposal> {
     let Symbol::Parameter { file, name } = scene.parameter(file, name) else { return Vec::new() };
     let of = &scene.files[file];
     let declared = of.outline.properties.iter().find(|one| one.text == name);
@@ -111,9 +100,7 @@ fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> 
             let units = DURATION_UNITS.iter().zip(1..);
             match number.parse::<f64>() {
                 Ok(_) => units
-                    .map(|((unit, what), rank)| {
-                        value(format!("{number}{unit}"), range).detail(*what).rank(rank)
-                    })
+                    .map(|((unit, what), rank)| value(format!("{number}{unit}"), range).detail(*what).rank(rank))
                     .filter(|item| one.check(&item.label).is_ok())
                     .collect(),
                 Err(_) => Vec::new(),
@@ -133,7 +120,5 @@ fn of_declared(one: &PropertyDeclaration, typed: &str, range: &Range<usize>) -> 
     {
         all.push(value(default, range));
     }
-    all.into_iter()
-        .map(|item| if is_default(&item.label) { item.detail("default").rank(0) } else { item })
-        .collect()
+    all.into_iter().map(|item| if is_default(&item.label) { item.detail("default").rank(0) } else { item }).collect()
 }

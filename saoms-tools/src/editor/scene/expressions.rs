@@ -29,8 +29,7 @@ pub(crate) fn names_in_template(text: &str, range: Range<usize>) -> Vec<Range<us
 /// The names within `${...}` in a file that holds a value, which is no XML.
 pub(crate) fn names_in_values(text: &str) -> Vec<Range<usize>> {
     let expressions = inside(text).into_iter();
-    let found =
-        expressions.flat_map(|at| words(&text[at.clone()]).into_iter().map(move |one| (at.start, one)));
+    let found = expressions.flat_map(|at| words(&text[at.clone()]).into_iter().map(move |one| (at.start, one)));
     found.map(|(from, at)| from + at.start..from + at.end).collect()
 }
 
@@ -59,8 +58,7 @@ pub(crate) fn texts(element: Element<'_>) -> Vec<Range<usize>> {
     const OPEN: &str = "<![CDATA[";
     let of_names = |name: &str| is_declaration(name) || name == "file";
     let attributes = element.descendants().flat_map(Element::written_attributes);
-    let mut all: Vec<Range<usize>> =
-        attributes.filter(|one| !of_names(one.name())).filter_map(value_of).collect();
+    let mut all: Vec<Range<usize>> = attributes.filter(|one| !of_names(one.name())).filter_map(value_of).collect();
     all.extend(element.document().tokens_in(element.content_span()).filter_map(|(kind, span)| {
         let Range { start, end } = bytes(span);
         match kind {
@@ -83,15 +81,13 @@ mod tests {
         let found: Vec<&str> = names(text, 0..text.len()).map(|at| &text[at]).collect();
         assert_eq!(found, ["ä", "robots", "site", "a", "gt"]);
         let text = "R${index &lt; n:03} ${site == '}'} $${no} ${open";
-        let found: Vec<&str> =
-            names_in_template(text, 2..text.len()).into_iter().map(|at| &text[at]).collect();
+        let found: Vec<&str> = names_in_template(text, 2..text.len()).into_iter().map(|at| &text[at]).collect();
         assert_eq!(found, ["site", "open"], "the first one begins before the range");
     }
 
     #[test]
     fn the_expression_at_the_cursor_is_known() {
-        let before =
-            |text: &str| template_before(text, 0..text.len(), text.len()).map(|at| text[at].to_owned());
+        let before = |text: &str| template_before(text, 0..text.len(), text.len()).map(|at| text[at].to_owned());
         assert_eq!(before("R${ro").as_deref(), Some("ro"));
         assert_eq!(before("R${").as_deref(), Some(""));
         assert_eq!(before("R${a}-${b + "), Some("b + ".to_owned()));
@@ -104,8 +100,7 @@ mod tests {
         let text = "<a><b c='1' file='no'>2<!-- no --><d>3</d>4<![CDATA[5]]><?no no?></b><e f='no'/></a>";
         let document = parse(&text.to_owned().into());
         let element = document.root().children().next().unwrap();
-        let mut found: Vec<&str> =
-            texts(element).into_iter().map(|at| text[at].trim_end_matches("]]>")).collect();
+        let mut found: Vec<&str> = texts(element).into_iter().map(|at| text[at].trim_end_matches("]]>")).collect();
         found.sort_unstable();
         assert_eq!(found, ["1", "2", "3", "4", "5"]);
     }

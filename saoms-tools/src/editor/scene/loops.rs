@@ -9,10 +9,7 @@ use super::outline::{Component, Loop};
 impl Scene {
     /// The loops that a component of a file has unless it says otherwise: their short names and their classes. Where it
     /// cannot be known which list of the class is chosen, those of all lists, each name once.
-    pub(crate) fn default_loops<'s>(
-        &'s self,
-        (file, component): (usize, &Component),
-    ) -> Vec<(&'s str, &'s str)> {
+    pub(crate) fn default_loops<'s>(&'s self, (file, component): (usize, &Component)) -> Vec<(&'s str, &'s str)> {
         let Some(class) = self.class(component) else { return Vec::new() };
         let loops = &class.declaration().loops;
         let choice = self.choice(class, file, component);
@@ -34,12 +31,7 @@ impl Scene {
 
     /// The value of the property that chooses a list of loops: what the composite gives, what the class's name presets,
     /// or the default.
-    fn choice<'s>(
-        &'s self,
-        class: &'s RegisteredClass,
-        file: usize,
-        component: &Component,
-    ) -> Option<&'s str> {
+    fn choice<'s>(&'s self, class: &'s RegisteredClass, file: usize, component: &Component) -> Option<&'s str> {
         let declaration = class.declaration();
         let property = declaration.loops.property.as_deref()?;
         if let Some(given) = component.properties.iter().find(|one| one.text == property) {

@@ -140,9 +140,10 @@ impl Scene {
     /// file of values is part of those that take values from it.
     pub fn fleets(&self) -> Vec<SceneFleet> {
         let (names, users) = self.naming();
-        let described = self.files.iter().enumerate().flat_map(|(file, one)| {
-            one.outline.deployables.iter().filter_map(move |name| self.composite(file, name))
-        });
+        let described =
+            self.files.iter().enumerate().flat_map(|(file, one)| {
+                one.outline.deployables.iter().filter_map(move |name| self.composite(file, name))
+            });
         let deployed: BTreeSet<usize> = described.collect();
         let is_alone = |one: &usize| users[*one].is_empty() && !deployed.contains(one);
         let composites = (0..self.own).filter(|one| self.files[*one].outline.name.is_some());
@@ -161,8 +162,8 @@ impl Scene {
             return Vec::new();
         }
         let alone = reached(start.clone(), |place| users[place].clone()).into_iter().filter(is_alone);
-        let alone = alone
-            .map(|root| SceneFleet { files: vec![root], may_be_part: may_be_part || self.is_exported(root) });
+        let alone =
+            alone.map(|root| SceneFleet { files: vec![root], may_be_part: may_be_part || self.is_exported(root) });
         let mut fleets: Vec<SceneFleet> = alone.collect();
         let deployed: Vec<usize> = deployed.into_iter().collect();
         let mut named = reached(deployed.clone(), |place| names[place].clone()).into_iter();
@@ -170,11 +171,7 @@ impl Scene {
             fleets.insert(0, SceneFleet { files: deployed, may_be_part: false });
         }
         // Composites that go around in circles have nothing around them.
-        if fleets.is_empty() {
-            vec![SceneFleet { files: vec![start[0]], may_be_part: false }]
-        } else {
-            fleets
-        }
+        if fleets.is_empty() { vec![SceneFleet { files: vec![start[0]], may_be_part: false }] } else { fleets }
     }
 
     /// True if the contribution gives a composite to others.
@@ -193,8 +190,7 @@ impl Scene {
                 Some(Implementation::Composite(name)) => self.composite(place, name),
                 _ => None,
             });
-            let named: BTreeSet<usize> =
-                self.includes[place].iter().copied().chain(implementations).collect();
+            let named: BTreeSet<usize> = self.includes[place].iter().copied().chain(implementations).collect();
             let others = named.iter().filter(|one| **one != place && !self.is_imported(place));
             others.for_each(|one| users[*one].push(place));
             names.push(named.into_iter().collect());
@@ -212,8 +208,7 @@ impl Scene {
 
     /// The composites that take values from the first file.
     pub(crate) fn owners(&self) -> Vec<usize> {
-        let owns =
-            |file: &usize| self.files[*file].outline.beside.iter().any(|name| self.is_first(*file, name));
+        let owns = |file: &usize| self.files[*file].outline.beside.iter().any(|name| self.is_first(*file, name));
         (0..self.files.len()).filter(owns).collect()
     }
 
@@ -229,9 +224,8 @@ impl Scene {
     /// The file of the composite that a QName in this file means.
     pub(crate) fn composite(&self, file: usize, name: &Named) -> Option<usize> {
         let (from, found) = (&self.files[file], self.by_name.get(local(&name.text))?);
-        let of = |namespace: &str| {
-            found.iter().copied().find(|&other| self.files[other].outline.namespace == namespace)
-        };
+        let of =
+            |namespace: &str| found.iter().copied().find(|&other| self.files[other].outline.namespace == namespace);
         let bound = |prefix| from.element(name.element).resolve_prefix(prefix);
         match name.text.split_once(':') {
             Some((prefix, _)) => match bound(prefix) {

@@ -70,8 +70,7 @@ impl<'s> Found<'s> {
     fn add(&mut self, name: &Named, is_definition: bool, symbol: impl FnOnce() -> Option<Symbol>) {
         let at = FileRange::new(self.file, &name.at);
         if !name.text.is_empty() && self.is_wanted(&at) {
-            let made =
-                symbol().map(|symbol| Occurrence { symbol, at, is_definition, is_in_expression: false });
+            let made = symbol().map(|symbol| Occurrence { symbol, at, is_definition, is_in_expression: false });
             self.all.extend(made);
         }
     }
@@ -112,8 +111,7 @@ impl<'s> Found<'s> {
                 self.add(name, false, || Some(scene.parameter(inner, &name.text)));
             }
         }
-        for (side, names) in [(Side::Service, &component.services), (Side::Reference, &component.references)]
-        {
+        for (side, names) in [(Side::Service, &component.services), (Side::Reference, &component.references)] {
             for name in names {
                 let symbol = scene.part(file, of, side, &name.text);
                 let is_definition = matches!(symbol, Symbol::Part { .. });

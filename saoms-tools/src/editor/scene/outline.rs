@@ -286,8 +286,7 @@ impl<'t> Reader<'t> {
 
     /// The value of an attribute of our namespace.
     fn own(self, attribute: &str) -> Option<Range<usize>> {
-        let is_meant =
-            |one: &Attribute<'_>| one.local_name() == attribute && one.namespace() == SAOMS_NAMESPACE;
+        let is_meant = |one: &Attribute<'_>| one.local_name() == attribute && one.namespace() == SAOMS_NAMESPACE;
         value_of(self.0.written_attributes().find(is_meant)?)
     }
 
@@ -331,8 +330,7 @@ fn variables(text: &str) -> Vec<Range<usize>> {
             ('\'' | '"', None) => quote = Some(letter),
             ('$', None) => {
                 let start = at + 1;
-                let is_part =
-                    |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ':');
+                let is_part = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ':');
                 let mut behind = text[start..].char_indices().map(|(place, letter)| (start + place, letter));
                 let end = behind.find(|(place, letter)| !is_inside(*place) && !is_part(*letter));
                 from = end.map_or(text.len(), |(end, _)| end);

@@ -113,12 +113,8 @@ impl Scene {
             *places.entry(at).or_default() |= one.topic.is_published;
         }
         let symbol = Symbol::Topic { name: name.to_owned() };
-        let occurrence = |(at, is_definition)| Occurrence {
-            symbol: symbol.clone(),
-            at,
-            is_definition,
-            is_in_expression: false,
-        };
+        let occurrence =
+            |(at, is_definition)| Occurrence { symbol: symbol.clone(), at, is_definition, is_in_expression: false };
         places.into_iter().map(occurrence).collect()
     }
 

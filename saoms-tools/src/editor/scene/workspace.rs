@@ -109,8 +109,7 @@ impl Workspace {
             is_beside = true;
             // The composite may be in another folder: one that was looked at before is found.
             let known = self.files.values().map(|(_, file)| file);
-            let owner =
-                known.filter(|file| holds_values(std::slice::from_ref(file))).map(|file| &file.path).min();
+            let owner = known.filter(|file| holds_values(std::slice::from_ref(file))).map(|file| &file.path).min();
             if let Some(owner) = owner.and_then(|owner| owner.parent()).map(Path::to_owned) {
                 others = self.composites_in(&owner, path);
                 folder = owner;

@@ -14,8 +14,7 @@ use saoms_lang::registry::Registry;
 use super::folding::folds;
 use super::scene::workspace::Surroundings;
 use super::{
-    File, Scene, complete, definition, document_symbols, hover, linked_tags, links, references, rename,
-    selections,
+    File, Scene, complete, definition, document_symbols, hover, linked_tags, links, references, rename, selections,
 };
 pub(super) use laws::hold;
 
@@ -92,9 +91,7 @@ pub(crate) fn ask_everything_in(name: &str, text: &str, at: usize, others: &[(&s
     assert!(folds(file).iter().all(|one| one.start < one.end));
     let around = selections(file, at);
     assert!(around.iter().all(|range| text.get(range.clone()).is_some()));
-    assert!(
-        around.is_sorted_by(|one, wider| wider.start <= one.start && one.end <= wider.end && one != wider)
-    );
+    assert!(around.is_sorted_by(|one, wider| wider.start <= one.start && one.end <= wider.end && one != wider));
 }
 
 /// Holds a text beside other files to the laws of editors.

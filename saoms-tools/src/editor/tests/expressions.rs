@@ -36,12 +36,9 @@ fn a_property_is_renamed_in_every_expression() {
     let new = |text: &str| {
         // What is no expression stays: texts, what is written with `$$`, comments, and templates of components that are
         // no replicas.
-        let kept =
-            ["'bots'", "} bots $${bots}", "<!-- ${bots}", "\"p\">${bots}</property><property name=\"q\""];
-        let hidden = kept
-            .iter()
-            .zip('\u{1}'..)
-            .fold(text.to_owned(), |text, (one, sign)| text.replace(one, &sign.to_string()));
+        let kept = ["'bots'", "} bots $${bots}", "<!-- ${bots}", "\"p\">${bots}</property><property name=\"q\""];
+        let hidden =
+            kept.iter().zip('\u{1}'..).fold(text.to_owned(), |text, (one, sign)| text.replace(one, &sign.to_string()));
         let changed = hidden.replace("bots", "größe_1");
         kept.iter().zip('\u{1}'..).fold(changed, |text, (one, sign)| text.replace(&sign.to_string(), one))
     };
@@ -68,9 +65,7 @@ fn names_in_expressions_lead_to_their_property_and_are_explained() {
         let (scene, at) = scene(marked, &others());
         hover(&scene, at).map(|(text, _)| text).unwrap_or_default()
     };
-    assert!(
-        said(&at("s:count=\"bots", "s:count=\"bo|ts")).contains("a property of the composite `fleet`: `4`")
-    );
+    assert!(said(&at("s:count=\"bots", "s:count=\"bo|ts")).contains("a property of the composite `fleet`: `4`"));
     assert!(said(&at("${(index", "${(ind|ex")).contains("the replicas of `R${index:02}` are counted by"));
     // In a component that is none of many, `index` is a name as any other.
     let plain = composite(r#"<property name="index"/><component name="P" s:if="ind|ex > 3"/>"#);
@@ -87,8 +82,7 @@ fn what_would_break_an_expression_is_refused() {
     let index = composite(&FLEET.replacen("${(index", "${(in|dex", 1));
     assert!(renamed(&index, &others(), "i").unwrap_err().contains("counted by"));
     // Where no expression uses it, any name does.
-    let plain =
-        composite(r#"<property name="a|"/><component name="C"><property name="b" source="$a"/></component>"#);
+    let plain = composite(r#"<property name="a|"/><component name="C"><property name="b" source="$a"/></component>"#);
     assert!(renamed(&plain, &[], "my-a").is_ok());
     let chosen = composite(
         r#"<property name="start1|"/><property name="start2"/><component name="R${index}" s:count="2"><property name="b" source="$start${index / 1}/x"/></component>"#,
@@ -113,9 +107,8 @@ fn replicas_that_others_name_by_expressions_follow() {
 
 #[test]
 fn tables_follow_what_is_renamed() {
-    let text = |name: &str| {
-        composite(&format!(r#"<component name="{name}${{index:02}}" s:count="2" s:overrides="r.csv"/>"#))
-    };
+    let text =
+        |name: &str| composite(&format!(r#"<component name="{name}${{index:02}}" s:count="2" s:overrides="r.csv"/>"#));
     let table = "\u{feff}name,battery\r\nR01,60\n\"R02\",70\nR3x,\n";
     let all = renamed(&text("|R"), &[("r.csv", table)], "Cart${index:02}").unwrap();
     assert_eq!(all, [text("Cart"), table.replace("R0", "Cart0")]);
@@ -133,8 +126,7 @@ fn tables_follow_what_is_renamed() {
         ))
     };
     let marked = uses("size|");
-    let all = renamed(&marked, &[("hall.composite", &hall("size")), ("r.csv", "index,size\n1,3\n")], "width")
-        .unwrap();
+    let all = renamed(&marked, &[("hall.composite", &hall("size")), ("r.csv", "index,size\n1,3\n")], "width").unwrap();
     assert_eq!(all, [uses("width"), hall("width"), "index,width\n1,3\n".to_owned()]);
 }
 

@@ -23,8 +23,7 @@ fn elements_and_comments_of_several_lines_can_be_folded() {
 
 #[test]
 fn selections_grow_by_what_belongs_together() {
-    let marked =
-        composite("<component name=\"R\"><reference name=\"r\" target=\"A B|C\"/></component> <wire/>");
+    let marked = composite("<component name=\"R\"><reference name=\"r\" target=\"A B|C\"/></component> <wire/>");
     let (scene, at) = scene(&marked, &[]);
     let file = scene.file();
     let found = selections(file, at);

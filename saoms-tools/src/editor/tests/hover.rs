@@ -51,11 +51,7 @@ fn everything_is_explained() {
         &["a topic of `Collision`"],
     );
     says(&format!("{robot}<reference name=\"wor|ld\"/>"), "world", &["`0..1`", "saoms.Hardware"]);
-    says(
-        &format!("{robot}</component><wire source=\"R|/world\" target=\"\"/>"),
-        "R",
-        &["of the class `saoms.Robot`"],
-    );
+    says(&format!("{robot}</component><wire source=\"R|/world\" target=\"\"/>"), "R", &["of the class `saoms.Robot`"]);
     says(&format!("{robot}<s:loop name=\"Battery|MS\"/>"), "BatteryMS", &["(loop)", "Senses"]);
     says(
         "<property name=\"p\">100</property><component name=\"R\"><property name=\"x\" source=\"$p|\"/>",
@@ -81,8 +77,7 @@ fn walk(kind: &'static Kind, around: &[&'static str], seen: &mut Vec<*const Kind
         return;
     }
     seen.push(kind);
-    let own =
-        |name: &str| if name == "loop" || name == "severity" { format!("s:{name}") } else { name.to_owned() };
+    let own = |name: &str| if name == "loop" || name == "severity" { format!("s:{name}") } else { name.to_owned() };
     let text = |last: &str| {
         let open: String = around[1..].iter().map(|name| format!("<{}>", own(name))).collect();
         let close: String = around[1..].iter().rev().map(|name| format!("</{}>", own(name))).collect();

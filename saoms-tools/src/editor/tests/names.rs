@@ -29,10 +29,7 @@ fn definitions_are_found_across_files_and_wires() {
     let uses = r#"<component name="I"><implementation.composite name="inner"/>"#;
     goes(&uses.replace("inner", "inner|"), &["inner.composite:1:75 inner"]);
     goes(&format!("{uses}<property name=\"|size\">4</property></component>"), &["inner.composite:2:19 size"]);
-    goes(
-        &format!("{uses}</component><wire source=\"x\" target=\"I/lamp|\"/>"),
-        &["inner.composite:3:18 lamp"],
-    );
+    goes(&format!("{uses}</component><wire source=\"x\" target=\"I/lamp|\"/>"), &["inner.composite:3:18 lamp"]);
     goes(&format!("{uses}<service name=\"lamp|\"/></component>"), &["inner.composite:3:18 lamp"]);
     goes(
         r#"<property name="p"/><component name="A"><property name="q" source="$|p/part"/>"#,
@@ -65,10 +62,7 @@ fn references_are_all_that_mean_the_same() {
         found(marked, &[("outer.composite", outer), ("other.composite", other)], with_definition)
     };
     let marked = INNER.replace("name=\"L\"", "name=\"L|\"");
-    assert_eq!(
-        found(&marked, true),
-        ["fleet.composite:4:20 L", "fleet.composite:3:33 L", "outer.composite:1:154 L"]
-    );
+    assert_eq!(found(&marked, true), ["fleet.composite:4:20 L", "fleet.composite:3:33 L", "outer.composite:1:154 L"]);
     assert_eq!(found(&marked, false).len(), 2);
     let marked = INNER.replace("name=\"inner\"", "name=\"inner|\"");
     assert_eq!(found(&marked, false), ["outer.composite:1:121 inner"]);
@@ -94,21 +88,17 @@ fn a_component_is_renamed_wherever_it_is_meant() {
 
 #[test]
 fn other_names_of_a_composite_are_renamed_too() {
-    let parameter = composite(
-        r#"<property name="p|"/><component name="A"><property name="p" source="$p/x"/></component>"#,
-    );
-    let expected = composite(
-        r#"<property name="q"/><component name="A"><property name="p" source="$q/x"/></component>"#,
-    );
+    let parameter =
+        composite(r#"<property name="p|"/><component name="A"><property name="p" source="$p/x"/></component>"#);
+    let expected =
+        composite(r#"<property name="q"/><component name="A"><property name="p" source="$q/x"/></component>"#);
     assert_eq!(renamed(&parameter, &[], "q").unwrap(), [expected]);
     let uses = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:f="urn:f" name="u" targetNamespace="urn:u"><include name="f:fleet"/></composite>"#;
     let all =
-        renamed(&composite("").replace("name=\"fleet", "name=\"fl|eet"), &[("u.composite", uses)], "port")
-            .unwrap();
+        renamed(&composite("").replace("name=\"fleet", "name=\"fl|eet"), &[("u.composite", uses)], "port").unwrap();
     assert_eq!(all[1], uses.replace("f:fleet", "f:port"));
-    let replicas = composite(
-        r#"<component name="R${index:03}|" s:count="2"/><wire source="R001/r" target="R${index:03}"/>"#,
-    );
+    let replicas =
+        composite(r#"<component name="R${index:03}|" s:count="2"/><wire source="R001/r" target="R${index:03}"/>"#);
     assert_eq!(
         renamed(&replicas, &[], "Cart${index:03}").unwrap(),
         [composite(
@@ -178,9 +168,7 @@ fn names_in_files_beside_composites_lead_to_what_they_mean() {
         definition(&scene, at)
             .into_iter()
             .map(|goal| match goal {
-                DefinitionTarget::Range(place) => {
-                    scene.files[place.file].text[place.start..place.end].to_owned()
-                }
+                DefinitionTarget::Range(place) => scene.files[place.file].text[place.start..place.end].to_owned(),
                 DefinitionTarget::File(path) => path.display().to_string(),
             })
             .collect::<Vec<String>>()
@@ -217,12 +205,8 @@ fn the_outline_has_every_part() {
         lines.push(format!("{}{} {}", "  ".repeat(depth), one.name, one.detail));
         left.extend(one.children.into_iter().rev().map(|inner| (depth + 1, inner)));
     }
-    let expected =
-        ["inner urn:f", "  size property", "  lamp service", "  L saoms.Robot", "    number $size"];
+    let expected = ["inner urn:f", "  size property", "  lamp service", "  L saoms.Robot", "    number $size"];
     assert_eq!(lines, expected);
     // Also while it is being typed.
-    assert_eq!(
-        document_symbols(scene_of("<composite name='a'><component name='", &[]).file())[0].children.len(),
-        1
-    );
+    assert_eq!(document_symbols(scene_of("<composite name='a'><component name='", &[]).file())[0].children.len(), 1);
 }

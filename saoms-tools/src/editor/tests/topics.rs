@@ -32,8 +32,7 @@ fn a_topic_leads_to_all_who_have_it() {
 /// Robots publish where they are, and read where the others are.
 #[test]
 fn a_topic_that_is_published_and_read_is_at_one_place() {
-    let robots =
-        |name: &str| fleet(name).replace("COLLISIONTOPIC", "POSTOPIC").replace(",quiet", &format!(",{name}"));
+    let robots = |name: &str| fleet(name).replace("COLLISIONTOPIC", "POSTOPIC").replace(",quiet", &format!(",{name}"));
     let marked = robots("pos").replacen(",pos", ",p|os", 1);
     assert_eq!(found(&marked, &[], true).len(), 2);
     assert_eq!(renamed(&marked, &[], "p2").unwrap(), [robots("p2")]);

@@ -138,11 +138,7 @@ impl Items {
         let mut sources = sources.iter().copied().peekable();
         let mut passing: Option<Pin> = None;
         for at in first..target {
-            let right = if at + 1 == target {
-                to
-            } else {
-                Pin { item: self.add(Kind::Pass, at + 1, GRID), offset: 0 }
-            };
+            let right = if at + 1 == target { to } else { Pin { item: self.add(Kind::Pass, at + 1, GRID), offset: 0 } };
             while let Some(left) = sources.next_if(|pin| column(self, pin) == at) {
                 self.joints.push(Joint { net, left, right });
             }

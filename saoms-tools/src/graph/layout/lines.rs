@@ -84,8 +84,7 @@ impl Routes {
             ));
         }
         let tracks = channels.iter_mut().map(|routes| {
-            let mut strands: Vec<Strand> =
-                routes.iter_mut().map(|route| std::mem::take(&mut route.strand)).collect();
+            let mut strands: Vec<Strand> = routes.iter_mut().map(|route| std::mem::take(&mut route.strand)).collect();
             let count = route::tracks(&mut strands);
             routes.iter_mut().zip(strands).for_each(|(route, strand)| route.strand = strand);
             count

@@ -135,16 +135,12 @@ pub(super) fn layout(diagram: &Diagram, is_whole: bool) -> Layout {
         }
     }
     let components = diagram.components.iter().zip(has_topics);
-    let plans: Vec<Rc<Plan>> =
-        components.map(|(component, topics)| Rc::new(Plan::of(component, topics))).collect();
+    let plans: Vec<Rc<Plan>> = components.map(|(component, topics)| Rc::new(Plan::of(component, topics))).collect();
     let count = plans.len();
     let all: Vec<usize> = match count {
         0 => vec![1],
         MANY.. => vec![(count as f64 * 1.5).sqrt() as usize],
-        _ => [1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 30, count]
-            .into_iter()
-            .filter(|rows| *rows <= count)
-            .collect(),
+        _ => [1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 30, count].into_iter().filter(|rows| *rows <= count).collect(),
     };
     let layouts = all.into_iter().map(|rows| in_rows(diagram, &plans, rows, is_whole));
     let size = |layout: &Layout| (f64::from(layout.width) / WIDTH_TO_HEIGHT).max(f64::from(layout.height));
@@ -176,13 +172,11 @@ fn in_rows(diagram: &Diagram, plans: &[Rc<Plan>], rows: usize, is_whole: bool) -
     // The first row of properties sticks out of the frame, the others are in it.
     let name = (chips_height - 2 * GRID).max(0);
     let title = name + TITLE.max(GRID * routes.lanes() + TITLE);
-    let longest =
-        |names: Vec<&str>| names.into_iter().map(|name| width(&border(name), SMALL_SIZE, false)).max();
+    let longest = |names: Vec<&str>| names.into_iter().map(|name| width(&border(name), SMALL_SIZE, false)).max();
     let outside = |names: Vec<&str>| longest(names).map_or(0, |width| width + CHEVRON + 4);
     let left_labels = outside(diagram.services.iter().map(|port| &*port.name).collect());
     let right_labels = outside(diagram.references.iter().map(|port| &*port.name).collect());
-    let origin =
-        Point { x: around + left_labels, y: around + if chips.is_empty() { 0 } else { GRID } + GRID + title };
+    let origin = Point { x: around + left_labels, y: around + if chips.is_empty() { 0 } else { GRID } + GRID + title };
 
     let bottom = items.height();
     let title_width = width(&heading(&diagram.name), NAME_SIZE + 2, true) + 4 * GRID;
@@ -199,10 +193,7 @@ fn in_rows(diagram: &Diagram, plans: &[Rc<Plan>], rows: usize, is_whole: bool) -
         height: frame.y + frame.height + around + legend,
         frame,
         name,
-        chips: chips
-            .into_iter()
-            .map(|chip| Chip { x: frame.x + chip.x, y: frame.y - GRID + chip.y, ..chip })
-            .collect(),
+        chips: chips.into_iter().map(|chip| Chip { x: frame.x + chip.x, y: frame.y - GRID + chip.y, ..chip }).collect(),
         ..Layout::default()
     };
     layout.services = vec![Point::default(); diagram.services.len()];
@@ -228,8 +219,7 @@ fn in_rows(diagram: &Diagram, plans: &[Rc<Plan>], rows: usize, is_whole: bool) -
     layout.components = components.into_iter().flatten().collect();
     let sides = Sides { items: &items, layout: &layout, lefts: &lefts, widths: &widths, origin };
     // Those of topics first: the others are drawn over them.
-    let (rails, marks, mut lines) =
-        rails::draw(diagram, &routes, &sides, &channels, origin.y + bottom + 2 * GRID);
+    let (rails, marks, mut lines) = rails::draw(diagram, &routes, &sides, &channels, origin.y + bottom + 2 * GRID);
     lines.extend(routes.draw(&sides, &channels, frame.y + name + TITLE));
     (layout.rails, layout.marks, layout.lines) = (rails, marks, lines);
     layout

@@ -19,16 +19,13 @@ pub(super) fn order(all: &mut Items) {
     }
     for _ in 0..SWEEPS {
         let count = all.columns.len();
-        for (column, neighbours) in
-            (0..count).map(|at| (at, &left)).chain((0..count).rev().map(|at| (at, &right)))
-        {
+        for (column, neighbours) in (0..count).map(|at| (at, &left)).chain((0..count).rev().map(|at| (at, &right))) {
             let mut keyed: Vec<(f64, usize)> = all.columns[column]
                 .iter()
                 .map(|&item| {
                     let near = &neighbours[item];
                     // The pins of one item stand in their order; together they count for less than the next item.
-                    let sum: f64 =
-                        near.iter().map(|pin| places[pin.item] + f64::from(pin.offset) * 1e-6).sum();
+                    let sum: f64 = near.iter().map(|pin| places[pin.item] + f64::from(pin.offset) * 1e-6).sum();
                     (if near.is_empty() { places[item] } else { sum / near.len() as f64 }, item)
                 })
                 .collect();

@@ -76,16 +76,14 @@ fn fit(all: &mut Items, column: usize, offsets: &[i32], wanted: &[Vec<usize>], i
         if !joints.is_empty() {
             let tops = joints.iter().map(|&joint| {
                 let joint = all.joints[joint];
-                let (here, there) =
-                    if is_left { (joint.right, joint.left) } else { (joint.left, joint.right) };
+                let (here, there) = if is_left { (joint.right, joint.left) } else { (joint.left, joint.right) };
                 f64::from(all.line(there) - here.offset)
             });
             (value, weight) = (tops.sum::<f64>() / joints.len() as f64, 1.0);
         }
         let value = value - f64::from(offsets[place]);
         let mut last = Block { sum: value * weight, weight, count: 1 };
-        while let Some(before) = blocks.pop_if(|before| before.sum / before.weight >= last.sum / last.weight)
-        {
+        while let Some(before) = blocks.pop_if(|before| before.sum / before.weight >= last.sum / last.weight) {
             last = Block {
                 sum: before.sum + last.sum,
                 weight: before.weight + last.weight,

@@ -71,8 +71,7 @@ pub(super) fn draw(
             }
             let (end, beside) = (sides.of(pin.item).0, y + route.strand.nudge);
             let point = |x, y| Point { x, y };
-            let mut parts =
-                vec![(point(x, lowest), point(x, beside)), (point(x, beside), point(end, beside))];
+            let mut parts = vec![(point(x, lowest), point(x, beside)), (point(x, beside), point(end, beside))];
             if beside != y {
                 parts.push((point(end, beside), point(end, y)));
             }

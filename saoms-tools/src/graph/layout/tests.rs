@@ -23,20 +23,18 @@ fn ports(kind: &str, count: usize) -> Vec<Port> {
 
 /// `wires` are pairs of numbers, each of a reference or service, counted through all components.
 fn diagram(parts: &Parts, wires: &[(usize, usize)], topics: &[(usize, usize)], promoted: usize) -> Diagram {
-    let component =
-        |(place, (properties, services, references)): (usize, &(usize, usize, usize))| DiagramComponent {
-            replicas: None,
-            name: format!("Component{place}"),
-            class: "a.package.of.classes.with.a.long.name.Class".to_owned(),
-            state: State::Known,
-            properties: names("p", *properties).map(|name| DiagramSetting { name, value: None }).collect(),
-            services: ports("s", *services),
-            references: ports("r", *references),
-            inside: None,
-        };
+    let component = |(place, (properties, services, references)): (usize, &(usize, usize, usize))| DiagramComponent {
+        replicas: None,
+        name: format!("Component{place}"),
+        class: "a.package.of.classes.with.a.long.name.Class".to_owned(),
+        state: State::Known,
+        properties: names("p", *properties).map(|name| DiagramSetting { name, value: None }).collect(),
+        services: ports("s", *services),
+        references: ports("r", *references),
+        inside: None,
+    };
     let ends = |port: fn(&(usize, usize, usize)) -> usize| -> Vec<DiagramEnd> {
-        let of =
-            |(component, parts)| (0..port(parts)).map(move |port| DiagramEnd::Component { component, port });
+        let of = |(component, parts)| (0..port(parts)).map(move |port| DiagramEnd::Component { component, port });
         parts.iter().enumerate().flat_map(of).collect()
     };
     let (services, references) = (ends(|parts| parts.1), ends(|parts| parts.2));
@@ -133,15 +131,13 @@ fn labels_fit(layout: &Layout, place: usize) {
     let plan = &layout.components[place].plan;
     let texts = width(&plan.name_text, NAME_SIZE, true).max(width(&plan.class_text, SMALL_SIZE, false));
     assert!(texts <= plan.width);
-    let label = |labels: &[String], row: usize| {
-        labels.get(row).map_or(0, |label| LABEL + width(label, SMALL_SIZE, false))
-    };
+    let label =
+        |labels: &[String], row: usize| labels.get(row).map_or(0, |label| LABEL + width(label, SMALL_SIZE, false));
     for row in 0..plan.services.len().max(plan.references.len()) {
         assert!(label(&plan.services, row) + label(&plan.references, row) < plan.width);
         assert!(plan.port(row) < plan.height);
     }
-    let chips =
-        plan.chips.iter().map(|chip| Rect { x: chip.x, y: chip.y, width: chip.width, height: CHIP_HEIGHT });
+    let chips = plan.chips.iter().map(|chip| Rect { x: chip.x, y: chip.y, width: chip.width, height: CHIP_HEIGHT });
     let chips: Vec<Rect> = chips.collect();
     let whole = Rect { x: 0, y: 0, width: plan.width, height: plan.name - NAME_SIZE + 3 };
     for (at, chip) in chips.iter().enumerate() {
@@ -173,10 +169,7 @@ fn lines_are_apart(layout: &Layout) {
             let is_vertical = part.0.x == part.1.x;
             let both = is_vertical == (beside.0.x == beside.1.x);
             if line != other && both && !same {
-                assert!(
-                    !overlap(inside(*part), inside(*beside)),
-                    "{part:?} of {line} and {beside:?} of {other}"
-                );
+                assert!(!overlap(inside(*part), inside(*beside)), "{part:?} of {line} and {beside:?} of {other}");
             }
         }
     }

@@ -93,25 +93,15 @@ fn property(writer: &mut Writer<'_, '_>, declared: &PropertyDeclaration, place: 
     let name = &declared.name;
     let _ = write!(writer.text, "<property name=\"{name}\"");
     if writer.choices.once_in(16) {
-        let from = writer.choices.of(&[
-            "source=\"$p\"",
-            "source=\"$q/a\"",
-            "source=\"$site\"",
-            "file=\"value.txt\"",
-            "many=\"true\"",
-        ]);
+        let from = writer
+            .choices
+            .of(&["source=\"$p\"", "source=\"$q/a\"", "source=\"$site\"", "file=\"value.txt\"", "many=\"true\""]);
         let _ = writeln!(writer.text, " {from}/>");
         return;
     }
     let mut value = values::of(writer.choices, declared, place);
     if writer.is_replicated && (declared.unique.is_some() || writer.choices.once_in(8)) {
-        value.push_str(writer.choices.of(&[
-            "${index}",
-            "${index:02}",
-            "${q}",
-            "$${",
-            "${(index - 1) % 2 * 3}",
-        ]));
+        value.push_str(writer.choices.of(&["${index}", "${index:02}", "${q}", "$${", "${(index - 1) % 2 * 3}"]));
     }
     match writer.choices.below(4) {
         _ if declared.kind == PropertyKind::Complex => {
@@ -142,8 +132,7 @@ fn references(writer: &mut Writer<'_, '_>, class: &RegisteredClass) {
         if writer.choices.once_in(6) {
             continue;
         }
-        let target =
-            writer.choices.of(&["W", "W", "W", "W/Hardware", "R1", "R1*", "W R1", "E/TaskInterface", "Q"]);
+        let target = writer.choices.of(&["W", "W", "W", "W/Hardware", "R1", "R1*", "W R1", "E/TaskInterface", "Q"]);
         let _ = writeln!(writer.text, "<reference name=\"{}\" target=\"{target}\"/>", reference.name);
     }
 }

@@ -7,9 +7,7 @@ const NAMES: &[&str] = &["p", "q", "index", "site", "true", "robots"];
 /// One that may come to a number; of this depth at most.
 pub(super) fn number(choices: &mut Choices<'_>, deep: usize) -> String {
     match choices.below(if deep == 0 { 3 } else { 7 }) {
-        0 => {
-            choices.of(&["1", "2", "0", "3", "9223372036854775807", "100001", "1000000000", "07"]).to_owned()
-        }
+        0 => choices.of(&["1", "2", "0", "3", "9223372036854775807", "100001", "1000000000", "07"]).to_owned(),
         1 | 2 => choices.of(NAMES).to_owned(),
         3 => format!("({})", number(choices, deep - 1)),
         4 => format!("-{}", number(choices, deep - 1)),

@@ -10,8 +10,8 @@ mod values;
 use std::fmt::Write as _;
 
 use saoms_lang::load::vocabulary::{
-    COMPONENT, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, Kind, SEVERITY, WIRE,
-    children, own_attributes,
+    COMPONENT, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, Kind, SEVERITY, WIRE, children,
+    own_attributes,
 };
 use saoms_lang::model::Version;
 use saoms_lang::registry::Registry;
@@ -41,10 +41,8 @@ pub(crate) fn fleet(bytes: &[u8], registry: &Registry) -> Vec<(String, String)> 
         files.push(("robot/Robot001.componentType".to_owned(), text));
     }
     if choices.once_in(4) {
-        let inside =
-            choices.of(&["<import namespace=\"urn:o\"/>", "<export namespace=\"urn:t\"/><import/>", "<", ""]);
-        let text =
-            format!("<contribution xmlns=\"{}\">{inside}</contribution>", Version::Oasis200912.namespace());
+        let inside = choices.of(&["<import namespace=\"urn:o\"/>", "<export namespace=\"urn:t\"/><import/>", "<", ""]);
+        let text = format!("<contribution xmlns=\"{}\">{inside}</contribution>", Version::Oasis200912.namespace());
         files.push(("sca-contribution.xml".to_owned(), text));
     }
     files
@@ -117,8 +115,7 @@ impl<'c, 'b> Writer<'c, 'b> {
         let prefix = if std::ptr::eq(kind, &SEVERITY) || kind.name == "loop" { "s:" } else { "" };
         let _ = write!(self.text, "<{prefix}{}", kind.name);
         self.attributes(kind, &[]);
-        let has_text =
-            kind.name == "property" && !self.text.ends_with(&['>', '='][..]) && self.choices.below(3) > 0;
+        let has_text = kind.name == "property" && !self.text.ends_with(&['>', '='][..]) && self.choices.below(3) > 0;
         self.text.push('>');
         if has_text {
             let value = values::text(self.choices);

@@ -11,33 +11,8 @@ use super::expression;
 
 /// Texts that are not meant anywhere, or mean something elsewhere.
 const ODD: &[&str] = &[
-    "",
-    " ",
-    "$",
-    "${",
-    "${index}",
-    "$${",
-    "/",
-    "//",
-    "::",
-    ",",
-    "-1",
-    "1e999",
-    "nan",
-    "99999999999999999999",
-    "é🤖",
-    "&<>\"'",
-    "true",
-    "*",
-    "(0,0)",
-    "R1/TaskInterface/b",
-    "t:a",
-    "t:",
-    ":a",
-    "xsd:int",
-    "\t\n",
-    "100us",
-    "a\u{301}",
+    "", " ", "$", "${", "${index}", "$${", "/", "//", "::", ",", "-1", "1e999", "nan", "99999999999999999999", "é🤖",
+    "&<>\"'", "true", "*", "(0,0)", "R1/TaskInterface/b", "t:a", "t:", ":a", "xsd:int", "\t\n", "100us", "a\u{301}",
 ];
 
 /// The text of a composite's property, or of a file.
@@ -51,14 +26,7 @@ pub(super) fn text<'t>(choices: &mut Choices<'_>) -> &'t str {
 /// The table of what differs from replica to replica.
 pub(super) fn table(choices: &mut Choices<'_>) -> String {
     let mut text = choices
-        .of(&[
-            "index,battery",
-            "name,ID",
-            "index,period,scenario",
-            "indx,a",
-            "index",
-            "\u{feff}index , \"chargeX\"",
-        ])
+        .of(&["index,battery", "name,ID", "index,period,scenario", "indx,a", "index", "\u{feff}index , \"chargeX\""])
         .to_owned();
     for _ in 0..choices.below(4) {
         text.push_str(choices.of(&["\n", "\r\n", "\n\n"]));
@@ -78,36 +46,20 @@ pub(super) fn held(choices: &mut Choices<'_>, holds: Holds, registry: &Registry)
     }
     let end = |choices: &mut Choices<'_>| {
         let (component, _) = COMPONENTS[choices.below(COMPONENTS.len())];
-        let part = choices.of(&[
-            "",
-            "/TaskInterface",
-            "/Hardware",
-            "/world",
-            "/s",
-            "/r",
-            "/Hardware/b",
-            "*",
-            "*/world",
-        ]);
+        let part =
+            choices.of(&["", "/TaskInterface", "/Hardware", "/world", "/s", "/r", "/Hardware/b", "*", "*/world"]);
         format!("{component}{part}")
     };
     match holds {
         Holds::Name => choices.of(&["p", "q", "s", "r", "site", "R1", "x"]).to_owned(),
-        Holds::PropertyName => {
-            choices.of(&["ID", "period", "battery", "scenario", "p", "topicRename"]).to_owned()
-        }
+        Holds::PropertyName => choices.of(&["ID", "period", "battery", "scenario", "p", "topicRename"]).to_owned(),
         Holds::ServiceName => choices.of(&["TaskInterface", "Hardware", "s"]).to_owned(),
         Holds::ReferenceName => choices.of(&["world", "r", "move"]).to_owned(),
-        Holds::Class => registry
-            .iter()
-            .nth(choices.below(registry.len()))
-            .map_or_else(String::new, |class| class.name().to_owned()),
-        Holds::Interface => {
-            choices.of(&["saoms.Hardware", "unibg.robotics.tca.TaskInterface", "a.B"]).to_owned()
+        Holds::Class => {
+            registry.iter().nth(choices.below(registry.len())).map_or_else(String::new, |class| class.name().to_owned())
         }
-        Holds::LoopName => {
-            choices.of(&["BatteryMS", "CollisionMS", "RobotMS", "l", "BreakdownMS"]).to_owned()
-        }
+        Holds::Interface => choices.of(&["saoms.Hardware", "unibg.robotics.tca.TaskInterface", "a.B"]).to_owned(),
+        Holds::LoopName => choices.of(&["BatteryMS", "CollisionMS", "RobotMS", "l", "BreakdownMS"]).to_owned(),
         Holds::LoopClass => registry
             .loops()
             .nth(choices.below(registry.loops().len()))
@@ -132,9 +84,7 @@ pub(super) fn held(choices: &mut Choices<'_>, holds: Holds, registry: &Registry)
         Holds::Variable => choices.of(&["SAOMS_ROBUSTNESS", "HOME", "9", "A=B"]).to_owned(),
         Holds::Code => codes::ALL[choices.below(codes::ALL.len())].id.to_owned(),
         Holds::Level => SeverityLevel::ALL[choices.below(SeverityLevel::ALL.len())].name().to_owned(),
-        Holds::Text => {
-            choices.of(&["xsd:string", "xsd:int", "xsd:boolean", "because", "t:x", "W/R1"]).to_owned()
-        }
+        Holds::Text => choices.of(&["xsd:string", "xsd:int", "xsd:boolean", "because", "t:x", "W/R1"]).to_owned(),
     }
 }
 
@@ -143,8 +93,7 @@ pub(super) fn of(choices: &mut Choices<'_>, declared: &PropertyDeclaration, plac
     if choices.once_in(32) {
         return choices.of(ODD).to_owned();
     }
-    let bounds =
-        || [&declared.min, &declared.max, &declared.default].into_iter().flatten().map(String::as_str);
+    let bounds = || [&declared.min, &declared.max, &declared.default].into_iter().flatten().map(String::as_str);
     let bounded = |choices: &mut Choices<'_>, usual: &[&'static str]| {
         let all: Vec<&str> = usual.iter().copied().chain(bounds()).collect();
         choices.of(&all).to_owned()
@@ -161,9 +110,7 @@ pub(super) fn of(choices: &mut Choices<'_>, declared: &PropertyDeclaration, plac
         }
         PropertyKind::Complex => {
             let parts = declared.properties.iter();
-            parts
-                .map(|part| format!("<{0} xmlns=\"\">{1}</{0}>", part.name, of(choices, part, place)))
-                .collect()
+            parts.map(|part| format!("<{0} xmlns=\"\">{1}</{0}>", part.name, of(choices, part, place))).collect()
         }
         PropertyKind::String => worded(choices, &declared.name, place),
     }
@@ -195,14 +142,8 @@ fn worded(choices: &mut Choices<'_>, name: &str, place: usize) -> String {
 
 fn scenario_line(choices: &mut Choices<'_>) -> String {
     let time = choices.of(&[
-        "at 1s",
-        "then 500ms",
-        "at 2s",
-        "from 1s every 5s 3 times",
-        "from 0ms every 2s..8s 2 times",
-        "at 0s",
-        "after 1s",
-        "every 1s",
+        "at 1s", "then 500ms", "at 2s", "from 1s every 5s 3 times", "from 0ms every 2s..8s 2 times", "at 0s",
+        "after 1s", "every 1s",
     ]);
     let what = choices.of(&[
         "luggage (3,1) to (3,10)",

@@ -207,8 +207,7 @@ fn what_does_not_fit_into_the_legend_is_said_in_fewer_words() {
 
 #[test]
 fn a_place_that_cannot_be_written_is_told_before_anything_starts() {
-    let output =
-        saoms(&["run", "composites/hall.composite", "--virtual", "--paths", "/no/such/folder/a.svg"]);
+    let output = saoms(&["run", "composites/hall.composite", "--virtual", "--paths", "/no/such/folder/a.svg"]);
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(told.starts_with("error: the picture cannot be written to `/no/such/folder/a.svg`: "), "{told}");

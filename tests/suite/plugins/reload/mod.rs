@@ -42,8 +42,7 @@ fn build(folder: &Path, definitions: &[&str]) {
         .arg("-o")
         .arg(&new)
         .output();
-    let output =
-        output.unwrap_or_else(|error| panic!("this test needs the system's C compiler, `cc`: {error}"));
+    let output = output.unwrap_or_else(|error| panic!("this test needs the system's C compiler, `cc`: {error}"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     // As a linker that writes over the file, which is the worst that can happen to a library in use.
     fs::write(library(folder), fs::read(new).unwrap()).unwrap();

@@ -7,8 +7,8 @@ use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subs
 
 use crate::grid::Block;
 use crate::messages::{
-    CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT,
-    Fault, LuggageStage, ROBOT_STATE, RobotState,
+    CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
+    LuggageStage, ROBOT_STATE, RobotState,
 };
 use crate::robot::{Help, Rival, RobotKnowledge, Trouble};
 
@@ -71,11 +71,7 @@ impl Loop for SafeCriticalSituation {
         Ok(SafeCriticalSituation::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.situations = context.publish(&CRITICAL_SITUATION)?;
         self.situations_heard = context.subscribe(&CRITICAL_SITUATION)?;
         self.faults = context.subscribe(&FAULT)?;
@@ -177,16 +173,12 @@ impl Loop for SafeCriticalSituation {
         _context: &mut Context<'_>,
     ) -> Result<Option<SafeCriticalDecision>, Failure> {
         Ok(Some(match symptom {
-            SafeCriticalSymptom::Broken { trouble, kind, .. } => {
-                SafeCriticalDecision::CallForHelp { trouble, kind }
-            }
+            SafeCriticalSymptom::Broken { trouble, kind, .. } => SafeCriticalDecision::CallForHelp { trouble, kind },
             SafeCriticalSymptom::NeedsHelp { situation, .. } => match situation.job() {
                 None => SafeCriticalDecision::Offer(situation),
                 Some(job) => match knowledge.means(&job) {
                     Feasibility::Enough => SafeCriticalDecision::Offer(situation),
-                    Feasibility::Needs(needs) => {
-                        SafeCriticalDecision::Postpone { critical: situation.critical, needs }
-                    }
+                    Feasibility::Needs(needs) => SafeCriticalDecision::Postpone { critical: situation.critical, needs },
                     Feasibility::Never => SafeCriticalDecision::Refuse(situation),
                 },
             },
@@ -196,9 +188,7 @@ impl Loop for SafeCriticalSituation {
             SafeCriticalSymptom::Gone => SafeCriticalDecision::Forget,
             SafeCriticalSymptom::Woken { emulates } => SafeCriticalDecision::StandIn { critical: emulates },
             SafeCriticalSymptom::Charges { .. } => SafeCriticalDecision::AskForSubstitute,
-            SafeCriticalSymptom::Missing { robot, sleeper, .. } => {
-                SafeCriticalDecision::Awake { sleeper, robot }
-            }
+            SafeCriticalSymptom::Missing { robot, sleeper, .. } => SafeCriticalDecision::Awake { sleeper, robot },
             SafeCriticalSymptom::Substituted { robot, .. } => SafeCriticalDecision::Rest { robot },
         }))
     }

@@ -128,17 +128,13 @@ impl Recordable for SafeCriticalSymptom {
                     distance
                 )
             }
-            SafeCriticalSymptom::InVain(CriticalSituation { critical, .. }) => record!(
-                "could not begin to help robot {critical} for very long: others are in its way",
-                critical
-            ),
+            SafeCriticalSymptom::InVain(CriticalSituation { critical, .. }) => {
+                record!("could not begin to help robot {critical} for very long: others are in its way", critical)
+            }
             SafeCriticalSymptom::Alone(CriticalSituation { critical, .. }) => {
                 record!("no other robot would help robot {critical}", critical)
             }
-            SafeCriticalSymptom::Beaten {
-                situation: CriticalSituation { critical, .. },
-                by: Some(robot),
-            } => {
+            SafeCriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: Some(robot) } => {
                 record!("robot {robot} is closer to robot {critical}", robot, critical)
             }
             SafeCriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: None } => {
@@ -187,12 +183,7 @@ impl Recordable for SafeCriticalDecision {
                     )
                 }
                 CriticalKind::OnTheWay => {
-                    record!(
-                        "brings luggage {luggage} to {to} in place of robot {critical}",
-                        luggage,
-                        to,
-                        critical
-                    )
+                    record!("brings luggage {luggage} to {to} in place of robot {critical}", luggage, to, critical)
                 }
                 CriticalKind::Idle => record!("finds a substitute for robot {critical}", critical),
             },

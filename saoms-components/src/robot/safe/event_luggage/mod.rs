@@ -56,11 +56,7 @@ impl Loop for SafeEventLuggage {
         Ok(SafeEventLuggage::default())
     }
 
-    fn initialize(
-        &mut self,
-        _knowledge: &mut RobotKnowledge,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
+    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         self.luggage_heard = context.subscribe(&EVENT_LUGGAGE)?;
         Ok(())
@@ -226,11 +222,7 @@ impl SafeEventLuggage {
     }
 
     /// Luggage that waits in vain for this robot.
-    fn look_at_idleness(
-        &mut self,
-        knowledge: &RobotKnowledge,
-        context: &Context<'_>,
-    ) -> Option<SafeLuggageSymptom> {
+    fn look_at_idleness(&mut self, knowledge: &RobotKnowledge, context: &Context<'_>) -> Option<SafeLuggageSymptom> {
         let requests = &knowledge.lists.requests;
         let waits = !requests.open().is_empty() || requests.claimed().is_some();
         self.idle.note(waits && knowledge.job.is_none() && !knowledge.variables.asleep);
@@ -264,9 +256,7 @@ impl SafeEventLuggage {
             Hindrance::Others => context.log(level, format_args!("{what}: {}", why.words())),
             Hindrance::Battery | Hindrance::NoWay => context.log(
                 level,
-                format_args!(
-                    "{what}: no way leads there and back within the {full} executions of a full battery"
-                ),
+                format_args!("{what}: no way leads there and back within the {full} executions of a full battery"),
             ),
         }
     }
@@ -290,10 +280,7 @@ fn judge(knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
 }
 
 /// The request that suits this robot best, and its cause.
-fn look_for_luggage(
-    knowledge: &RobotKnowledge,
-    context: &Context<'_>,
-) -> Option<(SafeLuggageSymptom, Cause)> {
+fn look_for_luggage(knowledge: &RobotKnowledge, context: &Context<'_>) -> Option<(SafeLuggageSymptom, Cause)> {
     let (now, period) = (context.now(), context.period().as_nanos().max(1));
     let (block, number) = (knowledge.block, knowledge.number);
     let left = knowledge.battery.executions_left();

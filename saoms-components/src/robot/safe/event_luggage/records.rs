@@ -136,17 +136,10 @@ impl Recordable for SafeLuggageSymptom {
             }
             SafeLuggageSymptom::Gone => record!("another robot takes the luggage"),
             SafeLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
-                record!(
-                    "no way leads to {to} any more, where it has to go for luggage {luggage}",
-                    to,
-                    luggage
-                )
+                record!("no way leads to {to} any more, where it has to go for luggage {luggage}", to, luggage)
             }
             SafeLuggageSymptom::InVain(Job { luggage, .. }) => {
-                record!(
-                    "could not begin with luggage {luggage} for very long: others are in its way",
-                    luggage
-                )
+                record!("could not begin with luggage {luggage} for very long: others are in its way", luggage)
             }
             SafeLuggageSymptom::Stuck { job: Job { luggage, .. }, executions, .. } => record!(
                 "gets nowhere with luggage {luggage}: others have been in its way for {executions} executions",

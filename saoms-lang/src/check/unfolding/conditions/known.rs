@@ -90,12 +90,7 @@ impl<'a> Unfolding<'a> {
         found
     }
 
-    fn declared(
-        &self,
-        known: &UnitProperties<'a>,
-        composite: &'a Composite,
-        property: &'a Property,
-    ) -> Answer<'a> {
+    fn declared(&self, known: &UnitProperties<'a>, composite: &'a Composite, property: &'a Property) -> Answer<'a> {
         let setting = || self.options.settings.iter().find(|setting| setting.name == *property.name.as_str());
         let given = match known.owner {
             Some(owner) => match self.given(known, &property.name) {

@@ -121,12 +121,7 @@ impl<'a> Unfolding<'a> {
     }
 
     /// Reports faults in the texts of a replica.
-    pub(crate) fn faults(
-        &self,
-        names: &Names,
-        faults: Vec<(Text, ExpressionFault)>,
-        report: &mut Report<'_>,
-    ) {
+    pub(crate) fn faults(&self, names: &Names, faults: Vec<(Text, ExpressionFault)>, report: &mut Report<'_>) {
         for faults in faults.chunk_by(|(one, _), (other, _)| one.location == other.location) {
             let parts = report.parts(&faults[0].0);
             for (text, fault) in faults {
@@ -136,12 +131,7 @@ impl<'a> Unfolding<'a> {
     }
 
     /// True if complex values of a replicated component have faults, which are reported.
-    pub(crate) fn complex(
-        &self,
-        component: &ComponentElement,
-        instance: &Instance,
-        report: &mut Report<'_>,
-    ) -> bool {
+    pub(crate) fn complex(&self, component: &ComponentElement, instance: &Instance, report: &mut Report<'_>) -> bool {
         let Some(open) = self.open.last() else { return false };
         let mut has_faults = false;
         for text in all_complex_texts(component, &open.composite.document) {
@@ -162,8 +152,7 @@ impl<'a> Unfolding<'a> {
     pub(crate) fn is_beyond(&mut self, component: &ComponentElement, report: &mut Report<'_>) -> bool {
         let is_beyond = self.fleet.members.len() >= MOST_MEMBERS;
         if is_beyond && !std::mem::replace(&mut self.is_full, true) {
-            let message =
-                format!("replicas and composites in them come to more than {MOST_MEMBERS} components");
+            let message = format!("replicas and composites in them come to more than {MOST_MEMBERS} components");
             let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, component.name.location, message);
             report.push(one.help("replicas of composites with replicas multiply: is this what is meant?"));
         }

@@ -75,10 +75,9 @@ pub(super) fn is_asked_for(property: &Property) -> bool {
 pub(super) fn from_outside(property: &Property) -> String {
     let name = &property.name;
     match property.env() {
-        Some(variable) => format!(
-            "write it in the file, give `--set {name}=...`, or set {} in the environment",
-            quoted(variable)
-        ),
+        Some(variable) => {
+            format!("write it in the file, give `--set {name}=...`, or set {} in the environment", quoted(variable))
+        }
         None => format!("write it in the file, or give `--set {name}=...`"),
     }
 }

@@ -119,8 +119,7 @@ impl<'a> Parameters<'a> {
         for (place, unit) in fleet.units.iter().enumerate() {
             let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
             let owner = &fleet.members[owner];
-            let outside =
-                ValueSite { unit: owner.unit, composite: owner.composite, instance: owner.instance };
+            let outside = ValueSite { unit: owner.unit, composite: owner.composite, instance: owner.instance };
             for property in &owner.component.properties {
                 if let Some(parameter) = parameters.units[place].by_name.get_mut(property.name.as_str()) {
                     // A second one is reported.
@@ -257,8 +256,7 @@ impl<'a> Parameters<'a> {
     fn pass_on(&mut self, fleet: &Fleet<'a>) {
         let mut passed: HashSet<(usize, &str)> = HashSet::new();
         for unit in (0..self.units.len()).rev() {
-            let is_open =
-                self.units[unit].has_wrong_source || fleet.scopes[fleet.units[unit].scope].is_faulty;
+            let is_open = self.units[unit].has_wrong_source || fleet.scopes[fleet.units[unit].scope].is_faulty;
             if !is_open && passed.is_empty() {
                 continue;
             }
@@ -266,9 +264,7 @@ impl<'a> Parameters<'a> {
             let open = all.filter(|(name, _)| is_open || passed.contains(&(unit, **name)));
             let from: Vec<(usize, &'a str)> = open
                 .filter_map(|(_, parameter)| match parameter.given {
-                    Some(Given::Component(place, given)) => {
-                        Some((place.unit, expression(given.source()?)?.0))
-                    }
+                    Some(Given::Component(place, given)) => Some((place.unit, expression(given.source()?)?.0)),
                     _ => None,
                 })
                 .collect();
@@ -297,7 +293,9 @@ impl<'a> Parameters<'a> {
                 if left > 0 {
                     let message = format!("sources come to more than {MOST_VALUES} values");
                     let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message);
-                    report.push(one.help("each component that takes all values of a property has each of them: is this what is meant?"));
+                    report.push(one.help(
+                        "each component that takes all values of a property has each of them: is this what is meant?",
+                    ));
                 }
                 return Err(());
             }
@@ -347,12 +345,9 @@ impl<'a> Parameters<'a> {
                 // No `source` can name one that is of the wrong form, which is reported.
                 let is_open = is_open || name.contains(char::is_whitespace);
                 if !used.contains(&(origin.file(), origin.element)) && !is_open {
-                    let message =
-                        format!("the property {} of the composite is used by no component", quoted(name));
+                    let message = format!("the property {} of the composite is used by no component", quoted(name));
                     let one = Diagnostic::new(&codes::UNUSED_PROPERTY, name.location, message);
-                    report.push(
-                        one.help(format!("a component takes its value with `source=\"${}\"`", escaped(name))),
-                    );
+                    report.push(one.help(format!("a component takes its value with `source=\"${}\"`", escaped(name))));
                 }
             }
         }

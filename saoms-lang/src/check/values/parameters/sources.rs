@@ -195,12 +195,12 @@ impl<'a> Parameters<'a> {
         }
         report.push(match (is_understood, self.options.assume_classes) {
             (true, _) => one,
-            (false, true) => one
-                .severity(Severity::Warning)
-                .help("another program may understand it: it is taken as given"),
-            (false, false) => one.help(format!(
-                "a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"
-            )),
+            (false, true) => {
+                one.severity(Severity::Warning).help("another program may understand it: it is taken as given")
+            }
+            (false, false) => {
+                one.help(format!("a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"))
+            }
         });
     }
 }

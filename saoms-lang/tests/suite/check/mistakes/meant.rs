@@ -76,7 +76,8 @@ fn the_index_is_meant_by_what_looks_like_it() {
         3:25-31 error S3007: property `number`: `$index` is not a whole number: expected a whole number from 1 to 99
           help: `${index}` is for replicas: give the component a `saoms:count`
           help: `number`: The number of the robot
-    "#]].assert_eq(&of(&robot("R", "<property name=\"number\">$index</property>")));
+    "#]]
+    .assert_eq(&of(&robot("R", "<property name=\"number\">$index</property>")));
     let promoted = "<service name=\"s\" promote=\"R${index}/gps\"/>";
     expect![[r#"
         3:28-37 error S2011: there is no component `R${index}`
@@ -144,8 +145,7 @@ fn a_type_whose_prefix_means_nothing_is_told() {
 #[test]
 fn a_type_of_xml_schema_without_its_prefix_is_told() {
     let with = |kinds: &[&str], attributes: &str| {
-        let property =
-            |(at, kind): (usize, &&str)| format!("<property name=\"n{at}\" type=\"{kind}\">3</property>\n");
+        let property = |(at, kind): (usize, &&str)| format!("<property name=\"n{at}\" type=\"{kind}\">3</property>\n");
         let properties: String = kinds.iter().enumerate().map(property).collect();
         let taken = (0..kinds.len()).map(|at| format!("${{n{at}}}"));
         let taken: String = taken.collect();
@@ -154,10 +154,7 @@ fn a_type_of_xml_schema_without_its_prefix_is_told() {
             &format!("<property name=\"number\">1</property><property name=\"password\">{taken}</property>"),
         );
         let robot = robot.replacen("<component", "<component saoms:count=\"1\"", 1);
-        outcome(
-            &[&part("fleet", &format!("xmlns:saoms=\"urn:saoms:1\" {attributes}"), &(properties + &robot))],
-            &[],
-        )
+        outcome(&[&part("fleet", &format!("xmlns:saoms=\"urn:saoms:1\" {attributes}"), &(properties + &robot))], &[])
     };
     let schema = "xmlns:xs=\"http://www.w3.org/2001/XMLSchema\"";
     expect![[r#"
@@ -218,13 +215,13 @@ fn one_value_that_is_wrong_for_two_properties_is_told_once() {
           help: change the value, or the type
         2:35-39 warning S4006: `password` is given without `user`
           help: give both, or neither
-    "#]].assert_eq(&outcome(&[&part("fleet", schema, outer), &part("inner", schema, &inner)], &[]));
+    "#]]
+    .assert_eq(&outcome(&[&part("fleet", schema, outer), &part("inner", schema, &inner)], &[]));
 }
 
 #[test]
 fn what_comes_from_outside_is_told_where_it_was_given() {
-    let inside =
-        "<property name=\"n\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">4</property>";
+    let inside = "<property name=\"n\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">4</property>";
     let fleet = crate::check::support::fleet(&format!("{inside}\n{GPS}"));
     expect![[r#"
         --set:1:3-3 error S2042: the property `n` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
@@ -260,8 +257,7 @@ fn a_property_that_a_component_does_not_give_says_which() {
         &format!("<property name=\"who\"/>\n{}", robot("R", "<property name=\"number\" source=\"$who\"/>")),
     );
     let with = |given: &str| {
-        let component =
-            format!("<component name=\"U\"><implementation.composite name=\"t:unit\"/>{given}</component>");
+        let component = format!("<component name=\"U\"><implementation.composite name=\"t:unit\"/>{given}</component>");
         outcome(&[&part("fleet", "", &component), &unit], &[])
     };
     expect![[r#"

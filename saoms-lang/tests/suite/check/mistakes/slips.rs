@@ -21,15 +21,10 @@ pub(crate) const GPS: &str = "<component name=\"G\"><implementation.java class=\
 
 #[test]
 fn the_nearest_class_comes_first() {
-    let component =
-        |class: &str| format!("<component name=\"C\"><implementation.java class=\"{class}\"/></component>");
+    let component = |class: &str| format!("<component name=\"C\"><implementation.java class=\"{class}\"/></component>");
     let fix = |class: &str| {
         let found = of(&component(class));
-        found
-            .lines()
-            .filter_map(|line| line.strip_prefix("  fix: ")?.split(" [").next())
-            .collect::<Vec<_>>()
-            .join("\n")
+        found.lines().filter_map(|line| line.strip_prefix("  fix: ")?.split(" [").next()).collect::<Vec<_>>().join("\n")
     };
     expect!["replace `Robot` with `example.Robot`"].assert_eq(&fix("Robot"));
     expect!["replace `EXAMPLE.ROBOT` with `example.Robot`"].assert_eq(&fix("EXAMPLE.ROBOT"));
@@ -38,8 +33,7 @@ fn the_nearest_class_comes_first() {
         replace `saoms.Robot1` with `robot.Robot001`
         replace `saoms.Robot1` with `example.Robot001`"#]]
     .assert_eq(&fix("saoms.Robot1"));
-    expect!["replace `MessageBroker` with `unibg.robotics.tca.MessageBrokerImpl`"]
-        .assert_eq(&fix("MessageBroker"));
+    expect!["replace `MessageBroker` with `unibg.robotics.tca.MessageBrokerImpl`"].assert_eq(&fix("MessageBroker"));
     expect![[r#"
         2:49-66 error S3001: there is no class `example.BatteryMS`
           help: it is a loop: give it to a component that has loops, by `<saoms:loop name="..." class="example.BatteryMS"/>` in it
@@ -81,7 +75,8 @@ fn replicas_that_lack_their_index_get_it() {
         3:21-32 error S3013: components `R1` and `R2` have the same `ID` `R{index:02}` (index 2, and in 1 more)
           help: every robot needs its own
           fix: replace `R{index:02}` with `R${index:02}` [3:21-32 "R${index:02}"]
-    "#]].assert_eq(&replicas("R${index}", "R{index:02}", "${index}"));
+    "#]]
+    .assert_eq(&replicas("R${index}", "R{index:02}", "${index}"));
     expect![[r#"
         2:18-26 error S2046: all replicas would be called `R{index}`
           fix: replace `R{index}` with `R${index}` [2:18-26 "R${index}"] [3:21-29 "R${index}"]
@@ -104,7 +99,10 @@ fn replicas_that_lack_their_index_get_it() {
     expect![[r#"
         2:31-36 error S2045: the composite has no property `index`
           help: `index` is what replicas are counted by: give the component a `saoms:count`
-    "#]].assert_eq(&of("<component name=\"G\" saoms:if=\"index &lt; 3\"><implementation.java class=\"example.Gps\"/></component>"));
+    "#]]
+    .assert_eq(&of(
+        "<component name=\"G\" saoms:if=\"index &lt; 3\"><implementation.java class=\"example.Gps\"/></component>",
+    ));
 }
 
 /// Without their number no replicas can be made, so that something has to say so as an error.
@@ -120,7 +118,8 @@ fn a_count_that_is_none_is_an_error() {
         1:127-138 error S1013: what is in the namespace `urn:saoms:0` is passed over: it is nearly `urn:saoms:1`
           help: `s:count` in it says how many replicas there are, and they cannot be made without
           fix: replace it with `urn:saoms:1` [1:127-138 "urn:saoms:1"]
-    "#]].assert_eq(&robots("xmlns:s='urn:saoms:0'", "s:count='3'", ""));
+    "#]]
+    .assert_eq(&robots("xmlns:s='urn:saoms:0'", "s:count='3'", ""));
     expect![[r#"
         2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
           help: add `saoms:count="..."`
@@ -130,9 +129,9 @@ fn a_count_that_is_none_is_an_error() {
         2:29-34 error S1007: `component` has no attribute `count`
           help: it is an attribute of SAOMS, of the namespace `urn:saoms:1`
           fix: replace `count` with `saoms:count` [1:11-11 " xmlns:saoms=\"urn:saoms:1\""] [2:29-34 "saoms:count"]
-    "#]].assert_eq(&robots("", "count='3'", ""));
-    let allowed =
-        "<s:severity xmlns:s='urn:saoms:1' code='S1007' level='allow' reason='tools put their own there'/>";
+    "#]]
+    .assert_eq(&robots("", "count='3'", ""));
+    let allowed = "<s:severity xmlns:s='urn:saoms:1' code='S1007' level='allow' reason='tools put their own there'/>";
     expect![[r#"
         2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
           help: add `saoms:count="..."`
@@ -237,10 +236,7 @@ fn a_table_between_other_separators_is_told_once() {
 #[test]
 fn quotes_of_word_processors_are_told() {
     let with = |component: &str| {
-        faults_of(
-            &[&fleet(&format!("{component}<implementation.java class=\"example.Gps\"/></component>"))],
-            &[],
-        )
+        faults_of(&[&fleet(&format!("{component}<implementation.java class=\"example.Gps\"/></component>"))], &[])
     };
     expect![[r#"
         2:17-20 error S0105: `“` is no quote of XML: values stand between two `"`
@@ -323,14 +319,10 @@ fn loops_are_taken_as_given_with_the_classes() {
 #[test]
 fn words_of_other_languages_are_told_once() {
     let with = |from: &str, to: &str| {
-        let robot =
-            robot("R", "<property name=\"number\">1</property><reference name=\"gps\" target=\"G\"/>");
+        let robot = robot("R", "<property name=\"number\">1</property><reference name=\"gps\" target=\"G\"/>");
         assert!(robot.contains(from), "{from}");
         let found = of(&format!("{GPS}\n{}", robot.replace(from, to)));
-        found
-            .lines()
-            .filter(|line| !line.contains(" (example."))
-            .fold(String::new(), |all, line| all + line + "\n")
+        found.lines().filter(|line| !line.contains(" (example.")).fold(String::new(), |all, line| all + line + "\n")
     };
     let class = "<implementation.java class=\"example.Robot\"/>";
     expect![[r#"
@@ -383,7 +375,8 @@ fn words_of_other_languages_are_told_once() {
         4:25-28 error S3007: property `number`: `3 m` is not a whole number: expected a whole number from 1 to 99
           help: `number`: The number of the robot
           fix: replace `3 m` with `3` [4:25-28 "3"]
-    "#]].assert_eq(&with("\">1</property><ref", "\">3 m</property><ref"));
+    "#]]
+    .assert_eq(&with("\">1</property><ref", "\">3 m</property><ref"));
 }
 
 #[test]
@@ -399,9 +392,9 @@ fn folders_stand_before_slashes() {
 
 #[test]
 fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
-    let own = "<property period=\"100\"/><property  speed='1' many=\"true\">2</property><property nam=\"x\"/><property/>";
-    let text =
-        format!("<component name=\"R\"><implementation.java class=\"example.Robot\"/>\n{own}</component>");
+    let own =
+        "<property period=\"100\"/><property  speed='1' many=\"true\">2</property><property nam=\"x\"/><property/>";
+    let text = format!("<component name=\"R\"><implementation.java class=\"example.Robot\"/>\n{own}</component>");
     expect![[r#"
         3:11-17 error S1007: `property` has no attribute `period`
           fix: replace it with `name="period" value="100"` [3:11-23 "name=\"period\" value=\"100\""]

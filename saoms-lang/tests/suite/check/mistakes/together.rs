@@ -47,8 +47,7 @@ fn a_faulty_expression_hides_nothing_else() {
         5:99-106 error S2011: there is no component `Nowhere`
           help: the components are `R*`
     "#]].assert_eq(&by_count);
-    let by_table =
-        of(&robot("name=\"R${index}\" saoms:count=\"3\" saoms:overrides=\"none.csv\"", "R${index}"));
+    let by_table = of(&robot("name=\"R${index}\" saoms:count=\"3\" saoms:overrides=\"none.csv\"", "R${index}"));
     expect![[r#"
         2:62-70 error S0003: the file was not read
         3:65-69 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R1`, index 1)
@@ -224,7 +223,7 @@ fn a_wrong_value_hides_nothing_that_the_constructor_finds_in_others() {
         4:60-62 error S3007: property `width`: `3O` is not a whole number: expected a whole number from 1 to 100
           help: the default is `8`
     "#]]
-        .assert_eq(&board("<property name=\"period\">1</property><property name=\"width\">3O</property>"));
+    .assert_eq(&board("<property name=\"period\">1</property><property name=\"width\">3O</property>"));
     // A label may say anything.
     expect![[r#"
         4:53-58 error S3005: the property `label` is given twice
@@ -337,18 +336,8 @@ fn slips_that_many_make_have_hints() {
             .filter(|line| line.contains("fix:") || line.contains("source=") || line.contains("saoms:count"));
         hints.map(|line| line.trim().to_owned() + "\n").collect::<String>()
     };
-    let all = [
-        "10Hz",
-        "3hz",
-        "2 sec",
-        "5 minutes",
-        "$tick",
-        "$(arg tick)",
-        "${100 + index}",
-        "0.5.1 sec",
-        "0Hz",
-        "$ x",
-    ];
+    let all =
+        ["10Hz", "3hz", "2 sec", "5 minutes", "$tick", "$(arg tick)", "${100 + index}", "0.5.1 sec", "0Hz", "$ x"];
     let all: Vec<String> = all.iter().map(|period| format!("{period} => {}", found(period, "1"))).collect();
     expect![[r#"
         10Hz => help: a component takes its value with `source="$tick"`

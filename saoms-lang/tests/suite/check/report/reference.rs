@@ -87,8 +87,7 @@ fn example(code: &Code) -> Result<String, String> {
     let (diagnostics, sources) = match code.id {
         "S0001" | "S0002" | "S0003" | "S0004" | "S0005" | "S0006" | "S0007" => unreadable(code.id),
         "S0008" => {
-            let components =
-                "<component name=\"Gps\"><implementation.java class=\"example.Gsp\"/></component>\n";
+            let components = "<component name=\"Gps\"><implementation.java class=\"example.Gsp\"/></component>\n";
             let text = crate::check::support::fleet(&components.repeat(1500));
             checked(&[("fleet.composite".to_owned(), text)], 1, &[])
         }

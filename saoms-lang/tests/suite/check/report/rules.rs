@@ -72,15 +72,8 @@ fn every_rule_has_its_code_or_says_why_not() {
         let messages: BTreeSet<&str> =
             messages.filter(|(_, id)| **id == code.id).map(|(message, _)| *message).collect();
         let join = |all: BTreeSet<&str>| all.into_iter().collect::<Vec<_>>().join(", ");
-        let _ = writeln!(
-            page,
-            "| {} | {} | {} | {} | {} |",
-            code.id,
-            code.name,
-            code.meaning,
-            join(rules),
-            join(messages)
-        );
+        let _ =
+            writeln!(page, "| {} | {} | {} | {} | {} |", code.id, code.name, code.meaning, join(rules), join(messages));
     }
     // Those of rules over whole fleets are of crates of components, which the core does not know:
     // `tests/suite/check/rules.rs` writes them.

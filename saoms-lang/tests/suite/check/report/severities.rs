@@ -20,8 +20,7 @@ struct Found {
 fn found(texts: &[&str], severities: &[&str]) -> Found {
     let project = Project::new().in_memory().severities(severities.iter().copied());
     let project = project.text("fleet.composite", texts[0]);
-    let project =
-        texts[1..].iter().fold(project, |project, text| project.other_text("fleet.composite", *text));
+    let project = texts[1..].iter().fold(project, |project, text| project.other_text("fleet.composite", *text));
     let compilation = project.compile(&registry());
     assert_eq!(compilation.output.is_some(), !compilation.has_errors());
     let (all, sources) = (&compilation.diagnostics, &compilation.sources);
@@ -114,10 +113,7 @@ fn reasons_are_in_the_output_for_machines() {
     let allowed = of(&clocks(&severity("S4001", "allow"), ""), &[]);
     let one = &allowed.json["diagnostics"][0];
     assert_eq!((&one["severity"], &one["code"]), (&Value::from("warning"), &Value::from("S4001")));
-    assert_eq!(
-        (&one["set"]["level"], &one["set"]["reason"]),
-        (&Value::from("allow"), &Value::from("because"))
-    );
+    assert_eq!((&one["set"]["level"], &one["set"]["reason"]), (&Value::from("allow"), &Value::from("because")));
     let suppression = &allowed.sarif["runs"][0]["results"][0]["suppressions"][0];
     assert_eq!(
         (&suppression["kind"], &suppression["justification"]),
@@ -175,7 +171,8 @@ fn an_option_that_asks_for_more_than_a_composite_says_so_too() {
         --severity:1:1-6 note S2049: S4001 is not set to `error`: a composite sets it to `allow`, and counts first
           4:23-28 set here
           help: change it there, or leave the option out
-    "#]].assert_eq(&told);
+    "#]]
+    .assert_eq(&told);
 }
 
 /// What is found in the second of two components is about the first as well.
@@ -303,11 +300,10 @@ fn composites_inside_say_it_for_themselves() {
 /// Of a thousand of a kind, some are only counted: what is said of the others holds for them.
 #[test]
 fn severities_hold_for_what_is_only_counted() {
-    let gps =
-        "<component name=\"G{}\" odd=\"\"><implementation.java class=\"example.Gps\"/>odd</component>\n";
-    let property = "<property xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\" name=\"p{}\" type=\"xsd:int\">odd</property>\n";
-    let several =
-        |of: &str, count: usize| (0..count).map(|at| of.replace("{}", &at.to_string())).collect::<String>();
+    let gps = "<component name=\"G{}\" odd=\"\"><implementation.java class=\"example.Gps\"/>odd</component>\n";
+    let property =
+        "<property xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\" name=\"p{}\" type=\"xsd:int\">odd</property>\n";
+    let several = |of: &str, count: usize| (0..count).map(|at| of.replace("{}", &at.to_string())).collect::<String>();
     let text = several(gps, 1200) + &several(property, 5);
     let all = |level: &str| {
         let codes = ["S1007", "S1012", "S2042"];

@@ -141,8 +141,7 @@ fn expressions_take_the_properties_of_what_is_included() {
         )
     };
     let (south, north) = (with("south", 1, &gps("S")), with("north", 2, &gps("N")));
-    let more =
-        part("more", "", "<component name=\"M\"><implementation.java class=\"example.Gps\"/></component>");
+    let more = part("more", "", "<component name=\"M\"><implementation.java class=\"example.Gps\"/></component>");
     let found = |site: &str, includes: &str| {
         let robot = "<component name=\"R\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R</property><property name=\"period\">1</property><property name=\"number\" source=\"$n\"/></component>";
         let inside = format!("<property name=\"site\">{site}</property>{includes}{}{robot}", gps("G"));
@@ -228,7 +227,8 @@ fn what_is_promoted_and_absent_is_told_with_what_can_be_done() {
         2:67-68 error S2011: the component `A` is not there
           3:31-46 this is false
           help: what a composite promotes has no condition: put both into a composite that is included with this one
-    "#]].assert_eq(&outcome(&[&fleet], &[]));
+    "#]]
+    .assert_eq(&outcome(&[&fleet], &[]));
 }
 
 /// What a condition keeps away declares nothing for those that are there.
@@ -243,9 +243,8 @@ fn expressions_take_nothing_of_what_is_kept_away() {
     let kept_away =
         part("more", SAOMS, &format!(r#"<property name="n">2</property>{}"#, robots("n").replace('G', "M")));
     let including = |inside: &str, condition: &str| {
-        let outer = format!(
-            r#"<property name="big">false</property><include name="t:more" saoms:if="{condition}"/>{inside}"#
-        );
+        let outer =
+            format!(r#"<property name="big">false</property><include name="t:more" saoms:if="{condition}"/>{inside}"#);
         outcome(&[&part("fleet", SAOMS, &outer), &kept_away], &[])
     };
     expect![[r#"

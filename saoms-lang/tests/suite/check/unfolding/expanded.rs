@@ -88,12 +88,8 @@ fn all_that_is_resolved_is_written_out() {
 
 #[test]
 fn references_without_a_target_make_it_one_of_sca_1_0() {
-    let text = part(
-        "fleet",
-        "",
-        r#"<component name="N"><implementation.java class="example.Navigator"/></component>"#,
-    )
-    .replace("http://docs.oasis-open.org/ns/opencsa/sca/200912", "http://www.osoa.org/xmlns/sca/1.0");
+    let text = part("fleet", "", r#"<component name="N"><implementation.java class="example.Navigator"/></component>"#)
+        .replace("http://docs.oasis-open.org/ns/opencsa/sca/200912", "http://www.osoa.org/xmlns/sca/1.0");
     let fleet = part("outer", "", r#"<include name="t:fleet"/>"#);
     assert!(settled(&[&fleet, &text]).contains("xmlns=\"http://www.osoa.org/xmlns/sca/1.0\""));
 }
@@ -125,8 +121,7 @@ fn lowered_errors_stay_lowered() {
         )
     };
     let lowered = "<s:severity code=\"S3013\" level=\"note\" reason=\"twins, &lt;they say\"/>";
-    let text =
-        settled(&[&part("fleet", "xmlns:s=\"urn:saoms:1\"", &(robot("A", "") + &robot("B", lowered)))]);
+    let text = settled(&[&part("fleet", "xmlns:s=\"urn:saoms:1\"", &(robot("A", "") + &robot("B", lowered)))]);
     let expected = "<s:severity code=\"S3013\" level=\"note\" reason=\"twins, &lt;they say\"/>";
     assert_eq!(text.matches(expected).count(), 1, "{text}");
 }
@@ -208,13 +203,9 @@ fn text(place: usize, levels: &[Level]) -> String {
         );
         offers.push("c/drive".to_owned());
     }
-    let targets: Vec<&str> = level
-        .targets
-        .iter()
-        .map(|(_, target)| offers[usize::from(*target) % offers.len()].as_str())
-        .collect();
-    let attribute =
-        if targets.is_empty() { String::new() } else { format!(" target=\"{}\"", targets.join(" ")) };
+    let targets: Vec<&str> =
+        level.targets.iter().map(|(_, target)| offers[usize::from(*target) % offers.len()].as_str()).collect();
+    let attribute = if targets.is_empty() { String::new() } else { format!(" target=\"{}\"", targets.join(" ")) };
     let fixed = level.targets.iter().any(|(fixed, _)| *fixed);
     inside += &format!(
         "<component name=\"band\"><implementation.java class=\"example.Conductor\"/><reference name=\"wheels\" nonOverridable=\"{fixed}\"{attribute}/><reference name=\"gps\" target=\"G\"/></component><component name=\"G\"><implementation.java class=\"example.Gps\"/></component>"

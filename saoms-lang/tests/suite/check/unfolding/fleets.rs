@@ -118,8 +118,8 @@ fn composites_are_replicated_with_all_that_is_in_them() {
         C (example.Conductor) wheels-> gps->Hall1/G1/position+Hall2/G1/position
     "#]]
     .assert_eq(&outcome(&[&fleet(inside), &hall], &[]));
-    let wrong = inside
-        .replace("${index}</property><property name=\"id\"", "${index * 60}</property><property name=\"id\"");
+    let wrong =
+        inside.replace("${index}</property><property name=\"id\"", "${index * 60}</property><property name=\"id\"");
     expect![[r#"
         2:111-124 error S3008: property `number`: `120` is out of range: expected a whole number from 1 to 99 (in `Hall2/R`)
           hall:4:167-172 used here as `number`

@@ -124,12 +124,8 @@ fn a_composite_implements_components_each_with_its_own_values() {
     "#]]
     .assert_eq(&outcome(&[&fleet, &robot], &[]));
     let (assembly, ..) = nested(&[&fleet, &robot], &["pace=5s"], false);
-    let periods: Vec<u64> = assembly
-        .unwrap()
-        .components
-        .iter()
-        .filter_map(|one| Some(one.task.as_ref()?.period.as_secs()))
-        .collect();
+    let periods: Vec<u64> =
+        assembly.unwrap().components.iter().filter_map(|one| Some(one.task.as_ref()?.period.as_secs())).collect();
     assert_eq!(periods, [1, 5]);
 }
 
@@ -137,8 +133,7 @@ fn a_composite_implements_components_each_with_its_own_values() {
 fn faults_of_an_inner_composite_are_told_once_and_those_of_its_users_where_they_are() {
     let user = r#"<component name="NAME"><implementation.composite name="t:robot"/><property name="nr">7</property>
 <service name="driv"/><reference name="when" target="x"/><reference name="where" target="two/drive" multiplicity="1..n"/></component>"#;
-    let fleet =
-        part("fleet", "", &format!("{}\n{}", user.replace("NAME", "one"), user.replace("NAME", "two")));
+    let fleet = part("fleet", "", &format!("{}\n{}", user.replace("NAME", "one"), user.replace("NAME", "two")));
     let robot = part("robot", "", &ROBOT.replace("$period", "$perod").replace("Robot/move", "Robot/mov"));
     expect![[r#"
         2:18-21 error S2025: component `one` has to give the property `id` of its composite a value
@@ -276,14 +271,11 @@ fn targets_from_outside_take_the_place_of_those_inside_unless_they_must_not() {
 fn a_target_of_a_composites_reference_is_a_service_around_the_composite() {
     let inner = |target: &str| {
         let inside = r#"<component name="A"><implementation.java class="example.Gps"/></component><component name="H"><implementation.java class="example.Gps"/></component>"#;
-        let reference =
-            format!(r#"<reference name="other" promote="A" multiplicity="0..1" target="{target}"/>"#);
+        let reference = format!(r#"<reference name="other" promote="A" multiplicity="0..1" target="{target}"/>"#);
         part("inner", "", &format!("{reference}\n{inside}"))
     };
     let fleet = |reference: &str| {
-        let used = format!(
-            r#"<component name="x"><implementation.composite name="t:inner"/>{reference}</component>"#
-        );
+        let used = format!(r#"<component name="x"><implementation.composite name="t:inner"/>{reference}</component>"#);
         let others = "<component name=\"G\"><implementation.java class=\"example.Gps\"/></component><component name=\"I\"><implementation.java class=\"example.Gps\"/></component>";
         part("fleet", "", &format!("{used}\n{others}"))
     };
@@ -334,11 +326,8 @@ fn autowire_finds_all_that_a_reference_takes() {
 
 #[test]
 fn composites_that_multiply_end() {
-    let mut texts = vec![part(
-        "c0",
-        "",
-        "<component name=\"a\"><implementation.java class=\"example.Gps\"/></component>",
-    )];
+    let mut texts =
+        vec![part("c0", "", "<component name=\"a\"><implementation.java class=\"example.Gps\"/></component>")];
     for level in 1..30 {
         let inner = level - 1;
         let one = |name: &str| {
@@ -415,8 +404,7 @@ fn what_a_composite_of_1_0_promotes_by_itself_is_a_warning() {
     let inside = r#"<service name="s" promote="A/s"/><service name="s" promote="B"/><reference name="r" promote="A/r"/>
 <component name="A"><implementation.java class="other.A"/><service name="s"/></component>"#;
     let inner = part("inner", "", inside);
-    let outer =
-        part("outer", "", r#"<component name="A"><implementation.composite name="t:inner"/></component>"#);
+    let outer = part("outer", "", r#"<component name="A"><implementation.composite name="t:inner"/></component>"#);
     let of_1_0 = |text: &str| text.replace(Version::Oasis200912.namespace(), Version::Osoa10.namespace());
     let found = |texts: &[&str]| {
         let texts: Vec<String> = texts.iter().map(|text| of_1_0(text)).collect();
@@ -456,9 +444,8 @@ fn a_name_that_means_another_namespace_than_it_leads_to_says_so() {
         "xmlns:u=\"urn:u\"",
         "<include name=\"hall\"/>\n<include name=\"yard\"/>\n<component name=\"A\"><implementation.composite name=\"hall\"/></component>\n<component name=\"B\"><implementation.composite name=\"x:hall\"/></component>\n<include name=\"u:dock\"/>",
     );
-    let gps = |name: &str| {
-        format!("<component name=\"{name}\"><implementation.java class=\"example.Gps\"/></component>")
-    };
+    let gps =
+        |name: &str| format!("<component name=\"{name}\"><implementation.java class=\"example.Gps\"/></component>");
     let hall = part("hall", "", &gps("H"));
     let yard = part("yard", "", &gps("Y")).replace("targetNamespace=\"urn:t\"", "");
     let dock = part("dock", "", &gps("D")).replace("\"urn:t\"", "\"urn:u\"");
@@ -479,8 +466,8 @@ fn a_name_that_means_another_namespace_than_it_leads_to_says_so() {
           help: other composites refer to this one by its namespace and name
     "#]].assert_eq(&outcome(&[&fleet, &hall, &yard, &dock], &[]));
     // Where no prefix is bound, one is declared; a default namespace of the author's own is what is meant.
-    let no_prefix = fleet.replace("xmlns:t=\"urn:t\"", "").lines().take(2).collect::<Vec<_>>().join("\n")
-        + "</composite>";
+    let no_prefix =
+        fleet.replace("xmlns:t=\"urn:t\"", "").lines().take(2).collect::<Vec<_>>().join("\n") + "</composite>";
     expect![[r#"
         2:16-20 warning S2030: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
           hall:1:115-119 this one

@@ -40,8 +40,7 @@ fn expressions_inside_of_composites_take_what_sources_lead_to() {
         ))
     };
     let both = |count: &str, open: &str| {
-        let given =
-            format!(r#"<property name="count" source="{count}"/><property name="open" source="{open}"/>"#);
+        let given = format!(r#"<property name="count" source="{count}"/><property name="open" source="{open}"/>"#);
         outcome(&[&outer(&given), &hall], &[])
     };
     expect![[r#"
@@ -74,12 +73,7 @@ fn expressions_inside_of_composites_take_what_sources_lead_to() {
           help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
     "#]]
     .assert_eq(&outcome(
-        &[
-            &outer(
-                r#"<property name="count"><a xmlns="">1</a></property><property name="open">true</property>"#,
-            ),
-            &hall,
-        ],
+        &[&outer(r#"<property name="count"><a xmlns="">1</a></property><property name="open">true</property>"#), &hall],
         &[],
     ));
     // Through a composite in between, and with the numbers of replicas.
@@ -112,8 +106,7 @@ fn lines_of_tables_are_about_a_replica_in_any_of_the_places_of_a_composite() {
         r#"<component name="A"><implementation.composite name="t:hall"/></component>
 <component name="B"><implementation.composite name="t:hall"/><property name="first">11</property></component>"#,
     );
-    let with =
-        |table: &str| found(&[("a.composite", &halls), ("hall.composite", &hall), ("table.csv", table)]);
+    let with = |table: &str| found(&[("a.composite", &halls), ("hall.composite", &hall), ("table.csv", table)]);
     expect![[r#"
         table.csv:4:1-2 warning S2047: there is no replica `7`
           help: the indices go from 1 to 2

@@ -21,8 +21,7 @@ pub(crate) fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> 
         fs::write(path, bytes).unwrap();
     }
     // The limit is for the files of values: the composite is not read from one.
-    let text =
-        Project::new().text(folder.path().join("fleet.composite").display().to_string(), fleet(inside));
+    let text = Project::new().text(folder.path().join("fleet.composite").display().to_string(), fleet(inside));
     compiled_in(folder.path(), &text.max_size(max_size))
 }
 
@@ -50,8 +49,7 @@ fn a_value_is_what_its_file_holds() {
 
 #[test]
 fn a_fault_in_a_file_is_shown_in_that_file() {
-    let inside =
-        robot("<property name=\"speed\" file=\"speed.txt\"/>\n<property name=\"grace\" file=\"empty\"/>");
+    let inside = robot("<property name=\"speed\" file=\"speed.txt\"/>\n<property name=\"grace\" file=\"empty\"/>");
     let (_, found) = checked(&inside, &[("speed.txt", b"\n  fast"), ("empty", b" \n")], MAX_SIZE);
     expect![[r#"
         speed.txt:2:3-7 error S3007: property `speed`: `fast` is not a number: expected a number from 0.0 to 2.5 [m/s]
@@ -152,8 +150,7 @@ fn a_component_type_gives_the_values_that_components_do_not() {
         let (assembly, found) = compiled_in(folder.path(), &Project::new().file(path));
         let speeds = assembly.map(|assembly| {
             let all = assembly.components.into_iter().map(|one| one.values);
-            all.map(|values| values.into_iter().find(|(name, _)| name == "speed").map(|(_, value)| value))
-                .collect()
+            all.map(|values| values.into_iter().find(|(name, _)| name == "speed").map(|(_, value)| value)).collect()
         });
         (speeds, found)
     };
@@ -206,17 +203,12 @@ fn values_of_a_file_are_in_elements() {
     };
     let number = values("\n<s:value> 7 </s:value>");
     let outcome = |stops: &str, charger: &str| {
-        let files: [(&str, &[u8]); 3] = [
-            ("number.xml", number.as_bytes()),
-            ("stops.xml", stops.as_bytes()),
-            ("charger.xml", charger.as_bytes()),
-        ];
+        let files: [(&str, &[u8]); 3] =
+            [("number.xml", number.as_bytes()), ("stops.xml", stops.as_bytes()), ("charger.xml", charger.as_bytes())];
         checked(&inside, &files, MAX_SIZE)
     };
     let stops = values("<s:value>1</s:value><s:value>2</s:value>");
-    for charger in
-        [values("<s:value><x>3</x></s:value>"), "<at><x>3</x></at>".to_owned(), "<x>3</x>".to_owned()]
-    {
+    for charger in [values("<s:value><x>3</x></s:value>"), "<at><x>3</x></at>".to_owned(), "<x>3</x>".to_owned()] {
         let (assembly, found) = outcome(&stops, &charger);
         assert_eq!(found, "");
         let assembly = assembly.unwrap();
@@ -224,8 +216,7 @@ fn values_of_a_file_are_in_elements() {
         assert_eq!(value(&assembly, "stops"), PropertyValue::Many(["1".into(), "2".into()].into()));
         assert_eq!(value(&assembly, "charger"), PropertyValue::Complex([("x".into(), "3".into())].into()));
     }
-    let (_, found) =
-        outcome(&values("<s:value>1</s:value><s:value>two</s:value>"), "<at>\n<x>three</x><z>4</z></at>");
+    let (_, found) = outcome(&values("<s:value>1</s:value><s:value>two</s:value>"), "<at>\n<x>three</x><z>4</z></at>");
     expect![[r#"
         stops.xml:2:99-102 error S3007: property `stops`: `two` is not a whole number: expected a whole number from 0 to 65535
         charger.xml:2:4-9 error S3007: property `charger.x`: `three` is not a whole number: expected a whole number from -2147483648 to 2147483647
@@ -251,11 +242,8 @@ fn values_of_a_file_are_in_elements() {
 #[test]
 fn a_text_may_look_like_xml() {
     for text in ["<robot>", "<robot>7</robot>", "< 7"] {
-        let (_, found) = checked(
-            &robot("<property name=\"grace\" file=\"grace\"/>"),
-            &[("grace", text.as_bytes())],
-            MAX_SIZE,
-        );
+        let (_, found) =
+            checked(&robot("<property name=\"grace\" file=\"grace\"/>"), &[("grace", text.as_bytes())], MAX_SIZE);
         assert!(found.starts_with("grace:1:1-") && found.contains("S3007"), "{found}");
     }
 }

@@ -26,9 +26,7 @@ fn taken(property: &str, outside: &str, given: &str) -> String {
     let outer = part(
         "outer",
         "xmlns:x=\"urn:x\"",
-        &format!(
-            "{outside}<component name=\"H\"><implementation.composite name=\"t:hall\"/>{given}</component>"
-        ),
+        &format!("{outside}<component name=\"H\"><implementation.composite name=\"t:hall\"/>{given}</component>"),
     );
     outcome(&[&outer, &hall(property)], &[])
 }
@@ -81,9 +79,8 @@ fn a_property_that_has_to_be_given_a_value_is_not_given_one_by_a_source_without(
         "",
         "<property name=\"n\" mustSupply=\"true\"/><component name=\"G\"><implementation.java class=\"example.Gps\"/></component>",
     );
-    let outer = fleet(
-        "<component name=\"H\"><implementation.composite name=\"t:hall\"/><property name=\"n\"/></component>",
-    );
+    let outer =
+        fleet("<component name=\"H\"><implementation.composite name=\"t:hall\"/><property name=\"n\"/></component>");
     expect![[r#"
         2:78-79 error S2025: component `H` has to give the property `n` of its composite a value
           hall:2:17-18 declared here, without a value

@@ -79,8 +79,7 @@ fn sources_are_paths() {
     let value = |source: &str, name: &str| {
         let own = robot(&format!("<property name=\"{name}\" source=\"{source}\"/>"));
         let many = "<property name=\"many\" many=\"true\"><value>1</value><value>2</value></property>";
-        let text =
-            format!("<property name=\"b\">{bays}</property>{many}<property name=\"s\">1</property>{own}");
+        let text = format!("<property name=\"b\">{bays}</property>{many}<property name=\"s\">1</property>{own}");
         let found = outcome(&[&fleet(&text)], &[]);
         match found.lines().find(|line| line.contains(" error ")) {
             Some(error) => error.split(" error ").nth(1).unwrap().to_owned(),
@@ -213,7 +212,7 @@ fn settings_take_the_place_of_composite_properties() {
           --set:1:1-6 first here
           help: keep one of them
     "#]]
-        .assert_eq(&faults_of(&[&text], &["speed= 3", "sped=1", "speed=1", "speed", "=1", "speed ="]));
+    .assert_eq(&faults_of(&[&text], &["speed= 3", "sped=1", "speed=1", "speed", "=1", "speed ="]));
     let period = r#"<property name="period">1</property><component name="C"><implementation.java class="example.Clock"/>
 <property name="ID">C</property><property name="period" source="$period"/></component>"#;
     expect![[r#"
@@ -233,9 +232,7 @@ fn settings_take_the_place_of_composite_properties() {
 #[test]
 fn values_are_the_elements_that_properties_are_typed_by() {
     let place = r#"<p:place xmlns:p="urn:x"><x xmlns="">3</x><y xmlns="">4</y></p:place>"#;
-    let typed = |name: &str| {
-        format!(r#"<property name="{name}" element="p:place" xmlns:p="urn:x">{place}</property>"#)
-    };
+    let typed = |name: &str| format!(r#"<property name="{name}" element="p:place" xmlns:p="urn:x">{place}</property>"#);
     let count = r#"<property name="count" element="p:n" xmlns:p="urn:x"><p:n>7</p:n></property>"#;
     let own = robot(&typed("charger"));
     let by_source = format!(
@@ -444,20 +441,9 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
         }
     };
     let sources = [
-        "$c//w",
-        "$c//w[1]",
-        "$c/a//b[2]/w[2]",
-        "$c//b//w",
-        "$c//b[@id=3]/w",
-        "$c/a/b[w=10]/w",
-        "$c/a/b[w='20']/w[position()=2]",
-        "$c//w[position()=last()]",
-        "$c//b/@id",
-        "$c//b[w=11]/w",
-        "$c//v",
-        "$c//",
-        "$c///w",
-        "$c/a/b[position()<2]/w",
+        "$c//w", "$c//w[1]", "$c/a//b[2]/w[2]", "$c//b//w", "$c//b[@id=3]/w", "$c/a/b[w=10]/w",
+        "$c/a/b[w='20']/w[position()=2]", "$c//w[position()=last()]", "$c//b/@id", "$c//b[w=11]/w", "$c//v", "$c//",
+        "$c///w", "$c/a/b[position()<2]/w",
     ];
     let all: String = sources.iter().map(|source| of(&source.replace('<', "&lt;"), false)).collect();
     expect![[r#"
@@ -478,10 +464,8 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
           help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
     "#]].assert_eq(&all);
     // Another program may understand more.
-    let all: String = ["count($c/a/b)", "$c/a/b[position()&gt;1]/w", "$c/x"]
-        .iter()
-        .map(|source| of(source, true))
-        .collect();
+    let all: String =
+        ["count($c/a/b)", "$c/a/b[position()&gt;1]/w", "$c/x"].iter().map(|source| of(source, true)).collect();
     expect![[r#"
         count($c/a/b): 3:97-110 warning S2023: `count($c/a/b)` is no path from a property
           help: another program may understand it: it is taken as given

@@ -238,18 +238,7 @@ fn absurd_periods() {
         ))
     };
     let all: String = [
-        "0",
-        "-5",
-        "-1s",
-        "99us",
-        "25h",
-        "1e3",
-        "100 ms",
-        "100us",
-        "24h",
-        "10 min",
-        "inf",
-        "1 week",
+        "0", "-5", "-1s", "99us", "25h", "1e3", "100 ms", "100us", "24h", "10 min", "inf", "1 week",
         "184467440737095516150000s",
     ]
     .map(|text| format!("{text}\n{}", period(text)))
@@ -343,7 +332,8 @@ fn values_in_two_ways_and_complex_ones() {
     )));
     expect![[r#"
         3:2-10 error S3006: the property `charger.x` is missing: expected a whole number from -2147483648 to 2147483647
-    "#]].assert_eq(&faults(&robot(r#"<property name="charger"><y xmlns="">1</y></property>"#)));
+    "#]]
+    .assert_eq(&faults(&robot(r#"<property name="charger"><y xmlns="">1</y></property>"#)));
 }
 
 #[test]

@@ -15,8 +15,7 @@ fn found(inside: &str) -> String {
 /// Components in a line each.
 fn fleet(components: &[(&str, &str, &str)]) -> String {
     let one = |(name, class, properties): &(&str, &str, &str)| {
-        let period =
-            if properties.contains("period") { "" } else { "<property name=\"period\">100</property>" };
+        let period = if properties.contains("period") { "" } else { "<property name=\"period\">100</property>" };
         let count = if name.contains('$') { "saoms:count=\"400\"" } else { "" };
         format!(
             "<component name=\"{name}\" {count}><implementation.java class=\"example.{class}\"/><property name=\"ID\">{name}</property>{period}{properties}</component>\n"
@@ -86,12 +85,7 @@ fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
     let found = |new: &str| {
         let first = format!("{}{}", number("1"), rename(&format!("POSTOPIC,{new}")));
         let (second, third) = (number("2"), number("3"));
-        let all = [
-            ("A", "Robot", &*first),
-            ("B", "Robot", &*second),
-            ("C", "Robot", &*third),
-            ("D", "Dispatcher", ""),
-        ];
+        let all = [("A", "Robot", &*first), ("B", "Robot", &*second), ("C", "Robot", &*third), ("D", "Dispatcher", "")];
         found(&fleet(&all))
     };
     expect![[r#"
@@ -121,7 +115,8 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
         2:212-219 warning S4012: component `R0` hears nobody but itself on topic `POSTOPC`: others use `POSTOPIC`
           3:18-20 uses `POSTOPIC`
           help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
-    "#]].assert_eq(&found(&["POSTOPC", ""]));
+    "#]]
+    .assert_eq(&found(&["POSTOPC", ""]));
     expect![""].assert_eq(&found(&["HALL_1", "HALL_1", "HALL_2"]));
     expect![""].assert_eq(&found(&["HALL_1", "HALL_2", "HALL_2"]));
     expect![[r#"

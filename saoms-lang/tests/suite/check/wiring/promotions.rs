@@ -29,7 +29,8 @@ fn multiplicities_are_not_widened_whatever_the_classes_are() {
     expect![[r#"
         7:35-39 error S2036: `c` promotes reference `r` of component `B`, which takes `1..1`: `0..1` does not narrow it
           help: it can be `1..1`
-    "#]].assert_eq(&given(wrong));
+    "#]]
+    .assert_eq(&given(wrong));
 }
 
 #[test]
@@ -44,10 +45,7 @@ fn what_is_wrong_with_several_that_are_promoted_together_is_told_once() {
             given.iter().zip(["A", "B", "C", "D"]).map(|(given, name)| component(name, given)).collect();
         let names: Vec<String> =
             ["A/r", "B/r", "C/r", "D/r"].iter().take(given.len()).map(|one| (*one).to_owned()).collect();
-        self::given(&format!(
-            "{components}<reference name='w' multiplicity='{outer}' promote='{}'/>",
-            names.join(" ")
-        ))
+        self::given(&format!("{components}<reference name='w' multiplicity='{outer}' promote='{}'/>", names.join(" ")))
     };
     let (one, many) = ("multiplicity='1..1'", "multiplicity='1..n'");
     expect![[r#"

@@ -18,7 +18,8 @@ fn a_target_of_nothing_is_told() {
     expect![[r#"
         3:18-24 error S2018: reference `wheels` of component `N` leads to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
-    "#]].assert_eq(&of(needed));
+    "#]]
+    .assert_eq(&of(needed));
 }
 
 #[test]
@@ -96,7 +97,7 @@ fn a_wire_the_wrong_way_round_is_told_once() {
         5:15-25 error S2016: this wire goes backwards: `G/position` offers a service, and `R/gps` is a reference
           fix: swap `source` and `target` [5:15-25 "R/gps"] [5:35-40 "G/position"]
     "#]]
-        .assert_eq(&of(&format!("{GPS}\n{robot}\n<wire source=\"G/position\" target=\"R/gps\"/>")));
+    .assert_eq(&of(&format!("{GPS}\n{robot}\n<wire source=\"G/position\" target=\"R/gps\"/>")));
 }
 
 #[test]
@@ -171,8 +172,7 @@ fn what_is_inside_is_named_by_what_is_promoted() {
           fix: replace `N` with `where` [5:33-34 "where"]
     "#]]
     .assert_eq(&said);
-    let own =
-        robot("R", "<property name=\"number\">1</property>\n<reference name=\"gps\" autowire=\"true\"/>");
+    let own = robot("R", "<property name=\"number\">1</property>\n<reference name=\"gps\" autowire=\"true\"/>");
     expect![[r#"
         6:18-21 error S2019: autowire finds several services for reference `gps` of component `R`
           help: name one as its `target`: `U/where` and `G/position`
@@ -233,7 +233,8 @@ fn a_wire_can_count_in_place_of_a_target() {
         5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           4:34-36 the first
           help: keep one of them, or write `replace="true"` at the wire, which counts in place of the `target` then
-    "#]].assert_eq(&wired("R1", other));
+    "#]]
+    .assert_eq(&wired("R1", other));
     expect![[r#"
         5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
           4:34-36 the first

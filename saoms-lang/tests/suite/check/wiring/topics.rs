@@ -32,7 +32,8 @@ fn ends_agree_in_kind_and_schema() {
         3:49-50 error S4009: component `A` subscribes to topic `x` as an event topic, and itself as a state topic
           3:39-40 publishes it as a state topic
           help: all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart
-    "#]].assert_eq(&faults(&task("A", "Robot001", "POSTOPIC,x::ORDERS,x")));
+    "#]]
+    .assert_eq(&faults(&task("A", "Robot001", "POSTOPIC,x::ORDERS,x")));
 }
 
 #[test]

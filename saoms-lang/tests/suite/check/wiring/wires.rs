@@ -16,9 +16,7 @@ fn with(inside: &str) -> String {
 }
 
 fn navigator(reference: &str) -> String {
-    with(&format!(
-        r#"<component name="N"><implementation.java class="example.Navigator"/>{reference}</component>"#
-    ))
+    with(&format!(r#"<component name="N"><implementation.java class="example.Navigator"/>{reference}</component>"#))
 }
 
 #[test]
@@ -28,19 +26,8 @@ fn targets_lead_to_services() {
         assert_eq!(faults(&text), "", "{target}");
     }
     let all: String = [
-        "Q",
-        "r",
-        "R/mve",
-        "R/TaskInterface",
-        "R/move/b",
-        "T",
-        "G",
-        "G/position",
-        "/move",
-        "R//b",
-        "R/move/b/c",
-        "R T/left",
-        "R R/move",
+        "Q", "r", "R/mve", "R/TaskInterface", "R/move/b", "T", "G", "G/position", "/move", "R//b", "R/move/b/c",
+        "R T/left", "R R/move",
     ]
     .map(|target| {
         let text = navigator(&format!("\n<reference name=\"wheels\" target=\"{target}\"/>"));

@@ -20,14 +20,8 @@ fn columns_of_tables_are_properties_and_their_cells_values() {
     let table = |marked: &str| inside("r.csv", marked, &[("fleet.composite", &fleet)]);
     assert_eq!(table("|"), ["index", "name"]);
     let columns = table("index,battery,|");
-    assert!(
-        columns.contains(&"policy".to_owned()) && !columns.contains(&"battery".to_owned()),
-        "{columns:?}"
-    );
-    assert!(
-        table("index,bat|tery\n").contains(&"battery".to_owned()),
-        "the one at the cursor can be written again"
-    );
+    assert!(columns.contains(&"policy".to_owned()) && !columns.contains(&"battery".to_owned()), "{columns:?}");
+    assert!(table("index,bat|tery\n").contains(&"battery".to_owned()), "the one at the cursor can be written again");
     // What the lines are about: replicas without a line.
     assert_eq!(table("index,battery\n|"), ["2", "3", "4"]);
     assert_eq!(table("index,battery\n3,50\n|"), ["2", "4"]);
@@ -104,16 +98,10 @@ fn descriptions_of_contributions_complete() {
     assert_eq!(inside("sca-contribution.xml", "<|", &all), ["contribution"]);
     let elements = description("<|");
     assert_eq!(elements[0], "deployable");
-    assert!(
-        ["import", "export.java"].iter().all(|one| elements.contains(&(*one).to_owned())),
-        "{elements:?}"
-    );
+    assert!(["import", "export.java"].iter().all(|one| elements.contains(&(*one).to_owned())), "{elements:?}");
     assert_eq!(description("<deployable |/>"), ["composite"]);
     assert_eq!(description("<deployable composite=\"|\"/>"), ["f:fleet", "harbour:other"]);
-    assert_eq!(
-        description("<deployable composite=\"f:fleet\"/><deployable composite=\"|\"/>"),
-        ["harbour:other"]
-    );
+    assert_eq!(description("<deployable composite=\"f:fleet\"/><deployable composite=\"|\"/>"), ["harbour:other"]);
     assert_eq!(description("<export namespace=\"|\"/>"), ["urn:example:harbour", "urn:f"]);
     let marked = "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"><deplo|yable composite=\"x\"/></contribution>";
     let (scene, at) = scene_in("sca-contribution.xml", marked, &all);

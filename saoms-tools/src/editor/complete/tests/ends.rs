@@ -2,8 +2,7 @@
 
 use super::*;
 
-const GPS: &str =
-    "<component name=\"GPS\"><implementation.java class=\"resources.robotEnvironment.GPS\"/></component>";
+const GPS: &str = "<component name=\"GPS\"><implementation.java class=\"resources.robotEnvironment.GPS\"/></component>";
 
 #[test]
 fn ends_are_components_and_their_parts() {
@@ -70,13 +69,9 @@ fn replicas_are_named_as_the_place_allows() {
     assert_eq!(ends(&format!("{robots}<reference name=\"r\" promote=\"|\"/>")), ["R*/world"]);
     assert_eq!(ends(&format!("{robots}<service name=\"s\" promote=\"|\"/>")), ["R1", "W07"]);
     // Who calls is not known yet.
-    let own =
-        format!("{robots}<component name=\"X${{index}}\" s:count=\"2\"><reference name=\"x\" target=\"|\"/>");
+    let own = format!("{robots}<component name=\"X${{index}}\" s:count=\"2\"><reference name=\"x\" target=\"|\"/>");
     let all = ends(&own);
-    assert!(
-        ["R*", "R${index}", "W*", "W${index:02}"].iter().all(|one| all.contains(&(*one).to_owned())),
-        "{all:?}"
-    );
+    assert!(["R*", "R${index}", "W*", "W${index:02}"].iter().all(|one| all.contains(&(*one).to_owned())), "{all:?}");
     // Where the first depends on what is set, none is known.
     let open = worlds.replace("\"7\"", "\"first\"");
     assert_eq!(
@@ -116,9 +111,8 @@ fn parts_of_composites_have_the_interfaces_of_what_they_promote() {
     };
     let services = "<service name=\"ground\" promote=\"World/Hardware\"/><service name=\"task\" promote=\"World/TaskInterface\"/><service name=\"floor\" promote=\"World\"/>";
     let calls = format!("</component>{}", ROBOT.replace("\"R\"", "\"Q\""));
-    let target = |typed: &str| {
-        among(services, &format!("{calls}<reference name=\"world\" target=\"{typed}\"/></component>"))
-    };
+    let target =
+        |typed: &str| among(services, &format!("{calls}<reference name=\"world\" target=\"{typed}\"/></component>"));
     assert_eq!(target("I/|"), ["floor", "ground"]);
     // One of several has to be named.
     assert_eq!(target("|"), ["I/floor", "I/ground"]);

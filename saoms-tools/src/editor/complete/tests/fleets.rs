@@ -73,10 +73,7 @@ fn values_of_composite_properties_are_as_they_are_used() {
     };
     assert_eq!(used("|"), ["skip", "catchUp", "stop"]);
     assert_eq!(used("<value>|</value>"), ["skip", "catchUp", "stop"]);
-    assert_eq!(
-        proposed(&composite("<property name=\"p\" type=\"xsd:boolean\" value=\"|\"/>")),
-        ["true", "false"]
-    );
+    assert_eq!(proposed(&composite("<property name=\"p\" type=\"xsd:boolean\" value=\"|\"/>")), ["true", "false"]);
     let inner = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"inner\" targetNamespace=\"urn:f\">\
         <property name=\"how\"/><component name=\"R\"><implementation.rust class=\"saoms.Robot\"/><property name=\"overrun\" source=\"$how\"/></component></composite>";
     let uses = "<component name=\"I\"><implementation.composite name=\"inner\"/><property name=\"how\">|</property></component>";
@@ -98,8 +95,7 @@ fn files_beside_are_found_folder_by_folder() {
         all.sort_by_key(Proposal::order);
         all.into_iter().map(|one| one.label).collect::<Vec<_>>()
     };
-    let property =
-        |file: &str| labels(&format!("{ROBOT}<property name=\"scenario\" file=\"{file}\"/></component>"));
+    let property = |file: &str| labels(&format!("{ROBOT}<property name=\"scenario\" file=\"{file}\"/></component>"));
     assert_eq!(property("|"), ["a.txt", "b.csv", "more/"]);
     assert_eq!(property("more/|x.csv"), ["c.csv"]);
     assert_eq!(property("../nowhere/|"), [""; 0]);
@@ -119,7 +115,6 @@ fn names_that_can_be_known_are_proposed() {
     assert_eq!(proposed_among(&spaces, &others), ["urn:e"]);
     assert_eq!(proposed(&composite("<service name=\"|\" promote=\"R/lamp\"/>")), ["lamp"]);
     assert_eq!(proposed(&composite("<property name=\"max-speed\" s:env=\"|\"/>"))[0], "FLEET_MAX_SPEED");
-    let bound =
-        format!("{WORLD}{ROBOT}<reference name=\"world\"><binding.sca uri=\"|\"/></reference></component>");
+    let bound = format!("{WORLD}{ROBOT}<reference name=\"world\"><binding.sca uri=\"|\"/></reference></component>");
     assert_eq!(proposed(&composite(&bound)), ["World"]);
 }

@@ -52,8 +52,7 @@ fn elements_are_those_that_can_stand_there() {
 
 #[test]
 fn elements_keep_the_prefix_of_the_file() {
-    let text =
-        "<sca:composite xmlns:sca=\"http://www.osoa.org/xmlns/sca/1.0\" name=\"f\"><sca:|</sca:composite>";
+    let text = "<sca:composite xmlns:sca=\"http://www.osoa.org/xmlns/sca/1.0\" name=\"f\"><sca:|</sca:composite>";
     assert_eq!(proposed(text)[..2], ["sca:component", "sca:include"]);
 }
 
@@ -116,11 +115,9 @@ fn values_of_attributes_are_those_of_their_kind() {
 fn values_of_properties_are_as_the_class_declares_them() {
     let values = |name: &str, typed: &str| {
         let as_text = proposed(&composite(&format!("{ROBOT}<property name=\"{name}\">{typed}|</property>")));
-        let as_value =
-            proposed(&composite(&format!("{ROBOT}<property name=\"{name}\" value=\"{typed}|\"/>")));
-        let as_element = proposed(&composite(&format!(
-            "{ROBOT}<property name=\"{name}\"><value>{typed}|</value></property>"
-        )));
+        let as_value = proposed(&composite(&format!("{ROBOT}<property name=\"{name}\" value=\"{typed}|\"/>")));
+        let as_element =
+            proposed(&composite(&format!("{ROBOT}<property name=\"{name}\"><value>{typed}|</value></property>")));
         assert_eq!(as_text, as_value, "{name}");
         assert_eq!(as_text, as_element, "{name}");
         as_text
@@ -148,18 +145,14 @@ fn sources_are_properties_of_the_composite() {
 #[test]
 fn topics_are_those_of_the_class_and_of_the_fleet() {
     let other = "<component name=\"O\"><implementation.rust class=\"saoms.Robot\"/><property name=\"topicRename\">COLLISIONTOPIC,quietü</property></component>";
-    let topics = |value: &str| {
-        proposed(&composite(&format!("{other}{ROBOT}<property name=\"topicRename\">{value}</property>")))
-    };
+    let topics =
+        |value: &str| proposed(&composite(&format!("{other}{ROBOT}<property name=\"topicRename\">{value}</property>")));
     let own = topics("|");
     assert!(own.contains(&"COLLISIONTOPIC".to_owned()) && !own.contains(&"quietü".to_owned()), "{own:?}");
     assert_eq!(topics("COLLISIONTOPIC,x::|"), own);
     assert!(topics("COLLISIONTOPIC, |").contains(&"quietü".to_owned()));
     let list = format!("{ROBOT}<property name=\"topicRename\">A,b::COLL|,c</property>");
-    assert_eq!(
-        taken(&composite(&list), "COLLISIONTOPIC", false),
-        composite(&list.replace("COLL|", "COLLISIONTOPIC"))
-    );
+    assert_eq!(taken(&composite(&list), "COLLISIONTOPIC", false), composite(&list.replace("COLL|", "COLLISIONTOPIC")));
 }
 
 #[test]
@@ -173,8 +166,7 @@ fn loops_are_those_of_the_class_and_those_that_fit_it() {
     let classic = loops("<property name=\"policy\">classic</property><s:loop name=\"|\"/>");
     assert!(classic != own && !classic.is_empty(), "{classic:?}");
     let set = "<property name=\"p\" value=\"classic\"/>";
-    let sourced =
-        format!("{set}{ROBOT}<property name=\"policy\" source=\"$p\"/><s:loop name=\"|\"/></component>");
+    let sourced = format!("{set}{ROBOT}<property name=\"policy\" source=\"$p\"/><s:loop name=\"|\"/></component>");
     assert_eq!(proposed(&composite(&sourced)), classic);
     assert!(!loops("<s:loop name=\"BatteryMS\"/><s:loop name=\"|\"/>").contains(&"BatteryMS".to_owned()));
     let after = loops("<s:loop name=\"new\" class=\"x.Y\"/><s:loop name=\"BatteryMS\" after=\"|\"/>");
@@ -188,10 +180,8 @@ fn composites_of_other_files_are_known() {
     let inner = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"inner\" targetNamespace=\"urn:f\">\
         <property name=\"size\"/><service name=\"lamp\" promote=\"L\"/><reference name=\"power\" promote=\"L/p\"/>\
         <component name=\"L\"/></composite>";
-    let others = [
-        ("inner.composite", inner),
-        ("else.composite", "<composite name=\"else\" targetNamespace=\"urn:e\"/>"),
-    ];
+    let others =
+        [("inner.composite", inner), ("else.composite", "<composite name=\"else\" targetNamespace=\"urn:e\"/>")];
     let among = |inside: &str| proposed_among(&composite(inside), &others);
     // Without a prefix a name is of the default namespace, so that prefixes are declared.
     assert_eq!(among("<include name=\"|\"/>"), ["tns:inner", "e:else"]);

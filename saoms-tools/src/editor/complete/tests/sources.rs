@@ -34,8 +34,7 @@ fn paths_complete_inside_of_expressions_too() {
     assert_eq!(at("concat($b/bay[1]/x, $many/|)"), ["x", "y"]);
     assert_eq!(at("concat('x', |)"), ["$b", "$many", "$places"]);
     assert_eq!(at("$b/bay[x=$m|"), ["$b", "$many", "$places"]);
-    let source =
-        |inside: &str| format!("{BAYS}{ROBOT}<property name=\"ID\" source=\"{inside}\"/></component>");
+    let source = |inside: &str| format!("{BAYS}{ROBOT}<property name=\"ID\" source=\"{inside}\"/></component>");
     let all = |inside: &str, label: &str| taken(&composite(&source(inside)), label, false);
     assert_eq!(all("concat($b/bay/i|d, 'x')", "@id"), composite(&source("concat($b/bay/@id, 'x')")));
     assert_eq!(all("$b/ba|x/y", "bay"), composite(&source("$b/bay/y")));
@@ -54,8 +53,7 @@ fn what_parts_are_compared_with_is_what_they_are() {
     assert_eq!(at("concat('|')"), [""; 0]);
     assert_eq!(at("$b/bay[@none='|']"), [""; 0]);
     assert_eq!(at("$b/bay[contains(@id, '|')]"), [""; 0]);
-    let source =
-        |inside: &str| format!("{BAYS}{ROBOT}<property name=\"ID\" source=\"{inside}\"/></component>");
+    let source = |inside: &str| format!("{BAYS}{ROBOT}<property name=\"ID\" source=\"{inside}\"/></component>");
     let all = |inside: &str, label: &str| taken(&composite(&source(inside)), label, false);
     assert_eq!(all("$b/bay[@id='|a-z']/x", "b"), composite(&source("$b/bay[@id='b']/x")));
 }
@@ -66,7 +64,6 @@ fn a_component_gives_the_composite_that_implements_it_its_values() {
         "<component name=\"H\"><implementation.composite name=\"fleet\"/><property name=\"b\"><c><d/></c></property></component>",
     );
     let user = user.replace("name=\"fleet\" targetNamespace", "name=\"user\" targetNamespace");
-    let inside =
-        format!("<property name=\"b\"/>{ROBOT}<property name=\"ID\" source=\"$b/c/|\"/></component>");
+    let inside = format!("<property name=\"b\"/>{ROBOT}<property name=\"ID\" source=\"$b/c/|\"/></component>");
     assert_eq!(proposed_among(&composite(&inside), &[("user.composite", &user)]), ["d"]);
 }
