@@ -3,10 +3,11 @@
 use std::env;
 use std::io::{self, IsTerminal};
 
-use saoms_lang::diagnostic::{Diagnostic, Human, Json, Sarif, Severity};
+use saoms_lang::diagnostic::{Diagnostic, Human, Sarif, Severity, json, sarif};
 use saoms_lang::project::{Compilation, Compilations, Project};
 use saoms_lang::source::Sources;
 use serde::Serialize;
+use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
@@ -45,8 +46,8 @@ pub(crate) struct DiagnosticReport<'a> {
 
 /// The JSON object of a command.
 #[derive(Serialize)]
-pub(crate) struct Found<'a, W> {
-    diagnostics: Json<'a>,
+pub(crate) struct Found<W> {
+    diagnostics: Vec<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     wiring: Option<W>,
 }
@@ -76,14 +77,13 @@ impl<'a> DiagnosticReport<'a> {
     }
 
     /// All diagnostics as JSON, with the wiring where it is asked for.
-    pub(crate) fn json<W>(self, wiring: Option<W>) -> Found<'a, W> {
-        Found { diagnostics: Json { diagnostics: self.diagnostics, sources: self.sources }, wiring }
+    pub(crate) fn json<W>(self, wiring: Option<W>) -> Found<W> {
+        Found { diagnostics: json(self.diagnostics, self.sources), wiring }
     }
 
     /// All diagnostics as a SARIF log, with properties of the run.
-    pub(crate) fn sarif<P>(self, properties: Option<P>) -> Sarif<'a, P> {
-        let version = env!("CARGO_PKG_VERSION");
-        Sarif { diagnostics: self.diagnostics, sources: self.sources, version, properties }
+    pub(crate) fn sarif<P>(self, properties: Option<P>) -> Sarif<P> {
+        sarif(self.diagnostics, self.sources, env!("CARGO_PKG_VERSION"), properties)
     }
 
     /// The number of diagnostics of this severity.

@@ -14,7 +14,7 @@ const LONGEST: usize = 128;
 /// assert_eq!(nearest("colour", ["delay", "period"]), None);
 /// ```
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    nearest_few(name, candidates, 1).first().copied()
+    few(name, &mut candidates.into_iter(), 1).first().copied()
 }
 
 /// The candidates that are most like `name`: one, or up to three that are equally alike. Where more are, none of them
@@ -27,6 +27,11 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 /// assert!(nearest_equal("Robot9", ["Robot1", "Robot2", "Robot3", "Robot4"]).is_empty());
 /// ```
 pub fn nearest_equal<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    equal(name, &mut candidates.into_iter())
+}
+
+// The work is not generic: it is compiled once, and not for each kind of iterator.
+fn equal<'a>(name: &str, candidates: &mut dyn Iterator<Item = &'a str>) -> Vec<&'a str> {
     const MOST: usize = 3;
     let wanted = Folded::new(name);
     let mut least = wanted.cut;
@@ -50,6 +55,10 @@ pub fn nearest_equal<'a>(name: &str, candidates: impl IntoIterator<Item = &'a st
 
 /// Up to `limit` candidates that are like `name`, the most alike first; see [`nearest`].
 pub fn nearest_few<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>, limit: usize) -> Vec<&'a str> {
+    few(name, &mut candidates.into_iter(), limit)
+}
+
+fn few<'a>(name: &str, candidates: &mut dyn Iterator<Item = &'a str>, limit: usize) -> Vec<&'a str> {
     let wanted = Folded::new(name);
     // The most alike so far, in order; of equal ones the first stands first.
     let mut found: Vec<(usize, &str)> = Vec::new();

@@ -1,34 +1,18 @@
 //! Diagnostics for machines.
 
-use serde::ser::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::Diagnostic;
 use crate::source::{Location, Sources};
 
-/// One object with all diagnostics, each with 1-based lines and columns in Unicode scalars, ends exclusive.
+/// An object for each diagnostic, with 1-based lines and columns in Unicode scalars, ends exclusive.
 ///
 /// `rule` is null when the diagnostic stems from no rule of the SCA specification. `help` holds what people are shown
 /// below the picture, the descriptions of suggestions included, a line each; it is null when there is nothing. Where
 /// the severity was set, `set` says to what, where and why; what is allowed is there with the severity that it would
 /// have.
-pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
-    json!({ "diagnostics": Json { diagnostics, sources } })
-}
-
-/// The list that [`json()`] has, each made while it is written: of thousands each takes many times what it is about.
-#[derive(Clone, Copy, Debug)]
-pub struct Json<'d> {
-    /// The diagnostics.
-    pub diagnostics: &'d [Diagnostic],
-    /// The texts of the files.
-    pub sources: &'d Sources,
-}
-
-impl Serialize for Json<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_seq(self.diagnostics.iter().map(|one| diagnostic(one, self.sources)))
-    }
+pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Vec<Value> {
+    diagnostics.iter().map(|one| diagnostic(one, sources)).collect()
 }
 
 fn diagnostic(one: &Diagnostic, sources: &Sources) -> Value {

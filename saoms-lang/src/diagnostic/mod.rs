@@ -23,7 +23,7 @@ pub use codes::Code;
 pub use collector::Diagnostics;
 pub(crate) use collector::HiddenNames;
 pub use human::{Human, human};
-pub use json::{Json, json};
+pub use json::json;
 pub use level::{SetBy, SeverityLevel};
 pub(crate) use meant_boolean::meant_boolean;
 pub use quoted::quoted;

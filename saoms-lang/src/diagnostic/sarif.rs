@@ -1,6 +1,6 @@
 //! Diagnostics for code scanning: SARIF.
 
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::{Code, Diagnostic, Edit, Suggestion, codes};
@@ -8,69 +8,44 @@ use crate::source::{FileId, Location, Sources};
 
 /// A log in the Static Analysis Results Interchange Format (OASIS SARIF 2.1.0), as code scanning services and editors
 /// read it: one run, with every code as a rule and each suggestion as a fix.
+#[derive(Debug, Serialize)]
+pub struct Sarif<P> {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    runs: [Run<P>; 1],
+    version: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Run<P> {
+    column_kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    properties: Option<P>,
+    results: Vec<Value>,
+    tool: Value,
+}
+
+/// The log of these diagnostics, with further properties of the run where there are some.
 ///
 /// `version` is that of the program. Paths become URIs: relative ones stay relative to where the program ran.
-pub fn sarif(diagnostics: &[Diagnostic], sources: &Sources, version: &str) -> Value {
-    json!(Sarif { diagnostics, sources, version, properties: None::<()> })
-}
-
-/// A SARIF log, made while it is written, with properties of the run where there are some.
-#[derive(Clone, Copy, Debug)]
-pub struct Sarif<'d, P> {
-    /// The diagnostics.
-    pub diagnostics: &'d [Diagnostic],
-    /// The texts of the files.
-    pub sources: &'d Sources,
-    /// The version of the program.
-    pub version: &'d str,
-    /// Further properties of the run.
-    pub properties: Option<P>,
-}
-
-impl<P: Serialize> Serialize for Sarif<'_, P> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let mut log = to.serialize_map(Some(3))?;
-        log.serialize_entry("$schema", "https://json.schemastore.org/sarif-2.1.0.json")?;
-        log.serialize_entry("runs", &[Run(self)])?;
-        log.serialize_entry("version", "2.1.0")?;
-        log.end()
-    }
-}
-
-/// The one run of a log.
-struct Run<'s, 'd, P>(&'s Sarif<'d, P>);
-
-impl<P: Serialize> Serialize for Run<'_, '_, P> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let Sarif { diagnostics, sources, version, properties } = self.0;
-        let mut codes: Vec<&Code> = codes::ALL.to_vec();
-        // Those of crates of components are known by what they found.
-        for one in *diagnostics {
-            if !codes.iter().any(|code| code.id == one.code.id) {
-                codes.push(one.code);
-            }
+pub fn sarif<P>(diagnostics: &[Diagnostic], sources: &Sources, version: &str, properties: Option<P>) -> Sarif<P> {
+    let mut codes: Vec<&Code> = codes::ALL.to_vec();
+    // Those of crates of components are known by what they found.
+    for one in diagnostics {
+        if !codes.iter().any(|code| code.id == one.code.id) {
+            codes.push(one.code);
         }
-        let rules: Vec<Value> = codes.iter().map(|code| rule(code)).collect();
-        let driver = json!({ "name": "saoms", "semanticVersion": version, "rules": rules });
-        let mut run = to.serialize_map(None)?;
-        run.serialize_entry("columnKind", "unicodeCodePoints")?;
-        if let Some(properties) = properties {
-            run.serialize_entry("properties", properties)?;
-        }
-        run.serialize_entry("results", &Results(diagnostics, &codes, sources))?;
-        run.serialize_entry("tool", &json!({ "driver": driver }))?;
-        run.end()
     }
-}
-
-/// The results, for codes in this order.
-struct Results<'s>(&'s [Diagnostic], &'s [&'s Code], &'s Sources);
-
-impl Serialize for Results<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        let Results(diagnostics, codes, sources) = *self;
-        to.collect_seq(diagnostics.iter().map(|one| result(one, codes, sources)))
-    }
+    let rules: Vec<Value> = codes.iter().map(|code| rule(code)).collect();
+    let driver = json!({ "name": "saoms", "semanticVersion": version, "rules": rules });
+    let run = Run {
+        column_kind: "unicodeCodePoints",
+        properties,
+        results: diagnostics.iter().map(|one| result(one, &codes, sources)).collect(),
+        tool: json!({ "driver": driver }),
+    };
+    Sarif { schema: "https://json.schemastore.org/sarif-2.1.0.json", runs: [run], version: "2.1.0" }
 }
 
 fn rule(code: &Code) -> Value {
