@@ -207,12 +207,33 @@ pub struct ReferenceDeclaration {
 }
 
 /// An interface: two ends agree when these are equal.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
+#[serde(from = "InterfaceFields")]
 pub struct InterfaceDeclaration {
     /// The name that composite files use.
     pub name: String,
     /// The operations with their argument and reply types.
     pub operations: Value,
+    /// The operations as text: each wire of a fleet compares them, which is quicker with one text than part by part.
+    text: String,
+}
+
+#[derive(Deserialize)]
+struct InterfaceFields {
+    name: String,
+    operations: Value,
+}
+
+impl From<InterfaceFields> for InterfaceDeclaration {
+    fn from(InterfaceFields { name, operations }: InterfaceFields) -> Self {
+        Self { text: operations.to_string(), name, operations }
+    }
+}
+
+impl PartialEq for InterfaceDeclaration {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name && self.text == other.text
+    }
 }
 
 /// The service that the host serves for every component of a periodic class.

@@ -209,5 +209,8 @@ pub(crate) fn show(all: &[Diagnostic], sources: &Sources) {
     let first = &all[..all.len().min(20)];
     assert!(first.is_empty() || !human(first, sources, false).is_empty());
     assert_eq!(json(first, sources).len(), first.len());
-    assert_eq!(serde_json::json!(sarif(first, sources, "0", None::<()>))["runs"][0]["results"].as_array().map(Vec::len), Some(first.len()));
+    assert_eq!(
+        serde_json::json!(sarif(first, sources, "0", None::<()>))["runs"][0]["results"].as_array().map(Vec::len),
+        Some(first.len())
+    );
 }
