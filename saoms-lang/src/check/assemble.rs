@@ -32,13 +32,13 @@ pub(crate) fn assemble(
             return None;
         }
         let class = fleet.class_of(place)?;
-        let references = class.references.iter().zip(wiring.of(place));
+        let references = class.references.iter().zip(&wiring[place]);
         let references = references.map(|(declared, targets)| Wire {
             reference: declared.name.clone(),
             interface: declared.interface.name.clone(),
             targets: targets
-                .providers()
                 .iter()
+                .flatten()
                 .filter_map(|provider| {
                     let class = fleet.class_of(provider.member)?;
                     let service = class.services[provider.service].name.clone();

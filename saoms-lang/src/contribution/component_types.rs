@@ -2,25 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::limits::FOLDER_ENTRIES;
 use crate::model::{ComponentElement, Composite, ImplementationKind};
 
 /// The ending of their names.
 const ENDING: &str = "componentType";
-
-/// True if a folder may hold component types. Most hold none, or are not there: then nobody has to ask for one by each
-/// name.
-pub(super) fn any_in(folder: &Path) -> bool {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let Ok(entries) = folder.read_dir() else { return folder.is_dir() };
-    let has_ending = |name: &Path| name.extension().is_some_and(|ending| ending == ENDING);
-    let mut seen = 0;
-    let found = entries.take(FOLDER_ENTRIES).any(|entry| {
-        seen += 1;
-        entry.is_ok_and(|entry| has_ending(Path::new(&entry.file_name())))
-    });
-    found || seen == FOLDER_ENTRIES
-}
 
 /// The files that may describe the implementation of a component, the likeliest first, as paths in the contribution.
 pub(super) fn paths(component: &ComponentElement, composite: &Composite) -> Vec<PathBuf> {

@@ -26,7 +26,7 @@ impl Finder {
         if description.exports.is_empty() && description.imports.is_empty() {
             return;
         }
-        let own = self.index.namespaces(root);
+        let own: BTreeSet<String> = self.index.heads(root).into_iter().map(|one| one.namespace).collect();
         let named = |entries: &[Entry]| -> BTreeSet<String> {
             entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
         };
@@ -53,8 +53,9 @@ impl Finder {
             }
             let shown = quoted(namespace);
             let mut all = others.iter();
-            let holder =
-                all.find(|(other, _)| self.candidates.admit(1) && self.index.namespaces(other).contains(namespace));
+            let holder = all.find(|(other, _)| {
+                self.candidates.admit(1) && self.index.heads(other).iter().any(|one| one.namespace == namespace)
+            });
             if let Some((holder, _)) = holder {
                 let holder = quoted(&holder.display().to_string());
                 let message = format!("the contribution in {holder} has the namespace {shown}, and does not export it");

@@ -3,12 +3,14 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::component_types;
+use super::head;
 use super::imports::Imports;
-use super::index::Index;
+use super::index::{Index, is_of_definitions};
 use crate::diagnostic::{Candidates, Diagnostics, Severity, quoted};
 use crate::limits::{EXPLAINED_FILE_BYTES, EXPLAINED_FILES, EXPLAINED_NAMES, OFFERED_NAMES};
-use crate::load::{load_file, read};
+use crate::load::vocabulary::{CONTRIBUTION, DEFINITIONS};
+use crate::load::{ReadContext, definitions, load_component_type, load_file, read};
+use crate::model::{ComponentType, Version};
 use crate::source::{OpenTexts, Sources};
 
 /// Finds what composites name in other files, and looks at each folder and each first tag of a file once: one for all
@@ -24,10 +26,6 @@ pub struct Finder {
     pub(super) candidates: Candidates,
     /// Of how many more names that lead nowhere it is kept where they were looked for.
     pub(super) explained: usize,
-    /// True if folders may hold component types.
-    folders: HashMap<PathBuf, bool>,
-    /// The component types that were searched for and exist.
-    side_files: HashMap<PathBuf, bool>,
     /// The files of folders that are called as composites and are none, with the reason.
     unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,
 }
@@ -41,20 +39,40 @@ impl Finder {
             around: None,
             candidates: Candidates::default(),
             explained: EXPLAINED_NAMES,
-            folders: HashMap::new(),
-            side_files: HashMap::new(),
             unread: HashMap::new(),
         }
     }
 
-    /// True if there is a component type with this path.
-    pub(super) fn has_component_type(&mut self, path: &Path) -> bool {
+    /// Checks a file that is no composite but one beside them: definitions of policies, the description of a
+    /// contribution, or a component type. `None` where its first tag is none of these, and where its name ends with
+    /// `.composite`.
+    pub fn load_side_file(
+        &mut self,
+        path: &Path,
+        max_size: u64,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<SideFile> {
+        if path.extension().is_some_and(|ending| ending == "composite") {
+            return None;
+        }
+        let (name, namespace) = head::root(path, sources.open())?;
+        let is_of_sca = namespace.is_some_and(|namespace| Version::from_namespace(&namespace).is_some());
         let folder = path.parent().unwrap_or(Path::new(""));
-        let may_be = match self.folders.get(folder) {
-            Some(known) => *known,
-            None => *self.folders.entry(folder.to_owned()).or_insert_with(|| component_types::any_in(folder)),
-        };
-        may_be && *self.side_files.entry(path.to_owned()).or_insert_with(|| path.is_file())
+        if name == DEFINITIONS.name && (is_of_sca || is_of_definitions(path)) {
+            definitions::check(path, true, &mut ReadContext { max_size, sources, diagnostics });
+        } else if name == CONTRIBUTION.name {
+            let above = folder.parent().filter(|_| folder.ends_with("META-INF"));
+            let context = &mut ReadContext { max_size, sources, diagnostics };
+            self.describe(path, above.unwrap_or(folder), context);
+        } else if name == "componentType" {
+            let file = read(path, max_size, sources, diagnostics);
+            let made = file.and_then(|file| load_component_type(file, sources, diagnostics));
+            return Some(SideFile::ComponentType(made.map(Box::new)));
+        } else {
+            return None;
+        }
+        Some(SideFile::Checked)
     }
 
     /// The reasons why files are not read that may hold a composite of this name, the file of that name first.
@@ -74,6 +92,15 @@ impl Finder {
         };
         first.chain(others).take(OFFERED_NAMES).map(shown).collect()
     }
+}
+
+/// A file beside composites.
+#[derive(Debug)]
+pub enum SideFile {
+    /// The composites need it when they are checked: its faults are reported already.
+    Checked,
+    /// The description of an implementation, which the checker holds to itself; `None` where it could not be read.
+    ComponentType(Option<Box<ComponentType>>),
 }
 
 /// The fault of a file that should be a composite.

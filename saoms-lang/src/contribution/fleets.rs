@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::finder::Finder;
 use super::index::{DEPLOYABLES, Index, describes};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
+use crate::limits::ASKED_FOLDER_ENTRIES;
 use crate::load::description::{Deployable, Description};
 use crate::load::{ReadContext, definitions, load_file, read};
 use crate::model::{Composite, Contribution, Link};
@@ -49,17 +50,16 @@ impl Finder {
         diagnostics: &mut Diagnostics,
     ) -> Vec<FolderFleet> {
         let context = &mut ReadContext { max_size, sources, diagnostics };
-        self.index.turn_to_folder();
+        self.index.limit(ASKED_FOLDER_ENTRIES);
         let (mut fleets, mut has_definitions) = (Vec::new(), false);
         let mut waiting = vec![folder.to_owned()];
         while let Some(root) = waiting.pop() {
-            let (files, mut inner) = self.index.contribution(&root);
-            inner.reverse();
-            waiting.extend(inner);
+            let contents = self.index.contents(&root);
+            waiting.extend(contents.others.into_iter().rev());
             let description = Description::of(&root, context);
-            let contribution = Files::read(files, context);
+            let contribution = Files::read(contents.composites, context);
             contribution.repeated(describes(&root), context);
-            for path in self.index.definitions(&root) {
+            for path in contents.definitions {
                 has_definitions |= definitions::check(&path, false, context);
             }
             if let Some(description) = &description {
@@ -80,10 +80,10 @@ impl Finder {
     /// Checks one description of the contribution in a folder: what is written in it, and whether what it calls
     /// deployable is there.
     pub(super) fn describe(&mut self, path: &Path, root: &Path, context: &mut ReadContext<'_>) {
-        self.index.turn_to_folder();
+        self.index.limit(ASKED_FOLDER_ENTRIES);
         let description = Description::read(path.to_owned(), context);
         self.exchange(&description, root, context.max_size, context.diagnostics);
-        let (files, _) = self.index.contribution(root);
+        let files = self.index.contents(root).composites;
         let (max_size, untold) = (context.max_size, &mut Diagnostics::new());
         let contribution =
             Files::read(files, &mut ReadContext { max_size, sources: context.sources, diagnostics: untold });
@@ -97,12 +97,12 @@ impl Finder {
 /// is hidden and what tools made are passed over. Reported is that there are none, or more files than are looked at.
 pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Vec<PathBuf> {
     let mut index = Index::new(sources.open().clone());
-    index.turn_to_folder();
+    index.limit(ASKED_FOLDER_ENTRIES);
     let (mut all, mut waiting) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(root) = waiting.pop() {
-        let (files, inner) = index.contribution(&root);
-        all.extend(files);
-        waiting.extend(inner);
+        let contents = index.contents(&root);
+        all.extend(contents.composites);
+        waiting.extend(contents.others);
     }
     all.sort_unstable();
     unlisted(folder, all.is_empty(), &index, sources, diagnostics);
@@ -189,7 +189,8 @@ impl Files {
         let local = deployable.local();
         let namespaces = deployable.namespace.as_ref().map(std::slice::from_ref);
         // Also a file that could be read no further than its first tag.
-        let found = index.find(root, namespaces, local).filter(|found| self.paths.binary_search(found).is_ok());
+        let found = index.find(root, namespaces, local).map(|found| found.path);
+        let found = found.filter(|found| self.paths.binary_search(found).is_ok());
         if found.is_some() {
             return found;
         }
@@ -246,7 +247,7 @@ impl Files {
         for (place, to) in links.iter().enumerate() {
             to.iter().filter(|to| **to != place).for_each(|to| is_named[*to] = true);
         }
-        let mut seen: Vec<bool> = all.iter().map(|_| false).collect();
+        let mut seen = vec![false; all.len()];
         let reach = |start: usize, seen: &mut Vec<bool>| {
             let mut waiting = vec![start];
             while let Some(place) = waiting.pop() {
@@ -256,41 +257,32 @@ impl Files {
             }
         };
         let is_deployed: HashSet<PathBuf> = deployed.iter().cloned().collect();
-        let mut roots: Vec<usize> = Vec::new();
-        for (place, path) in self.places.iter().map(|place| &self.paths[*place]).enumerate() {
-            if is_deployed.contains(path) {
+        for (place, file) in self.places.iter().enumerate() {
+            if is_deployed.contains(&self.paths[*file]) {
                 reach(place, &mut seen);
             }
         }
+        // The files of fleets of their own, each with whether it is exported: those that could not be read are some.
+        let mut others: Vec<Option<bool>> = vec![Some(false); self.paths.len()];
+        self.places.iter().for_each(|file| others[*file] = None);
         // Those in circles of names have no first one: what is left is reached from any of them.
         for is_left in [false, true] {
             for place in 0..all.len() {
                 if !seen[place] && (is_left || !is_named[place]) {
-                    roots.push(place);
+                    let is_exported = description.is_some_and(|one| one.exports(all[place].namespace()));
+                    others[self.places[place]] = Some(is_exported);
                     reach(place, &mut seen);
                 }
             }
         }
         let mut known = HashSet::new();
         deployed.retain(|path| known.insert(path.clone()));
-        let faulty = (0..self.paths.len()).filter(|place| self.places.binary_search(place).is_err());
-        let mut others: Vec<usize> = roots.into_iter().map(|root| self.places[root]).chain(faulty).collect();
-        others.sort_unstable();
-        let is_exported = |place: usize| {
-            let read = self.places.binary_search(&place).ok();
-            let namespace = read.map(|read| all[read].namespace());
-            description.zip(namespace).is_some_and(|(description, namespace)| description.exports(namespace))
-        };
-        let others = others.into_iter().filter(|place| !is_deployed.contains(&self.paths[*place]));
-        let others = others.map(|place| FolderFleet {
-            files: vec![self.paths[place].clone()],
-            is_deployable: false,
-            is_exported: is_exported(place),
-        });
-        let others: Vec<FolderFleet> = others.collect();
         if !deployed.is_empty() {
             fleets.push(FolderFleet { files: deployed, is_deployable: true, is_exported: false });
         }
-        fleets.extend(others);
+        let others = self.paths.into_iter().zip(others).filter(|(path, _)| !is_deployed.contains(path));
+        fleets.extend(others.filter_map(|(path, is_exported)| {
+            Some(FolderFleet { files: vec![path], is_deployable: false, is_exported: is_exported? })
+        }));
     }
 }

@@ -12,7 +12,7 @@ use crate::limits::FIRST_TAG_BYTES;
 use crate::source::OpenTexts;
 
 /// A composite that was seen.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Head {
     pub(super) path: PathBuf,
     pub(super) namespace: String,

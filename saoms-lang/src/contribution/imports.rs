@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
+use super::head::Head;
 use super::index::{self, Index};
 use crate::diagnostic::{Candidates, Diagnostics, quoted};
 use crate::limits::FOLDERS_BESIDE;
@@ -19,14 +19,11 @@ pub(super) struct Imports {
     /// The contributions that are given together.
     given: Vec<Neighbour>,
     /// Those that are in the folders around contributions.
-    beside: HashMap<PathBuf, Rc<[Neighbour]>>,
+    beside: HashMap<PathBuf, Vec<Neighbour>>,
     descriptions: HashMap<PathBuf, Option<Description>>,
-    /// Those from which one imports something, as long as the same ones are given.
-    exporters: HashMap<(PathBuf, Kind, String), Rc<[PathBuf]>>,
 }
 
 /// A contribution that others may import from.
-#[derive(Clone, PartialEq, Eq, Hash)]
 struct Neighbour {
     folder: PathBuf,
     identity: PathBuf,
@@ -42,12 +39,7 @@ impl Imports {
     /// For a fleet whose composites are in these contributions. What was read is kept.
     pub(super) fn turn_to_fleet(&mut self, given: impl Iterator<Item = PathBuf>) {
         let mut seen = HashSet::new();
-        let given = given.filter(|folder| seen.insert(folder.clone())).map(Neighbour::of);
-        let given: Vec<Neighbour> = given.collect();
-        if self.given != given {
-            self.given = given;
-            self.exporters.clear();
-        }
+        self.given = given.filter(|folder| seen.insert(folder.clone())).map(Neighbour::of).collect();
     }
 
     /// The folders of the contributions from which that in `root` imports this: exporters that are given together with
@@ -58,21 +50,15 @@ impl Imports {
         kind: Kind,
         what: &str,
         context: &mut ReadContext<'_>,
-    ) -> Rc<[PathBuf]> {
+    ) -> Vec<PathBuf> {
         if !self.imports(root, kind, what, context) {
-            return Rc::default();
-        }
-        let key = (root.to_owned(), kind, what.to_owned());
-        if let Some(known) = self.exporters.get(&key) {
-            return Rc::clone(known);
+            return Vec::new();
         }
         let mut all = self.others(root, kind, what);
         all.retain(|other| {
             let description = self.description(other, context);
             description.is_some_and(|one| one.exports.iter().any(|entry| entry.is(kind, what)))
         });
-        let all: Rc<[PathBuf]> = all.into();
-        self.exporters.insert(key, Rc::clone(&all));
         all
     }
 
@@ -89,7 +75,7 @@ impl Imports {
         namespaces: Option<&[String]>,
         local: &str,
         context: &mut ReadContext<'_>,
-    ) -> Option<PathBuf> {
+    ) -> Option<Head> {
         namespaces.unwrap_or_default().iter().find_map(|namespace| {
             let from = self.exporters(root, Kind::Namespace, namespace, context);
             from.iter().find_map(|root| index.find(root, Some(std::slice::from_ref(namespace)), local))
@@ -163,11 +149,11 @@ impl Imports {
         _ = self.description(root, context);
         let mut all = self.others(root, Kind::Namespace, namespace);
         all.truncate(FOLDERS_BESIDE);
-        let mut exported = |other: PathBuf| {
+        let exported = |other: PathBuf| {
             let exports = namespaces(&self.description(&other, context)?.exports);
             Some((other, exports))
         };
-        all.into_iter().filter_map(&mut exported).collect()
+        all.into_iter().filter_map(exported).collect()
     }
 
     /// The contributions that that in `root` may import this from, the likeliest first.
@@ -204,9 +190,9 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let wanted = imports.description(&root, context).map_or_else(Vec::new, |one| namespaces(&one.imports));
     let mut all = Vec::new();
     for namespace in wanted {
-        for other in imports.exporters(&root, Kind::Namespace, &namespace, context).iter() {
-            let composites = index.contribution(other).0.into_iter();
-            all.extend(composites.filter(|path| index.is_of(path, &namespace)));
+        for other in &imports.exporters(&root, Kind::Namespace, &namespace, context) {
+            let composites = index.heads(other).into_iter().filter(|one| one.namespace == namespace);
+            all.extend(composites.map(|one| one.path));
         }
     }
     all
@@ -227,11 +213,11 @@ pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
         others.extend(beside.iter().filter(|one| one.identity != own).map(|one| one.folder.clone()));
     }
     others.retain(|other| given.iter().any(|what| imports.imports(other, Kind::Namespace, what, context)));
-    others.iter().flat_map(|other| index.contribution(other).0).collect()
+    others.iter().flat_map(|other| index.contents(other).composites).collect()
 }
 
 /// The folders of contributions in the folder that a contribution is in.
-fn beside(root: &Path) -> Rc<[Neighbour]> {
+fn beside(root: &Path) -> Vec<Neighbour> {
     // `..`, and nothing for the folder that we are in, have no parent that they name.
     let around = match (root.file_name(), root.parent()) {
         (Some(_), Some(around)) => around.to_owned(),

@@ -1,6 +1,6 @@
-//! Index of the composites in folders, by namespace and name. No more is read than a search needs.
+//! Index of the composites in folders, by namespace and name. Of a file no more is read than its first tag.
 
-use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
+use std::collections::{HashMap, VecDeque};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, FileType};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::head::{Head, head};
 use crate::diagnostic::quoted;
-use crate::limits::{ASKED_FOLDER_ENTRIES, FLEET_ENTRIES, FOLDERS_ABOVE};
+use crate::limits::{FLEET_ENTRIES, FOLDERS_ABOVE};
 use crate::load::description;
 use crate::source::{OpenTexts, identity};
 
@@ -22,34 +22,18 @@ const SKIPPED: &[&str] = &["target", "node_modules"];
 /// Index of the files in folders. Each folder and each first tag is read once.
 pub(super) struct Index {
     folders: HashMap<PathBuf, Rc<Listing>>,
-    heads: HashMap<PathBuf, Option<Head>>,
-    /// The composites in folders; of one name those first whose files are called as they are.
-    names: HashMap<PathBuf, ByName<Vec<PathBuf>>>,
-    /// The progress of the search in contributions, by their folders.
-    walks: HashMap<PathBuf, Walk>,
-    /// The composites of contributions that were looked through.
-    seen: HashMap<PathBuf, Rc<Seen>>,
-    /// The composites of contributions by the names of their files; none of a folder that nobody describes as one.
-    files: HashMap<PathBuf, HashMap<OsString, Vec<PathBuf>>>,
+    /// The composites in folders.
+    names: HashMap<PathBuf, Rc<Names>>,
+    /// Those in folders and below.
+    names_below: HashMap<PathBuf, Rc<Names>>,
     roots: HashMap<PathBuf, PathBuf>,
-    /// The names that were searched, by folder: names are used again and again.
-    found: HashMap<Wanted, Option<PathBuf>>,
-    /// Of contributions that were looked through, the files called as composites that are none as far as could be read:
-    /// the first of each name.
-    unread: HashMap<PathBuf, HashMap<OsString, PathBuf>>,
     left: usize,
     /// True if there were more entries than are looked at.
     is_cut: bool,
     open: OpenTexts,
 }
 
-/// Values by the local name of a composite and then its namespace.
-type ByName<T> = HashMap<String, HashMap<String, T>>;
-
-/// A folder, namespaces and a local name.
-type Wanted = (PathBuf, Option<Vec<String>>, String);
-
-/// The composites in a folder, and the folders in it, sorted.
+/// What a folder has, sorted.
 #[derive(Debug, Default)]
 pub(super) struct Listing {
     composites: Vec<PathBuf>,
@@ -58,28 +42,55 @@ pub(super) struct Listing {
     definitions: Vec<PathBuf>,
 }
 
-/// A way through the folders of a contribution, the upper ones first, that goes on where it stopped.
-struct Walk {
-    waiting: VecDeque<PathBuf>,
-    seen: HashSet<PathBuf>,
-    /// The folders behind it, in their order.
-    behind: Vec<PathBuf>,
-    /// The first of them that holds a composite of a name.
-    holders: ByName<usize>,
+/// What a contribution has, sorted.
+#[derive(Default)]
+pub(super) struct Contents {
+    pub(super) composites: Vec<PathBuf>,
+    pub(super) definitions: Vec<PathBuf>,
+    /// The folders of other contributions below it.
+    pub(super) others: Vec<PathBuf>,
 }
 
-/// The composites that were seen in a contribution.
-pub(super) struct Seen {
-    /// Sorted by their paths.
-    pub(super) heads: Vec<Head>,
-    /// The first of each local name.
-    firsts: HashMap<String, usize>,
+/// The files called as composites in folders.
+#[derive(Default)]
+pub(super) struct Names {
+    /// By the local names of the composites in them, of one name the likeliest first.
+    composites: HashMap<String, Vec<Head>>,
+    /// Those that are none as far as could be read, by their own names: the first of each.
+    unread: HashMap<OsString, PathBuf>,
 }
 
-impl Seen {
-    /// The first composite of this local name.
+impl Names {
+    /// The likeliest composite of this name in one of these namespaces, or in any.
+    fn find(&self, namespaces: Option<&[String]>, local: &str) -> Option<&Head> {
+        let mut named = self.composites.get(local)?.iter();
+        named.find(|one| namespaces.is_none_or(|meant| meant.contains(&one.namespace)))
+    }
+
+    /// All composites, sorted by their paths.
+    pub(super) fn heads(&self) -> Vec<&Head> {
+        let mut all: Vec<&Head> = self.composites.values().flatten().collect();
+        all.sort_unstable_by_key(|head| &head.path);
+        all
+    }
+
+    /// The number of composites.
+    pub(super) fn len(&self) -> usize {
+        self.composites.values().map(Vec::len).sum()
+    }
+
+    /// The first composite of this local name, by its path.
     pub(super) fn named(&self, local: &str) -> Option<&Head> {
-        self.firsts.get(local).map(|place| &self.heads[*place])
+        self.composites.get(local)?.iter().min_by_key(|head| &head.path)
+    }
+
+    fn extend(&mut self, other: &Self) {
+        for (local, heads) in &other.composites {
+            self.composites.entry(local.clone()).or_default().extend_from_slice(heads);
+        }
+        for (name, path) in &other.unread {
+            self.unread.entry(name.clone()).or_insert_with(|| path.clone());
+        }
     }
 }
 
@@ -88,171 +99,103 @@ impl Index {
     pub(super) fn new(open: OpenTexts) -> Self {
         Self {
             folders: HashMap::new(),
-            heads: HashMap::new(),
             names: HashMap::new(),
-            walks: HashMap::new(),
-            seen: HashMap::new(),
-            files: HashMap::new(),
+            names_below: HashMap::new(),
             roots: HashMap::new(),
-            found: HashMap::new(),
-            unread: HashMap::new(),
             left: FLEET_ENTRIES,
             is_cut: false,
             open,
         }
     }
 
-    /// For another fleet as many entries of folders that are not known yet are looked at.
-    pub(super) fn turn_to_fleet(&mut self) {
-        self.left = FLEET_ENTRIES;
-    }
-
-    /// In a folder that somebody asks for, more entries are looked at.
-    pub(super) fn turn_to_folder(&mut self) {
-        self.left = ASKED_FOLDER_ENTRIES;
-    }
-
-    /// Lets only so many more entries be looked at.
-    #[cfg(test)]
+    /// Lets so many more entries of folders that are not known yet be looked at.
     pub(super) fn limit(&mut self, left: usize) {
         self.left = left;
     }
 
-    /// The file of the composite with this name in one of these namespaces, or in any, as a file in `folder` means it.
-    pub(super) fn find(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
-        let wanted = (folder.to_owned(), namespaces.map(<[String]>::to_vec), local.to_owned());
-        if let Some(known) = self.found.get(&wanted) {
-            return known.clone();
-        }
-        let found = self.look_for(folder, namespaces, local);
-        self.found.insert(wanted, found.clone());
-        found
-    }
-
-    fn look_for(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
-        if let Some(found) = self.find_in(folder, namespaces, local) {
-            return Some(found);
-        }
-        let root = self.root(folder);
-        let mut walk = self.walks.remove(&root).unwrap_or_else(|| Walk::from(root.clone()));
-        let holder = walk.holders.get(local).and_then(|holders| fitting(holders, namespaces).min());
-        let mut found = holder.and_then(|place| self.find_in(&walk.behind[*place], namespaces, local));
-        while found.is_none()
-            && let Some(next) = walk.waiting.pop_front()
-        {
-            if walk.seen.insert(next.clone()) {
-                walk.waiting.extend(self.listing(&next).folders.iter().cloned());
-                for (local, of_namespaces) in self.names(&next) {
-                    let holders = walk.holders.entry(local.clone()).or_default();
-                    for namespace in of_namespaces.keys() {
-                        holders.entry(namespace.clone()).or_insert(walk.behind.len());
-                    }
-                }
-                found = self.find_in(&next, namespaces, local);
-                walk.behind.push(next);
-            }
-        }
-        self.walks.insert(root, walk);
-        found
+    /// The composite with this name in one of these namespaces, or in any, as a file in `folder` means it: in the
+    /// folder, or else in its contribution, the upper folders first.
+    pub(super) fn find(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<Head> {
+        let here = self.names(folder).find(namespaces, local).cloned();
+        here.or_else(|| self.names_around(folder).find(namespaces, local).cloned())
     }
 
     /// The other files that hold a composite of the same name and namespace as one that was found: in its folder, and
     /// those of its file's name in the folders of a contribution that is described as such.
-    pub(super) fn twins(&mut self, found: &Path) -> Vec<PathBuf> {
-        let Some(Head { namespace, local, .. }) = self.head(found).clone() else { return Vec::new() };
-        let folder = found.parent().unwrap_or(Path::new(""));
-        let here = self.names(folder).get(&local).and_then(|named| named.get(&namespace));
-        let mut all: Vec<PathBuf> = here.into_iter().flatten().cloned().collect();
+    pub(super) fn twins(&mut self, found: &Head) -> Vec<PathBuf> {
+        let folder = found.path.parent().unwrap_or(Path::new(""));
         let root = self.root(folder);
-        let of_its_name = found.file_name().and_then(|name| self.files(&root).get(name));
-        let elsewhere = of_its_name.into_iter().flatten().filter(|path| path.parent() != found.parent());
-        let elsewhere: Vec<PathBuf> = elsewhere.cloned().collect();
-        let is_same = |head: &Head| head.namespace == namespace && head.local == local;
-        all.extend(elsewhere.into_iter().filter(|path| self.head(path).as_ref().is_some_and(is_same)));
-        let own = identity(found);
+        let of_name = |names: &Names| -> Vec<PathBuf> {
+            let named = names.composites.get(&found.local).into_iter().flatten();
+            named.filter(|one| one.namespace == found.namespace).map(|one| one.path.clone()).collect()
+        };
+        let mut all = of_name(&self.names(folder));
+        if describes(&root) {
+            let elsewhere = of_name(&self.names_below(&root)).into_iter().filter(|path| {
+                let other = path.parent().filter(|other| *other != folder);
+                path.file_name() == found.path.file_name() && other.is_some_and(|other| self.root(other) == root)
+            });
+            let mut elsewhere: Vec<PathBuf> = elsewhere.collect();
+            elsewhere.sort_unstable();
+            all.extend(elsewhere);
+        }
+        let own = identity(&found.path);
         all.retain(|path| identity(path) != own);
         all
     }
 
-    fn find_in(&mut self, folder: &Path, namespaces: Option<&[String]>, local: &str) -> Option<PathBuf> {
-        let named = self.names(folder).get(local)?;
-        let firsts = fitting(named, namespaces).filter_map(|paths| paths.first());
-        firsts.min_by_key(|path| (!is_called(path, local), *path)).cloned()
-    }
-
-    fn names(&mut self, folder: &Path) -> &ByName<Vec<PathBuf>> {
-        if !self.names.contains_key(folder) {
-            let mut names: ByName<Vec<PathBuf>> = HashMap::new();
-            for path in &self.listing(folder).composites {
-                if let Some(Head { namespace, local, .. }) = self.head(path).clone() {
-                    names.entry(local).or_default().entry(namespace).or_default().push(path.clone());
-                }
-            }
-            for (local, of_namespaces) in &mut names {
-                for paths in of_namespaces.values_mut() {
-                    paths.sort_by_key(|path| !is_called(path, local));
-                }
-            }
-            self.names.insert(folder.to_owned(), names);
-        }
-        &self.names[folder]
-    }
-
-    fn files(&mut self, root: &Path) -> &HashMap<OsString, Vec<PathBuf>> {
-        if !self.files.contains_key(root) {
-            let mut files: HashMap<OsString, Vec<PathBuf>> = HashMap::new();
-            let all = if describes(root) { self.contribution(root).0 } else { Vec::new() };
-            for path in all {
-                if let Some(name) = path.file_name() {
-                    files.entry(name.to_owned()).or_default().push(path);
-                }
-            }
-            self.files.insert(root.to_owned(), files);
-        }
-        &self.files[root]
-    }
-
-    /// The composites of the contribution of `folder`, which was looked through for a name that it does not have.
-    pub(super) fn seen(&mut self, folder: &Path) -> Rc<Seen> {
-        let root = self.root(folder);
-        if let Some(known) = self.seen.get(&root) {
+    fn names(&mut self, folder: &Path) -> Rc<Names> {
+        if let Some(known) = self.names.get(folder) {
             return Rc::clone(known);
         }
-        let folders = self.walks.get(&root).map_or_else(Vec::new, |walk| walk.behind.clone());
-        let paths = folders.iter().flat_map(|folder| self.listing(folder).composites.clone());
-        let paths: Vec<PathBuf> = paths.collect();
-        let mut heads: Vec<Head> = paths.iter().filter_map(|path| self.head(path).clone()).collect();
-        heads.sort_by(|one, other| one.path.cmp(&other.path));
-        let mut firsts = HashMap::new();
-        for (place, head) in heads.iter().enumerate() {
-            firsts.entry(head.local.clone()).or_insert(place);
+        let mut names = Names::default();
+        for path in &self.listing(folder).composites {
+            match (head(path, &self.open), path.file_stem()) {
+                (Some(head), _) => names.composites.entry(head.local.clone()).or_default().push(head),
+                (None, Some(name)) => _ = names.unread.insert(name.to_owned(), path.clone()),
+                (None, None) => {}
+            }
         }
-        let seen = Rc::new(Seen { heads, firsts });
-        self.seen.insert(root, Rc::clone(&seen));
-        seen
+        for (local, heads) in &mut names.composites {
+            // As a rule a file is called as the composite in it.
+            heads.sort_by_key(|head| head.path.file_stem().is_none_or(|stem| stem != local.as_str()));
+        }
+        let names = Rc::new(names);
+        self.names.insert(folder.to_owned(), Rc::clone(&names));
+        names
+    }
+
+    /// The composites in a folder and below, those of the upper folders first.
+    fn names_below(&mut self, root: &Path) -> Rc<Names> {
+        if let Some(known) = self.names_below.get(root) {
+            return Rc::clone(known);
+        }
+        let mut names = Names::default();
+        for folder in self.folders(root, |_| true).0 {
+            names.extend(&self.names(&folder));
+        }
+        let names = Rc::new(names);
+        self.names_below.insert(root.to_owned(), Rc::clone(&names));
+        names
+    }
+
+    /// The composites in the contribution of `folder`.
+    pub(super) fn names_around(&mut self, folder: &Path) -> Rc<Names> {
+        let root = self.root(folder);
+        self.names_below(&root)
     }
 
     /// The files in a folder whose endings say that they are composites, and which are none as far as could be read.
     pub(super) fn unread(&mut self, folder: &Path) -> Vec<PathBuf> {
-        let all = self.listing(folder).composites.clone();
-        all.into_iter().filter(|path| self.head(path).is_none()).collect()
+        let mut all: Vec<PathBuf> = self.names(folder).unread.values().cloned().collect();
+        all.sort_unstable();
+        all
     }
 
-    /// The file in the contribution of `folder`, which was looked through for a name that it does not have, that is
-    /// called as a composite of this name is, and is none as far as could be read: that is probably meant.
+    /// The file in the contribution of `folder` that is called as a composite of this name is, and is none as far as
+    /// could be read: that is probably meant.
     pub(super) fn unread_named(&mut self, folder: &Path, local: &str) -> Option<PathBuf> {
-        let root = self.root(folder);
-        if !self.unread.contains_key(&root) {
-            let folders = self.walks.get(&root).map_or_else(Vec::new, |walk| walk.behind.clone());
-            let mut all: HashMap<OsString, PathBuf> = HashMap::new();
-            for path in folders.iter().flat_map(|folder| self.unread(folder)) {
-                if let Some(stem) = path.file_stem() {
-                    all.entry(stem.to_owned()).or_insert(path);
-                }
-            }
-            self.unread.insert(root.clone(), all);
-        }
-        self.unread[&root].get(OsStr::new(local)).cloned()
+        self.names_around(folder).unread.get(OsStr::new(local)).cloned()
     }
 
     /// The places that were searched for composites, as a sentence.
@@ -270,51 +213,51 @@ impl Index {
 
     /// The folder of the contribution that `folder` is in.
     pub(super) fn root(&mut self, folder: &Path) -> PathBuf {
-        if let Some(known) = self.roots.get(folder) {
-            return known.clone();
-        }
-        let found = root(folder);
-        self.roots.insert(folder.to_owned(), found.clone());
-        found
+        self.roots.entry(folder.to_owned()).or_insert_with(|| root(folder)).clone()
     }
 
-    /// The composites of the contribution in a folder, sorted, and the folders of other contributions below it.
-    pub(super) fn contribution(&mut self, root: &Path) -> (Vec<PathBuf>, Vec<PathBuf>) {
-        let (mut composites, mut others) = (Vec::new(), Vec::new());
-        let mut waiting = vec![root.to_owned()];
-        let mut seen = HashSet::new();
-        while let Some(next) = waiting.pop() {
-            if next != root && describes(&next) {
+    /// The folders from one down, the upper ones first, as far as they are to be entered, and those that are not.
+    fn folders(&mut self, root: &Path, enters: impl Fn(&Path) -> bool) -> (Vec<PathBuf>, Vec<PathBuf>) {
+        let (mut entered, mut others) = (Vec::new(), Vec::new());
+        let mut waiting = VecDeque::from([root.to_owned()]);
+        while let Some(next) = waiting.pop_front() {
+            if next == root || enters(&next) {
+                waiting.extend(self.listing(&next).folders.iter().cloned());
+                entered.push(next);
+            } else {
                 others.push(next);
-            } else if seen.insert(next.clone()) {
-                let listing = self.listing(&next);
-                composites.extend(listing.composites.iter().cloned());
-                waiting.extend(listing.folders.iter().cloned());
             }
         }
-        composites.sort_unstable();
-        others.sort_unstable();
-        (composites, others)
+        (entered, others)
     }
 
-    /// The files of definitions in a contribution, sorted.
-    pub(super) fn definitions(&mut self, root: &Path) -> Vec<PathBuf> {
-        let (mut all, mut waiting) = (Vec::new(), vec![root.to_owned()]);
-        while let Some(next) = waiting.pop() {
-            if next == root || !describes(&next) {
-                let listing = self.listing(&next);
-                all.extend_from_slice(&listing.definitions);
-                waiting.extend_from_slice(&listing.folders);
-            }
+    /// The folders of the contribution in a folder, and those of other contributions below it.
+    fn own_folders(&mut self, root: &Path) -> (Vec<PathBuf>, Vec<PathBuf>) {
+        self.folders(root, |folder| !describes(folder))
+    }
+
+    /// The files of the contribution in a folder.
+    pub(super) fn contents(&mut self, root: &Path) -> Contents {
+        let (folders, others) = self.own_folders(root);
+        let mut all = Contents { others, ..Contents::default() };
+        for folder in folders {
+            let listing = self.listing(&folder);
+            all.composites.extend_from_slice(&listing.composites);
+            all.definitions.extend_from_slice(&listing.definitions);
         }
-        all.sort_unstable();
+        for paths in [&mut all.composites, &mut all.definitions, &mut all.others] {
+            paths.sort_unstable();
+        }
         all
     }
 
-    /// The namespaces of the composites in a contribution.
-    pub(super) fn namespaces(&mut self, root: &Path) -> BTreeSet<String> {
-        let composites = self.contribution(root).0.into_iter();
-        composites.filter_map(|path| Some(self.head(&path).as_ref()?.namespace.clone())).collect()
+    /// The composites of the contribution in a folder, sorted by their paths.
+    pub(super) fn heads(&mut self, root: &Path) -> Vec<Head> {
+        let mut names = Names::default();
+        for folder in self.own_folders(root).0 {
+            names.extend(&self.names(&folder));
+        }
+        names.heads().into_iter().cloned().collect()
     }
 
     /// True if every file was looked at.
@@ -329,7 +272,7 @@ impl Index {
         self.roots.entry(own).or_insert(root);
     }
 
-    pub(super) fn listing(&mut self, folder: &Path) -> Rc<Listing> {
+    fn listing(&mut self, folder: &Path) -> Rc<Listing> {
         if let Some(known) = self.folders.get(folder) {
             return Rc::clone(known);
         }
@@ -372,15 +315,6 @@ impl Index {
         self.folders.insert(folder.to_owned(), Rc::clone(&listing));
         listing
     }
-
-    /// True if a file holds a composite of this namespace.
-    pub(super) fn is_of(&mut self, path: &Path, namespace: &str) -> bool {
-        self.head(path).as_ref().is_some_and(|head| head.namespace == namespace)
-    }
-
-    pub(super) fn head(&mut self, path: &Path) -> &Option<Head> {
-        self.heads.entry(path.to_owned()).or_insert_with(|| head(path, &self.open))
-    }
 }
 
 /// True if what is in a folder is a file, or a link to one or to nowhere, which is told when it is read. Of a pipe
@@ -389,42 +323,13 @@ fn may_be_read(kind: FileType, path: &Path) -> bool {
     kind.is_file() || kind.is_symlink() && fs::metadata(path).map_or(true, |about| about.is_file())
 }
 
-impl From<PathBuf> for Walk {
-    fn from(root: PathBuf) -> Self {
-        let waiting = VecDeque::from([root]);
-        Self { waiting, seen: HashSet::new(), behind: Vec::new(), holders: HashMap::new() }
-    }
-}
-
-/// The composites of one of these namespaces, or of any.
-fn fitting<'a, T>(
-    of_namespaces: &'a HashMap<String, T>,
-    namespaces: Option<&'a [String]>,
-) -> impl Iterator<Item = &'a T> {
-    let meant = namespaces.into_iter().flatten().filter_map(|namespace| of_namespaces.get(namespace));
-    meant.chain(of_namespaces.values().filter(move |_| namespaces.is_none()))
-}
-
-/// True if a file is called as a composite, as most are that hold it.
-fn is_called(path: &Path, local: &str) -> bool {
-    path.file_stem().is_some_and(|stem| stem == local)
-}
-
 /// The files `*.composite` whose composites one in `folder` can name: those in it, and those of its contribution, as
 /// [`load_named`](super::load_named) looks for them. Texts that count in place of files are among them.
 pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let mut index = Index::new(open.clone());
     let mut all = index.listing(folder).composites.clone();
-    let mut waiting = VecDeque::from([index.root(folder)]);
-    let mut seen = HashSet::new();
-    while let Some(next) = waiting.pop_front() {
-        if seen.insert(next.clone()) {
-            let listing = index.listing(&next);
-            if next != folder {
-                all.extend(listing.composites.iter().cloned());
-            }
-            waiting.extend(listing.folders.iter().cloned());
-        }
+    for below in index.folders(&root(folder), |_| true).0.iter().filter(|below| *below != folder) {
+        all.extend_from_slice(&index.listing(below).composites);
     }
     all
 }

@@ -13,7 +13,6 @@ mod imports;
 mod index;
 mod overrides;
 mod resolve;
-mod side_file;
 #[cfg(test)]
 mod tests;
 mod value_file;
@@ -21,13 +20,12 @@ mod values;
 
 use std::path::Path;
 
-pub use finder::Finder;
+pub use finder::{Finder, SideFile};
 pub use fleets::{FolderFleet, composites_below, load_folder};
 pub use imports::{imported_near, importing_near};
 pub use index::{composites_near, description_near};
 pub use overrides::table;
 pub use resolve::load_named;
-pub use side_file::SideFile;
 pub use values::read_values;
 
 use crate::diagnostic::Diagnostics;

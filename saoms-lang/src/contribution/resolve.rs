@@ -4,12 +4,13 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::finder::Finder;
+use super::head::Head;
 use super::{component_types, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
-use crate::limits::OFFERED_NAMES;
+use crate::limits::{FLEET_ENTRIES, OFFERED_NAMES};
 use crate::load::description::Kind;
 use crate::load::{ReadContext, STANDARD_INPUT, load_component_type, load_file};
-use crate::model::{ComponentElement, Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
+use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
 
 /// Reads the composites that those of a contribution include or implement components with, and what those name in turn;
@@ -44,57 +45,31 @@ impl Finder {
         diagnostics: &mut Diagnostics,
     ) {
         let context = &mut ReadContext { max_size, sources, diagnostics };
-        self.index.turn_to_fleet();
+        self.index.limit(FLEET_ENTRIES);
+        let path_of = |one: &Composite, sources: &Sources| PathBuf::from(sources.get(one.file()).path());
+        let paths = contribution.composites().iter().map(|one| path_of(one, context.sources));
+        let paths: Vec<PathBuf> = paths.collect();
+        let given = paths.iter().filter_map(|path| path.parent());
+        self.imports.turn_to_fleet(given.map(|folder| self.index.root(folder)));
         // By their paths, so that one file is one composite; `None` for one that could not be read.
-        let mut known: HashMap<PathBuf, Option<usize>> = HashMap::new();
-        for (place, composite) in contribution.composites().iter().enumerate() {
-            known.insert(identity(Path::new(context.sources.get(composite.file()).path())), Some(place));
-        }
-        let given = contribution.composites().iter();
-        let given = given.filter_map(|one| Path::new(context.sources.get(one.file()).path()).parent());
-        let given = given.map(|folder| self.index.root(folder));
-        self.imports.turn_to_fleet(given);
+        let mut known: HashMap<PathBuf, Option<usize>> =
+            paths.iter().enumerate().map(|(place, path)| (identity(path), Some(place))).collect();
         let mut types = HashMap::new();
         let mut warned = HashSet::new();
-        let mut place = 0;
-        while let Some(composite) = contribution.composites().get(place) {
-            let at = place;
-            place += 1;
-            let path = PathBuf::from(context.sources.get(composite.file()).path());
-            let is_open = |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
-            let open = composite.namings().filter(is_open);
-            let wanted: Vec<Wanted> = open
-                .map(|naming| {
-                    let (namespaces, local) = composite.resolve_name(naming);
-                    let prefix = naming.name.as_str().strip_suffix(local).unwrap_or_default();
-                    Wanted {
-                        origin: naming.origin,
-                        at: naming.name.location,
-                        prefix: prefix.to_owned(),
-                        namespaces,
-                        local: local.to_owned(),
-                    }
-                })
-                .collect();
-            let described = described(composite);
-            if wanted.is_empty() && described.is_empty()
-                || !(path.is_file() || context.sources.open().get(&path).is_some() || path == Path::new(STANDARD_INPUT))
-            {
+        let mut next = 0;
+        while let Some(composite) = contribution.composites().get(next) {
+            next += 1;
+            let path = path_of(composite, context.sources);
+            let is_file = || path.is_file() || context.sources.open().get(&path).is_some();
+            if path != Path::new(STANDARD_INPUT) && !is_file() {
                 continue;
             }
+            let is_open = |naming: &Naming<'_>| matches!(contribution.link(naming.origin), Some(Link::Missing(_)));
+            let wanted = composite.namings().filter(is_open).map(|naming| Wanted::of(naming, composite));
+            let wanted: Vec<Wanted> = wanted.collect();
             let folder = path.parent().unwrap_or(Path::new(""));
             let root = self.index.root(folder);
-            let mut files = HashMap::new();
-            for Described { written, paths, package, is_needed } in described {
-                // By its path in the contribution, or beside the composite under its last name.
-                let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
-                let mut all = paths.iter().map(|path| root.join(path)).chain(beside);
-                let mut found = all.find(|path| self.has_component_type(path));
-                if let (None, Some(package)) = (&found, &package) {
-                    let from = self.imports.exporters(&root, Kind::Java, package, context);
-                    let mut all = from.iter().flat_map(|root| paths.iter().map(|path| root.join(path)));
-                    found = all.find(|path| self.has_component_type(path));
-                }
+            for (origin, found) in self.described(composite, folder, &root, context) {
                 let place = found.map(|found| {
                     *types.entry(found).or_insert_with_key(|path| {
                         let file = context.read(path)?;
@@ -103,39 +78,24 @@ impl Finder {
                     })
                 });
                 // Of a file that could not be read nothing more is said.
-                match place {
-                    Some(Some(place)) => _ = files.insert(written, Some(place)),
-                    None if is_needed => _ = files.insert(written, None),
-                    _ => {}
+                if place != Some(None) {
+                    contribution.describe(origin, place.flatten());
                 }
-            }
-            if !files.is_empty() {
-                let composite = &contribution.composites()[at];
-                let all = composite.components.iter().filter_map(|component| {
-                    let (origin, written) = implementation(component, composite)?;
-                    Some((origin, *files.get(written)?))
-                });
-                let all: Vec<(Origin, Option<usize>)> = all.collect();
-                all.into_iter().for_each(|(origin, place)| contribution.describe(origin, place));
             }
             for wanted in wanted {
-                let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
-                let own = self.index.find(folder, namespaces, local);
-                if let Some(found) = &own {
-                    self.index.adopt(folder, found);
+                let found = self.find(&wanted, folder, &root, context);
+                if let Some(found) = &found
+                    && warned.insert(found.path.clone())
+                {
+                    let warning = ambiguous(&wanted, &found.path, &self.index.twins(found));
+                    warning.into_iter().for_each(|one| context.diagnostics.push(one));
                 }
-                let found = own.or_else(|| self.imports.find(&mut self.index, &root, namespaces, local, context));
                 // What is wrong with a file that is called so is told there, and nowhere else.
-                let found = found.or_else(|| self.index.unread_named(folder, local));
-                let link = match found {
+                let unread = || self.index.unread_named(folder, &wanted.local);
+                let link = match found.map(|found| found.path).or_else(unread) {
                     None if self.imports.is_faulty(&root, context) => Link::Faulty,
                     None => Link::Missing(self.missing(folder, &root, &wanted, context)),
                     Some(found) => {
-                        if warned.insert(found.clone()) {
-                            let twins = self.index.twins(&found);
-                            let warning = ambiguous(&wanted, &found, &twins);
-                            warning.into_iter().for_each(|one| context.diagnostics.push(one));
-                        }
                         let place = known.entry(identity(&found)).or_insert_with(|| {
                             let file = context.read(&found)?;
                             let ReadContext { sources, diagnostics, .. } = &mut *context;
@@ -151,18 +111,68 @@ impl Finder {
         }
     }
 
+    /// The composite that a file in `folder`, of the contribution in `root`, names.
+    fn find(&mut self, wanted: &Wanted, folder: &Path, root: &Path, context: &mut ReadContext<'_>) -> Option<Head> {
+        let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
+        if let Some(own) = self.index.find(folder, namespaces, local) {
+            self.index.adopt(folder, &own.path);
+            return Some(own);
+        }
+        self.imports.find(&mut self.index, root, namespaces, local, context)
+    }
+
+    /// The implementations of a composite with the files that describe them, `None` where one that has to be there is
+    /// not.
+    fn described(
+        &mut self,
+        composite: &Composite,
+        folder: &Path,
+        root: &Path,
+        context: &mut ReadContext<'_>,
+    ) -> Vec<(Origin, Option<PathBuf>)> {
+        // Those that are written alike have one file.
+        let mut known: HashMap<&str, Option<Option<PathBuf>>> = HashMap::new();
+        let mut all = Vec::new();
+        for component in &composite.components {
+            let Some(implementation) = &component.implementation else { continue };
+            let element = implementation.origin.element(&composite.document);
+            let written = match component.class() {
+                Some(class) => class.as_str(),
+                None => {
+                    let tag = element.start_tag_span();
+                    &composite.document.text()[tag.start as usize..tag.end as usize]
+                }
+            };
+            let found = known.entry(written).or_insert_with(|| {
+                let paths = component_types::paths(component, composite);
+                // By its path in the contribution, or beside the composite under its last name.
+                let beside = paths.iter().filter_map(|path| Some(folder.join(path.file_name()?)));
+                let mut own = paths.iter().map(|path| root.join(path)).chain(beside);
+                let found = own.find(|path| path.is_file()).or_else(|| {
+                    let (package, _) = component.class()?.rsplit_once('.').filter(|_| !paths.is_empty())?;
+                    let from = self.imports.exporters(root, Kind::Java, package, context);
+                    from.iter().flat_map(|root| paths.iter().map(|path| root.join(path))).find(|path| path.is_file())
+                });
+                // A bundle of OSGi says nothing about services by itself. Its description is called as its file is,
+                // which only `bundle` tells.
+                let is_osgi = matches!(&implementation.kind, ImplementationKind::Other { kind, .. } if kind == "osgi");
+                let is_needed = is_osgi && element.attribute("bundle").is_some() && !paths.is_empty();
+                (found.is_some() || is_needed).then_some(found)
+            });
+            all.extend(found.clone().map(|found| (implementation.origin, found)));
+        }
+        all
+    }
+
     /// The knowledge about a composite that is not found, named by a file in `folder`, of the contribution in `root`.
     fn missing(&mut self, folder: &Path, root: &Path, wanted: &Wanted, context: &mut ReadContext<'_>) -> Missing {
         let Some(left) = self.explained.checked_sub(1) else { return Missing::default() };
         self.explained = left;
-        let seen = self.index.seen(folder);
-        let is_meant =
-            |namespace: &str| wanted.namespaces.as_ref().is_none_or(|all| all.iter().any(|meant| meant == namespace));
-        let mut near = Vec::new();
-        if self.candidates.admit(seen.heads.len()) {
-            let of_namespace = seen.heads.iter().filter(|one| is_meant(&one.namespace));
-            near = nearest_few(&wanted.local, of_namespace.map(|one| one.local.as_str()), OFFERED_NAMES);
-        }
+        let seen = self.index.names_around(folder);
+        let is_meant = |one: &&Head| wanted.namespaces.as_ref().is_none_or(|all| all.contains(&one.namespace));
+        let heads = if self.candidates.admit(seen.len()) { seen.heads() } else { Vec::new() };
+        let of_namespace = heads.into_iter().filter(is_meant).map(|one| one.local.as_str());
+        let near = nearest_few(&wanted.local, of_namespace, OFFERED_NAMES);
         let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
         let mut searched = vec![self.index.searched(folder)];
         if let Some(other) = seen.named(&wanted.local) {
@@ -181,57 +191,7 @@ impl Finder {
     }
 }
 
-/// Implementations that one file beside them may describe.
-struct Described {
-    /// Their common key, from [`implementation`].
-    written: String,
-    /// The files that it may be, the likeliest first.
-    paths: Vec<PathBuf>,
-    /// The package of their class.
-    package: Option<String>,
-    /// True if it has to be there.
-    is_needed: bool,
-}
-
-/// The implementations of a composite that files beside them may describe; all that are written alike together.
-fn described(composite: &Composite) -> Vec<Described> {
-    let mut all: Vec<Described> = Vec::new();
-    let mut seen: HashSet<&str> = HashSet::default();
-    let mut before = "";
-    for component in &composite.components {
-        let Some((origin, written)) = implementation(component, composite) else { continue };
-        if std::mem::replace(&mut before, written) == written || !seen.insert(written) {
-            continue;
-        }
-        let paths = component_types::paths(component, composite);
-        if paths.is_empty() {
-            continue;
-        }
-        // A bundle of OSGi says nothing about services by itself. Its description is called as its file is, which only
-        // `bundle` tells.
-        let kind = component.implementation.as_ref().map(|implementation| &implementation.kind);
-        let is_needed = matches!(kind, Some(ImplementationKind::Other { kind, .. }) if kind == "osgi")
-            && origin.element(&composite.document).attribute("bundle").is_some();
-        let package = component.class().and_then(|class| Some(class.rsplit_once('.')?.0.to_owned()));
-        all.push(Described { written: written.to_owned(), paths, package, is_needed });
-    }
-    all
-}
-
-/// The origin of a component's implementation, and the text that says which file describes it: the class, or else the
-/// whole tag.
-fn implementation<'a>(component: &'a ComponentElement, composite: &'a Composite) -> Option<(Origin, &'a str)> {
-    let implementation = component.implementation.as_ref()?;
-    let written = match component.class() {
-        Some(class) => class.as_str(),
-        None => {
-            let tag = implementation.origin.element(&composite.document).start_tag_span();
-            &composite.document.text()[tag.start as usize..tag.end as usize]
-        }
-    };
-    Some((implementation.origin, written))
-}
-
+/// A composite that is named and not known.
 struct Wanted {
     origin: Origin,
     /// The place of the name.
@@ -239,6 +199,14 @@ struct Wanted {
     prefix: String,
     namespaces: Option<Vec<String>>,
     local: String,
+}
+
+impl Wanted {
+    fn of(naming: Naming<'_>, around: &Composite) -> Self {
+        let (namespaces, local) = around.resolve_name(naming);
+        let prefix = naming.name.strip_suffix(local).unwrap_or_default().to_owned();
+        Self { origin: naming.origin, at: naming.name.location, prefix, namespaces, local: local.to_owned() }
+    }
 }
 
 /// The warning that a name leads to one of several files, which one of them nobody says.

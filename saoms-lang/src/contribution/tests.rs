@@ -78,6 +78,6 @@ fn what_lies_beyond_the_entries_that_are_looked_at_is_said_to() {
         assert_eq!(index.find(folder.path(), None, "hall"), None);
         assert_eq!(index.is_complete(), is_complete);
         assert_eq!(index.searched(folder.path()).contains("and not in all"), !is_complete);
-        assert_eq!(index.seen(folder.path()).heads.len(), entries);
+        assert_eq!(index.names_around(folder.path()).len(), entries);
     }
 }

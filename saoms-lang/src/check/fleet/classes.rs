@@ -12,8 +12,7 @@ use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
 use crate::model::{ComponentElement, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
-    ClassTopic, InterfaceDeclaration, LoopDeclaration, ReferenceDeclaration, RegisteredClass, Registry,
-    ServiceDeclaration,
+    ClassTopic, LoopDeclaration, ReferenceDeclaration, RegisteredClass, Registry, ServiceDeclaration,
 };
 use crate::source::{Sources, Text};
 use crate::syntax::escaped;
@@ -31,15 +30,6 @@ pub(crate) struct ClassIndex<'r> {
     pub(crate) references: Vec<&'r ReferenceDeclaration>,
     pub(crate) publishes: Vec<&'r ClassTopic>,
     pub(crate) subscribes: Vec<&'r ClassTopic>,
-}
-
-/// The services of a class with an interface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fitting {
-    None,
-    /// The one of this place.
-    One(usize),
-    Several,
 }
 
 impl<'r> ClassIndex<'r> {
@@ -70,17 +60,6 @@ impl<'r> ClassIndex<'r> {
             }
         }
         all
-    }
-
-    /// The services with an interface.
-    pub(crate) fn fitting(&self, interface: &InterfaceDeclaration) -> Fitting {
-        let all = self.services.iter().enumerate();
-        let mut all = all.filter(|(_, service)| service.interface == *interface).map(|(place, _)| place);
-        match (all.next(), all.next()) {
-            (None, _) => Fitting::None,
-            (Some(only), None) => Fitting::One(only),
-            (Some(_), Some(_)) => Fitting::Several,
-        }
     }
 
     /// True if the topics it declares are any.

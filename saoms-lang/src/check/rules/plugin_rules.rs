@@ -12,7 +12,7 @@ use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::Report;
 use crate::check::report::findings::{Subject, diagnostic};
 use crate::check::rules::unique_values::RepeatedValues;
-use crate::check::wiring::{Targets, Wiring};
+use crate::check::wiring::Wiring;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::registry::{RegisteredClass, RegisteredRule};
 
@@ -67,14 +67,14 @@ pub(crate) fn check<'s>(
     let Some(first) = subject(0) else { return };
     let is_whole = missing.is_empty();
     let all = || parts.iter().filter_map(part);
-    let open = all().filter(|(place, ..)| wiring.of(*place).iter().any(Targets::is_unknown));
+    let open = all().filter(|(place, ..)| wiring[*place].iter().any(Option::is_none));
     open.for_each(|(.., class)| miss(&mut missing, Some(class)));
     let mut views_of_classes = ClassViews::default();
     let mut wires: Vec<(&str, usize)> = Vec::new();
     let mut ends = Vec::with_capacity(parts.len());
     for (place, _, class) in all() {
-        for (reference, targets) in class.references.iter().zip(wiring.of(place)) {
-            let known = targets.providers().iter().filter_map(|provider| indices[provider.member]);
+        for (reference, targets) in class.references.iter().zip(&wiring[place]) {
+            let known = targets.iter().flatten().filter_map(|provider| indices[provider.member]);
             wires.extend(known.map(|index| (reference.name.as_str(), index)));
         }
         ends.push(wires.len());

@@ -1,10 +1,10 @@
 //! The ends of references: what `target`, bindings of SCA, wires, promotions and autowire give a reference.
 
 use super::Wires;
-use super::multiplicity::keeps_own;
 use super::promotion::ReferenceId;
 use super::target::{Provider, Target, target, uri};
 use super::uri::{parts, spread};
+use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::ReferenceElement;
@@ -17,10 +17,12 @@ pub(super) struct Ends {
     pub(super) all: Vec<End>,
     /// True if a target is wrong, which is reported, or cannot be looked at: nothing more is said about the reference.
     pub(super) is_unknown: bool,
+    /// The places of the targets that the component itself gives it, as far as they count.
+    pub(super) written: Vec<Location>,
 }
 
 /// A service that a reference leads to, and the place that says so.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct End {
     pub(super) provider: Provider,
     pub(super) place: Location,
@@ -34,37 +36,33 @@ impl<'f> Wires<'f, '_> {
         interface: &'f InterfaceDeclaration,
         report: &mut Report<'_>,
     ) -> Ends {
-        let level = self.level(place, Some(interface), report);
-        let mut ends = level.ends;
-        // That the reference of a composite has too many is told where it has them.
-        ends.is_unknown |= level.written.count > 1
-            && !self.fleet.members[place.0].runs()
-            && !self.fleet.multiplicity_of(place).is_many();
         let (fleet, promoted) = (self.fleet, self.promoted);
-        let outer = promoted.to.get(&place).map_or(&[][..], Vec::as_slice);
+        let mut ends = self.level(place, Some(interface), report);
+        // That the reference of a composite has too many is told where it has them.
+        ends.is_unknown |= ends.written.len() > 1
+            && !fleet.members[place.0].runs()
+            && fleet.multiplicity(place).is_some_and(|takes| !takes.is_many());
         // No target serves references of several interfaces.
-        let is_differing = self.promoted.differing.contains(&place);
+        let is_differing = promoted.differing.contains(&place);
         let mut around = Ends { is_unknown: is_differing, ..Ends::default() };
-        for outer in outer.iter().filter(|_| !is_differing) {
+        for outer in promoted.to.get(&place).into_iter().flatten().filter(|_| !is_differing) {
             let more = self.ends(*outer, interface, report);
             around.all.extend(more.all);
             around.is_unknown |= more.is_unknown;
         }
         // What is around a composite that runs by itself is the domain: the components of all such composites.
-        let mut domain = Level::default();
         for text in promoted.outermost.get(&place).into_iter().flatten() {
-            self.add(text, (0, None), true, Some(interface), &mut domain, report);
+            self.add(text, (0, None), true, Some(interface), &mut around, report);
         }
-        around.all.extend(domain.ends.all);
-        around.is_unknown |= domain.ends.is_unknown;
         let reference = fleet.members[place.0].component.reference(place.1);
-        if !around.all.is_empty() && !ends.all.is_empty() && !keeps_own(fleet, place, reference) {
-            ends = around;
+        let is_replaced = !around.all.is_empty() && !ends.all.is_empty() && !keeps_own(fleet, place, reference);
+        if is_replaced {
+            (ends.all, ends.is_unknown) = (around.all, around.is_unknown);
         } else {
             ends.all.extend(around.all);
             ends.is_unknown |= around.is_unknown;
         }
-        let has_none = ends.all.is_empty() && !ends.is_unknown && level.written.count == 0;
+        let has_none = ends.all.is_empty() && !ends.is_unknown && ends.written.is_empty();
         if has_none && self.is_autowired(place, reference) {
             return self.autowired(place, reference, interface, report);
         }
@@ -77,24 +75,24 @@ impl<'f> Wires<'f, '_> {
         (member, name): ReferenceId<'_>,
         interface: Option<&'f InterfaceDeclaration>,
         report: &mut Report<'_>,
-    ) -> Level {
+    ) -> Ends {
         let fleet = self.fleet;
         let scope = fleet.members[member].scope;
         let wires = self.wires_from((member, name));
         // In place of the `target`, and beside other wires (SCA Assembly 1.1, ASM50034).
         let is_replaced = wires.iter().any(|wire| wire.is_replacing);
         let own = Some(member);
-        let mut level = Level::default();
+        let mut ends = Ends::default();
         let mut is_said = !wires.is_empty();
         if let Some(reference) = fleet.members[member].component.reference(name) {
             let by_binding = reference.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
             for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref())) {
                 is_said = true;
-                self.add(text, (scope, own), !is_replaced, interface, &mut level, report);
+                self.add(text, (scope, own), !is_replaced, interface, &mut ends, report);
             }
         }
         for wire in wires {
-            self.add(wire.target, (wire.scope, own), true, interface, &mut level, report);
+            self.add(wire.target, (wire.scope, own), true, interface, &mut ends, report);
         }
         // A composite wires its references to what is around it, where the component that it implements says nothing
         // (SCA Assembly 1.1, 5.3).
@@ -102,7 +100,7 @@ impl<'f> Wires<'f, '_> {
         let declared = inner.into_iter().flat_map(|inner| inner.references()).find(|one| one.name == name);
         for text in declared.map_or(&[][..], |declared| &declared.targets) {
             let known = report.diagnostics().len();
-            self.add(text, (scope, own), true, interface, &mut level, report);
+            self.add(text, (scope, own), true, interface, &mut ends, report);
             let is_inside = || inner.is_some_and(|inner| fleet.find(inner.scope, parts(text).0).is_some());
             if report.diagnostics().len() > known && is_inside() {
                 report.diagnostics().adjust(known, |one| {
@@ -112,7 +110,7 @@ impl<'f> Wires<'f, '_> {
                 });
             }
         }
-        level
+        ends
     }
 
     /// Adds where a text leads from `own`, a component of `scope`, to what a reference is given.
@@ -122,11 +120,11 @@ impl<'f> Wires<'f, '_> {
         (scope, own): (usize, Option<usize>),
         counts: bool,
         interface: Option<&'f InterfaceDeclaration>,
-        level: &mut Level,
+        ends: &mut Ends,
         report: &mut Report<'_>,
     ) {
         if !self.room.take(text, scope, self.fleet, report) {
-            level.ends.is_unknown = true;
+            ends.is_unknown = true;
             return;
         }
         for (one, replica) in spread(text, scope, self.fleet) {
@@ -134,16 +132,14 @@ impl<'f> Wires<'f, '_> {
             if replica.is_some() && replica == own {
                 continue;
             }
-            match target(&one, (scope, own), interface, (self.fleet, self.options), report) {
-                Target::Service(provider) => {
-                    if counts {
-                        level.ends.all.push(End { provider, place: text.location });
-                    }
-                }
-                Target::Open | Target::Wrong => level.ends.is_unknown |= counts,
+            let found = target(&one, (scope, own), interface, (self.fleet, self.options), report);
+            if !counts {
+                continue;
             }
-            if counts {
-                level.written.add(text.location);
+            ends.written.push(text.location);
+            match found {
+                Target::Service(provider) => ends.all.push(End { provider, place: text.location }),
+                Target::Open | Target::Wrong => ends.is_unknown = true,
             }
         }
     }
@@ -166,21 +162,11 @@ impl<'f> Wires<'f, '_> {
         let (member, name) = place;
         let own = &fleet.members[member];
         let at = reference.map_or(own.component.name.location, |reference| reference.name.location);
-        let is_many = match fleet.class_of(member) {
-            Some(class) => {
-                let declared = class.references.iter().find(|declared| declared.name == name);
-                declared.is_some_and(|declared| self.multiplicity(place, declared).is_many())
-            }
-            None => fleet.multiplicity_of(place).is_many(),
-        };
+        let is_many = fleet.multiplicity(place).is_some_and(|takes| takes.is_many());
         // Of those that a reference with one target cannot have together, some are named.
         let most = if is_many { usize::MAX } else { 50 };
         let (found, is_open) = self.autowire.offers((own.scope, member), most, interface, fleet);
         if found.len() > 1 && !is_many {
-            let code = &codes::AUTOWIRE_AMBIGUOUS;
-            if report.skip(code, code.severity, at) {
-                return Ends { all: Vec::new(), is_unknown: true };
-            }
             let names: Vec<String> = found.iter().map(|one| uri(*one, fleet)).collect();
             let message = format!(
                 "autowire finds several services for reference {} of component {}",
@@ -188,41 +174,19 @@ impl<'f> Wires<'f, '_> {
                 quoted(&own.component.name)
             );
             let help = format!("name one as its `target`: {}", list(names.iter().map(String::as_str)));
-            report.push(Diagnostic::new(code, at, message).help(help));
-            return Ends { all: Vec::new(), is_unknown: true };
+            report.push(Diagnostic::new(&codes::AUTOWIRE_AMBIGUOUS, at, message).help(help));
+            return Ends { is_unknown: true, ..Ends::default() };
         }
         let all = found.into_iter().map(|(_, provider)| End { provider, place: at });
-        Ends { all: all.collect(), is_unknown: is_open }
+        Ends { all: all.collect(), is_unknown: is_open, ..Ends::default() }
     }
 }
 
-/// True if ends are of several services, or of one that is written several times.
-pub(super) fn is_several(ends: &[End]) -> bool {
-    ends.iter().any(|end| (end.provider, end.place) != (ends[0].provider, ends[0].place))
-}
-
-/// The targets that one component gives its reference.
-#[derive(Default)]
-pub(super) struct Level {
-    ends: Ends,
-    /// The targets that count.
-    pub(super) written: WrittenTargets,
-}
-
-/// The number of targets are written for a reference, and where.
-#[derive(Default)]
-pub(super) struct WrittenTargets {
-    pub(super) count: usize,
-    first: Option<Location>,
-    pub(super) first_two: Option<(Location, Location)>,
-}
-
-impl WrittenTargets {
-    fn add(&mut self, place: Location) {
-        self.count += 1;
-        match self.first {
-            None => self.first = Some(place),
-            Some(first) => _ = self.first_two.get_or_insert((first, place)),
-        }
-    }
+/// True if the targets of a reference stay when a composite that promotes it gives others (SCA Assembly 1.1, 4.3.1):
+/// only with `nonOverridable`. In SCA 1.0 those of a reference that takes several do.
+fn keeps_own(fleet: &Fleet<'_>, (member, _): ReferenceId<'_>, reference: Option<&ReferenceElement>) -> bool {
+    let Some(reference) = reference else { return false };
+    let is_fixed = reference.non_overridable().is_some_and(|fixed| fixed.value);
+    let is_many = reference.multiplicity().is_some_and(|given| given.value.is_many());
+    is_fixed || is_many && !fleet.members[member].composite.version.is_1_1()
 }

@@ -1,12 +1,12 @@
-//! URIs that are written in another way than SCA's, and their probable meaning.
+//! URIs that lead to no component, or are written in another way than SCA's, and their probable meaning.
 
 use super::offer::Side;
 use super::uri::parts;
 use crate::check::fleet::Fleet;
-use crate::check::report::{list, replacing};
-use crate::diagnostic::{Diagnostic, quoted};
+use crate::check::report::{Report, list, replacing};
+use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::expression::pattern;
-use crate::source::Text;
+use crate::source::{Location, Text};
 use crate::syntax::escaped;
 
 /// The meaning of a URI, as far as it is known, and the reason why the URI does not say it.
@@ -16,10 +16,6 @@ pub(crate) struct Misread {
 }
 
 impl Misread {
-    fn new(meant: String, help: &str) -> Self {
-        Self { meant: Some(meant), help: help.to_owned() }
-    }
-
     /// A diagnostic about the URI with what to write.
     pub(crate) fn add_to(self, one: Diagnostic, text: &Text) -> Diagnostic {
         let one = one.help(self.help);
@@ -39,12 +35,13 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
         let group = pattern(text);
         let is_known = fleet.group(scope, parts(&group).0).is_some();
         let help = "outside of replicas there is no index; `*` names all replicas";
-        return is_known.then(|| Misread::new(group, help));
+        return is_known.then(|| Misread { meant: Some(group), help: help.to_owned() });
     }
     if text.contains(LISTED) {
         let named: Vec<&str> = text.split(LISTED).filter(|name| !name.is_empty()).collect();
         let is_known = |name: &&str| fleet.find(scope, parts(name).0).is_some();
-        return named.iter().any(is_known).then(|| Misread::new(named.join(" "), "several stand between blanks"));
+        let help = "several stand between blanks".to_owned();
+        return named.iter().any(is_known).then(|| Misread { meant: Some(named.join(" ")), help });
     }
     let places = text.char_indices().filter(|(_, character)| BEHIND.contains(character));
     let mut split = places.map(|(at, _)| (&text[..at], text[at..].trim_start_matches(BEHIND)));
@@ -87,4 +84,55 @@ pub(crate) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'
         [] => Misread { meant: None, help: format!("{why}: of {inner_name} it promotes no {}", side.name()) },
         _ => Misread { meant: None, help: format!("{why}: {}", list(promoted)) },
     })
+}
+
+/// The diagnostic about the name of a component that does not exist, which `own` writes and means another one by. Such
+/// as `R03` and `R2` are held against the replicas of a group, `R02`; of them that with the nearest number is meant.
+pub(crate) fn unknown_component(
+    name: &str,
+    (scope, own): (usize, Option<usize>),
+    is_promoted: bool,
+    at: Location,
+    message: String,
+    fleet: &Fleet<'_>,
+    report: &mut Report<'_>,
+) -> Diagnostic {
+    let own = own.map(|own| fleet.members[own].component.name.as_str());
+    if let Some((meant, help)) = nearest_replica(name, scope, fleet) {
+        let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help);
+        return match Some(meant) == own {
+            true => one,
+            false => one.suggest(replacing(name, meant), at, escaped(meant)),
+        };
+    }
+    // A reference of a composite can stand for those of all replicas.
+    let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
+    let names = fleet.names(scope).filter(|name| Some(*name) != own);
+    let known = ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
+    report.unknown(&codes::UNKNOWN_COMPONENT, at, message, name, known)
+}
+
+/// The replica of a scope with the number that is the nearest to that of a name which is like those of a group, and
+/// which replicas there are.
+fn nearest_replica<'f>(name: &str, scope: usize, fleet: &'f Fleet<'_>) -> Option<(&'f str, String)> {
+    let bytes = name.as_bytes();
+    let mut end = 0;
+    while let Some(start) = (end..bytes.len()).find(|at| bytes[*at].is_ascii_digit()) {
+        end = (start..bytes.len()).find(|at| !bytes[*at].is_ascii_digit()).unwrap_or(bytes.len());
+        let (before, behind) = (&name[..start], &name[end..]);
+        let Some(group) = fleet.group(scope, &format!("{before}*{behind}")) else { continue };
+        let replica = |place: usize| fleet.members[group[place]].component.name.as_str();
+        let number = |name: &str| name.strip_prefix(before)?.strip_suffix(behind)?.parse::<u64>().ok();
+        let last = group.len().checked_sub(1)?;
+        let (from, to) = (number(replica(0))?, number(replica(last))?);
+        // As a rule they are numbered one by one. A number of too many digits is larger than all.
+        let wanted = number(name).unwrap_or(u64::MAX).clamp(from.min(to), from.max(to));
+        let place = usize::try_from(wanted.abs_diff(from)).ok().filter(|place| *place <= last)?;
+        let help = match last {
+            0 => format!("the only replica is {}", quoted(replica(0))),
+            _ => format!("the replicas are {} to {}", quoted(replica(0)), quoted(replica(last))),
+        };
+        return Some((replica(place), help));
+    }
+    None
 }

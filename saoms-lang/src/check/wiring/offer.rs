@@ -1,8 +1,11 @@
 //! Services and references of components, whatever implements them.
 
+use super::promotion::ReferenceId;
 use super::target::Provider;
 use super::uri::parts;
 use crate::check::fleet::{Fleet, Kind};
+use crate::check::rules::multiplicity::of_class;
+use crate::model::Multiplicity;
 use crate::registry::InterfaceDeclaration;
 
 /// The meaning of the name of a service.
@@ -44,26 +47,18 @@ impl Side {
 impl<'a> Fleet<'a> {
     /// The names of the services of a component; `None` where any may be there.
     pub(crate) fn service_names(&self, member: usize) -> Option<Vec<&str>> {
-        match self.members[member].kind {
-            Kind::Class(class) => {
-                Some(self.classes[class].services.iter().map(|service| service.name.as_str()).collect())
-            }
-            Kind::Composite(_) => Some(self.inner(member)?.services().map(|service| service.name.as_str()).collect()),
-            Kind::Given | Kind::Nothing => None,
-        }
+        Some(match self.class_of(member) {
+            Some(class) => class.services.iter().map(|service| service.name.as_str()).collect(),
+            None => self.inner(member)?.services().map(|service| service.name.as_str()).collect(),
+        })
     }
 
     /// The names of the references of a component; `None` where any may be there.
     pub(crate) fn reference_names(&self, member: usize) -> Option<Vec<&str>> {
-        match self.members[member].kind {
-            Kind::Class(class) => {
-                Some(self.classes[class].references.iter().map(|reference| reference.name.as_str()).collect())
-            }
-            Kind::Composite(_) => {
-                Some(self.inner(member)?.references().map(|reference| reference.name.as_str()).collect())
-            }
-            Kind::Given | Kind::Nothing => None,
-        }
+        Some(match self.class_of(member) {
+            Some(class) => class.references.iter().map(|reference| reference.name.as_str()).collect(),
+            None => self.inner(member)?.references().map(|reference| reference.name.as_str()).collect(),
+        })
     }
 
     /// The service of a component that is meant where none is named: the only one. What the host serves for a component
@@ -118,5 +113,25 @@ impl<'a> Fleet<'a> {
     /// The interface of a service.
     pub(crate) fn interface_of(&self, provider: Provider) -> Option<&InterfaceDeclaration> {
         Some(&self.class_of(provider.member)?.services[provider.service].interface)
+    }
+
+    /// The number of targets a reference of a component can have, as far as that is known.
+    pub(crate) fn multiplicity(&self, (member, name): ReferenceId<'_>) -> Option<Multiplicity> {
+        let implied = match self.members[member].kind {
+            Kind::Class(class) => {
+                let mut declared = self.classes[class].references.iter();
+                declared.find(|declared| declared.name == name).map(|declared| of_class(declared))
+            }
+            Kind::Composite(_) => Some(Multiplicity::One),
+            Kind::Given | Kind::Nothing => None,
+        };
+        self.given_multiplicity((member, name)).or(implied)
+    }
+
+    /// The multiplicity that the component or the composite that implements it writes.
+    pub(crate) fn given_multiplicity(&self, (member, name): ReferenceId<'_>) -> Option<Multiplicity> {
+        let own = self.members[member].component.reference(name);
+        let inner = self.inner(member).and_then(|inner| inner.references().find(|one| one.name == name));
+        [own, inner].into_iter().flatten().find_map(|one| Some(one.multiplicity()?.value))
     }
 }

@@ -2,10 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::dangling_names::DanglingNames;
 use super::offer::Side;
-use super::promoted_interface::{self, Found};
-use super::promoted_multiplicity;
+use super::promoted::{self, Found};
+use super::unwired::DanglingNames;
 use super::uri::{Uri, parts, spread};
 use crate::check::fleet::{Fleet, Kind, Unit};
 use crate::check::report::{Report, list};
@@ -32,7 +31,7 @@ pub(crate) struct Promoted<'f> {
 
 /// Checks that what composites promote exists, and that their services and references have names of their own.
 pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promoted<'f> {
-    let mut promoted = Promoted::default();
+    let mut all = Promoted::default();
     // What is wrong where a component is implemented counts, and is said once.
     let is_outermost = |unit: &&Unit<'_>| fleet.scopes[unit.scope].owner.is_none();
     let inner = fleet.units.iter().filter(|unit| !is_outermost(unit));
@@ -50,36 +49,36 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
         repeated_names::check(references.map(|one| &one.name), repeated("references", "ASM60006"), report);
         for (service, promote) in unit.services().filter_map(|one| Some((one, one.promote.as_ref()?))) {
             if let Some(found) = find(promote, Side::Service, unit, fleet, report) {
-                promoted_interface::service(service, found, fleet, report);
+                promoted::service(service, found, fleet, report);
             }
         }
         let owner = fleet.scopes[unit.scope].owner;
         for reference in unit.references() {
             if reference.promote().is_empty() {
-                promoted.dangling.add(unit.scope, None, fleet);
+                all.dangling.add(unit.scope, None, fleet);
             }
             let mut found: Vec<Found<'f>> = Vec::new();
             for promote in reference.promote() {
                 for (text, _) in spread(promote, unit.scope, fleet) {
                     match find(&text, Side::Reference, unit, fleet, report) {
                         Some(one) => found.push((one, text.location)),
-                        None => promoted.dangling.add(unit.scope, Some(promote), fleet),
+                        None => all.dangling.add(unit.scope, Some(promote), fleet),
                     }
                 }
             }
-            promoted_multiplicity::check(reference, found.iter().map(|(inner, _)| *inner), fleet, report);
-            let is_one = promoted_interface::reference(reference, &found, fleet, report);
+            promoted::multiplicities(reference, found.iter().map(|(inner, _)| *inner), fleet, report);
+            let is_one = promoted::reference(reference, &found, fleet, report);
             // What is taken as given wires itself.
             let found = found.into_iter().map(|(inner, _)| inner);
             let found: Vec<ReferenceId<'f>> =
                 found.filter(|(member, _)| fleet.members[*member].kind != Kind::Given).collect();
             if !is_one {
-                promoted.differing.extend(&found);
+                all.differing.extend(&found);
             }
             match owner {
                 Some(owner) => {
                     for inner in found {
-                        promoted.to.entry(inner).or_default().push((owner, &reference.name));
+                        all.to.entry(inner).or_default().push((owner, &reference.name));
                     }
                 }
                 None => {
@@ -89,7 +88,7 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
                         unwired(reference, report);
                     }
                     for inner in found {
-                        promoted.outermost.entry(inner).or_default().extend(&reference.targets);
+                        all.outermost.entry(inner).or_default().extend(&reference.targets);
                     }
                 }
             }
@@ -100,11 +99,11 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
             report.diagnostics().adjust(known, |one| one.severity = one.severity.min(Severity::Warning));
         }
     }
-    promoted
+    all
 }
 
 /// True if a binding says where calls go, so that nothing else has to.
-fn has_address(bindings: &[Binding]) -> bool {
+pub(super) fn has_address(bindings: &[Binding]) -> bool {
     bindings.iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
 }
 
@@ -194,29 +193,24 @@ fn find<'f>(
         Side::Service => fleet.only_service(member),
         Side::Reference => (names.len() == 1).then(|| names[0]),
     };
-    let (at, message, wanted) = match (&uri.part, only) {
-        (Some((name, at)), _) => match names.iter().find(|known| *known == name) {
-            Some(name) => return Some((member, name)),
-            None => {
-                let at = report.part(text, at.clone());
-                (at, format!("component {component} has no {what} {}", quoted(name)), *name)
+    let code = &codes::UNKNOWN_PROMOTED;
+    let one = match (&uri.part, only) {
+        (Some((name, at)), _) => {
+            if let Some(name) = names.iter().find(|known| *known == name) {
+                return Some((member, name));
             }
-        },
+            let message = format!("component {component} has no {what} {}", quoted(name));
+            let known = (&*format!("its {what}s are"), names.iter().copied());
+            report.unknown(code, report.part(text, at.clone()), message, name, known)
+        }
         (None, Some(only)) => return Some((member, only)),
         (None, None) if names.is_empty() => {
-            (text.location, format!("component {component} has no {what}s to promote"), "")
+            Diagnostic::new(code, text.location, format!("component {component} has no {what}s to promote"))
         }
         (None, None) => {
-            (text.location, format!("component {component} has several {what}s: say which is promoted"), "")
-        }
-    };
-    let one = match wanted {
-        "" if names.is_empty() => Diagnostic::new(&codes::UNKNOWN_PROMOTED, at, message),
-        "" => Diagnostic::new(&codes::UNKNOWN_PROMOTED, at, message)
-            .help(format!("write `{text}/` and one of {}", list(names))),
-        name => {
-            let known = (&*format!("its {what}s are"), names.iter().copied());
-            report.unknown(&codes::UNKNOWN_PROMOTED, at, message, name, known)
+            let message = format!("component {component} has several {what}s: say which is promoted");
+            let help = format!("write `{text}/` and one of {}", list(names));
+            Diagnostic::new(code, text.location, message).help(help)
         }
     };
     report.push(one.rule(side.rule()));

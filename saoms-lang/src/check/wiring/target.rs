@@ -1,11 +1,9 @@
 //! Targets: the services that URIs such as `Robot001/move` lead to.
 
-use super::misread_uri::inside;
+use super::misread_uri::{inside, unknown_component};
 use super::offer::{Offer, Side};
-use super::replica_index::beyond;
 use super::uri::{Uri, is_address};
 use crate::check::fleet::Fleet;
-use crate::check::fleet::classes::Fitting;
 use crate::check::options::Options;
 use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -52,7 +50,11 @@ pub(crate) fn target(
     let Some(uri) = Uri::of(text, (3, Side::Service), (scope, fleet), report) else { return Target::Wrong };
     let is_elsewhere = || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
     if scope == 0 && options.assume_classes && is_elsewhere() {
-        elsewhere(text, (uri.component, own), fleet, report);
+        let at = report.part(text, 0..uri.component.len());
+        let message = format!("there is no component {} in these composites", quoted(uri.component));
+        let one = unknown_component(uri.component, (scope, own), false, at, message, fleet, report);
+        let help = "it is taken as given: another composite of the domain may have it";
+        report.push(one.severity(Severity::Warning).help(help));
         return Target::Open;
     }
     let Some(member) = uri.member(text, (scope, own), fleet, None, report) else {
@@ -153,22 +155,6 @@ fn bound(
     false
 }
 
-/// Says that a target is not in the composites at hand. Where things are taken as given, it may be in others of its
-/// domain.
-fn elsewhere(text: &Text, (component, own): (&str, Option<usize>), fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    let message = format!("there is no component {} in these composites", quoted(component));
-    let at = report.part(text, 0..component.len());
-    let own = own.map(|own| fleet.members[own].component.name.as_str());
-    let known = ("the components are", fleet.names(0).filter(|name| Some(*name) != own));
-    let one = match beyond(component, 0, fleet) {
-        Some(beyond) => beyond.diagnostic(component, own, at, message),
-        None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, component, known),
-    };
-    report.push(
-        one.severity(Severity::Warning).help("it is taken as given: another composite of the domain may have it"),
-    );
-}
-
 fn fits(offer: Offer, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -> bool {
     matches!(offer, Offer::Service(provider) if fleet.interface_of(provider) == Some(interface))
 }
@@ -180,39 +166,31 @@ fn only_service(
     fleet: &Fleet<'_>,
     report: &mut Report<'_>,
 ) -> Target {
-    if let Some(class) = fleet.class_of(member)
-        && let Fitting::One(service) = class.fitting(interface)
-    {
-        return Target::Service(Provider { member, service });
-    }
     if fleet.service_names(member).is_none() {
         return Target::Open;
     }
     let offers = fleet.offers(member);
-    let mut fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet));
-    match (fitting.next(), fitting.next()) {
-        (Some((_, Offer::Service(provider))), None) => Target::Service(*provider),
-        (None, _) if offers.iter().any(|(_, offer)| *offer == Offer::Open) => Target::Open,
-        (None, _) => {
+    let fitting: Vec<_> = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet)).collect();
+    match fitting[..] {
+        [(_, Offer::Service(provider))] => return Target::Service(*provider),
+        [] if offers.iter().any(|(_, offer)| *offer == Offer::Open) => return Target::Open,
+        [] => {
             let message =
                 format!("component {} offers no service with the interface {}", quoted(text), quoted(&interface.name));
             let one = Diagnostic::new(&codes::WIRE_INTERFACE, text.location, message);
             report.push(one.help(offered(member, interface, fleet)));
-            Target::Wrong
         }
-        (Some(_), _) => {
-            let fitting = offers.iter().filter(|(_, offer)| fits(*offer, interface, fleet));
-            let names = fitting.map(|(name, _)| *name);
+        _ => {
             let message = format!(
                 "component {} has several services with the interface {}",
                 quoted(text),
                 quoted(&interface.name)
             );
-            let help = format!("name one of {}: `{text}/...`", list(names));
+            let help = format!("name one of {}: `{text}/...`", list(fitting.iter().map(|(name, _)| *name)));
             report.push(Diagnostic::new(&codes::TARGET_AMBIGUOUS, text.location, message).help(help));
-            Target::Wrong
         }
     }
+    Target::Wrong
 }
 
 /// The services that a component offers in place of the interface that is asked for, for help.

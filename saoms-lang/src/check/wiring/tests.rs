@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 fn cycles(nodes: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> {
     let mut all = Vec::new();
-    super::cycles::cycles(nodes, edges, |cycle| all.push(cycle.to_vec()));
+    super::call_cycle::cycles(nodes, edges, |cycle| all.push(cycle.to_vec()));
     all
 }
 
@@ -30,7 +30,7 @@ fn cycles_that_have_most_of_their_edges_in_common_cost_no_memory() {
     let next = (0..100_000).map(|node| (node, node + 1));
     let wires: Vec<_> = next.chain((1..100_000).map(|node| (node, 0))).collect();
     let (mut count, mut edges) = (0, 0);
-    super::cycles::cycles(100_001, &wires, |cycle| (count, edges) = (count + 1, edges + cycle.len()));
+    super::call_cycle::cycles(100_001, &wires, |cycle| (count, edges) = (count + 1, edges + cycle.len()));
     assert_eq!((count, edges), (99_999, 5_000_049_999));
 }
 

@@ -11,29 +11,24 @@ use crate::source::{Location, Text};
 /// Replicas that are named.
 const SHOWN: usize = 3;
 
-/// A reference that takes one target and has several.
-pub(super) struct TooMany<'p> {
-    pub(super) place: ReferenceId<'p>,
-    /// The places of the first two: the same place if one text stands for several.
-    pub(super) places: (Location, Location),
-    pub(super) count: usize,
-    /// True if all lead to one service.
-    pub(super) is_again: bool,
-}
-
 impl<'f> Wires<'f, '_> {
+    /// Reports a reference that takes one target and has several, at these places: the same place if one text stands
+    /// for several. `is_again` says that all lead to one service.
     pub(super) fn too_many(
         &self,
-        found: TooMany<'_>,
+        (member, name): ReferenceId<'_>,
+        places: &[Location],
+        is_again: bool,
         multiplicity: Multiplicity,
         severity: Severity,
         report: &mut Report<'_>,
     ) {
-        let TooMany { place: (member, name), places: (first, second), count, is_again } = found;
+        let &[first, second, ..] = places else { return };
         let message = format!(
-            "reference {} of component {} takes one target, and here are {count}",
+            "reference {} of component {} takes one target, and here are {}",
             quoted(name),
-            quoted(&self.fleet.members[member].component.name)
+            quoted(&self.fleet.members[member].component.name),
+            places.len()
         );
         let one = Diagnostic::new(&codes::TOO_MANY_TARGETS, second, message)
             .severity(severity)

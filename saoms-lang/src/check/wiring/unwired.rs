@@ -1,12 +1,18 @@
-//! References that need a target and have none.
+//! References that need a target and have none. Those that a wrong name elsewhere probably means are not reported a
+//! second time.
+
+use std::collections::{HashMap, HashSet};
 
 use super::Wires;
-use super::dangling_names;
-use super::promotion::ReferenceId;
+use super::promotion::{ReferenceId, has_address};
+use super::uri::parts;
+use crate::check::fleet::Fleet;
 use crate::check::report::Report;
 use crate::check::rules::multiplicity::of_class;
-use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
+use crate::model::{Multiplicity, ReferenceElement};
 use crate::registry::ReferenceDeclaration;
+use crate::source::Text;
 
 impl Wires<'_, '_> {
     /// Reports a required reference without a target: an error in SCA 1.1. In 1.0 files it is common, as in those of
@@ -28,13 +34,12 @@ impl Wires<'_, '_> {
             if self.promoted.outermost.contains_key(&place) {
                 return fleet.is_misread;
             }
-            is_required |= fleet.given_multiplicity(place).is_some_and(|given| given.value.is_required());
+            is_required |= fleet.given_multiplicity(place).is_some_and(Multiplicity::is_required);
             let reference = fleet.members[place.0].component.reference(place.1);
-            let is_wired_elsewhere = reference.is_some_and(|reference| {
-                reference.wired_by_impl().is_some_and(|wired| wired.value)
-                    || reference.bindings().iter().any(|binding| !(binding.is_sca && binding.kind == "sca"))
-            });
-            if is_wired_elsewhere {
+            let is_wired_elsewhere = |reference: &ReferenceElement| {
+                reference.wired_by_impl().is_some_and(|wired| wired.value) || has_address(reference.bindings())
+            };
+            if reference.is_some_and(is_wired_elsewhere) {
                 return fleet.is_misread;
             }
             is_autowired |= self.is_autowired(place, reference);
@@ -44,45 +49,40 @@ impl Wires<'_, '_> {
             }
         }
         let (member, name) = place;
-        let reference = fleet.members[member].component.reference(name);
+        let own = &fleet.members[member];
+        let reference = own.component.reference(name);
+        let empty = reference.filter(|reference| reference.targets.is_empty());
+        let empty = empty.map(|reference| reference.origin.element(&own.composite.document));
         // A name that stands twice, a target that stands where none can, and names that lead nowhere are reported.
-        let is_text = reference.is_some_and(|reference| {
-            let element = reference.origin.element(&fleet.members[member].composite.document);
-            reference.targets.is_empty() && element.has_text()
-        });
         let dangling = [&self.dangling, &self.promoted.dangling];
-        if is_text
-            || fleet.lacks_include(fleet.members[member].scope)
-            || fleet.members[member].is_repeated
+        if empty.is_some_and(|element| element.has_text())
+            || fleet.lacks_include(own.scope)
+            || own.is_repeated
             || dangling.iter().any(|one| one.means(place, fleet))
-            || dangling_names::is_misspelt(place, fleet)
+            || is_misspelt(place, fleet)
         {
             return true;
         }
         // A wire or a promotion of a component that does not exist may be meant for this one.
-        let is_unknown =
-            fleet.is_misread || dangling.iter().any(|one| one.names_unknown_component(fleet.members[member].scope));
+        let is_unknown = fleet.is_misread || dangling.iter().any(|one| one.lost.contains_key(&own.scope));
         if !is_required {
             return is_unknown;
         }
-        let (interface, component) = (&declared.interface.name, &fleet.members[member].component.name);
-        let place = reference.map(|reference| reference.name.location);
+        let (interface, component) = (&declared.interface.name, &own.component.name);
         let message = format!("reference {} of component {} leads to no service", quoted(name), quoted(component));
-        let is_1_1 = fleet.members[member].composite.version.is_1_1();
+        let is_1_1 = own.composite.version.is_1_1();
         // One that is there and empty is told already.
-        if let Some(empty) = reference.and_then(|one| {
-            let element = one.origin.element(&fleet.members[member].composite.document);
-            element.attribute("target").filter(|_| one.targets.is_empty())
-        }) {
-            report.withdraw(&codes::ATTRIBUTE_VALUE, empty.location());
+        if let Some(target) = empty.and_then(|element| element.attribute("target")) {
+            report.withdraw(&codes::ATTRIBUTE_VALUE, target.location());
         }
         let help = format!(
             "give it a target with the interface {}: `<reference name=\"{name}\" target=\"...\"/>`",
             quoted(interface)
         );
-        let one = Diagnostic::new(&codes::UNWIRED, place.unwrap_or(component.location), message)
-            .severity(if is_1_1 { Severity::Error } else { Severity::Warning })
-            .help(help);
+        let one =
+            Diagnostic::new(&codes::UNWIRED, reference.map_or(component.location, |one| one.name.location), message)
+                .severity(if is_1_1 { Severity::Error } else { Severity::Warning })
+                .help(help);
         let one = match (is_autowired, is_promoted) {
             (true, _) => one.rule("ASM60028").help("autowire finds no service with this interface"),
             (false, true) => one.rule("ASM60033"),
@@ -91,4 +91,60 @@ impl Wires<'_, '_> {
         report.push(if is_1_1 { one } else { one.help("calls through it fail") });
         is_1_1 || is_unknown
     }
+}
+
+/// Names of components that do not exist that are looked at, of each scope: a file full of them means nothing by each.
+const MOST_LOST: usize = 100;
+
+/// The sources of wires and what references promote, where they lead nowhere, which is reported.
+#[derive(Default)]
+pub(crate) struct DanglingNames<'f> {
+    /// The names behind components that exist; `None` where any of their references may be meant.
+    of_members: HashMap<usize, HashSet<Option<&'f str>>>,
+    /// The components that do not exist, by the scopes where they are named.
+    lost: HashMap<usize, HashSet<&'f str>>,
+    /// The scopes in which one is not written at all.
+    unsaid: HashSet<usize>,
+}
+
+impl<'f> DanglingNames<'f> {
+    /// Adds what stands in a scope; `None` for one that is not written.
+    pub(crate) fn add(&mut self, scope: usize, text: Option<&'f Text>, fleet: &Fleet<'_>) {
+        let Some(text) = text else {
+            self.unsaid.insert(scope);
+            return;
+        };
+        let (component, part) = parts(text);
+        if let Some(member) = fleet.find(scope, component) {
+            self.of_members.entry(member).or_default().insert(part);
+            return;
+        }
+        let lost = self.lost.entry(scope).or_default();
+        if lost.len() < MOST_LOST {
+            lost.insert(component);
+        }
+    }
+
+    /// True if one of them is probably meant to be this reference.
+    fn means(&self, (member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
+        let scope = fleet.members[member].scope;
+        let own = fleet.members[member].component.name.as_str();
+        let is_like = |lost: &&str| nearest(lost, [own]).is_some() || lost.starts_with(own);
+        let is_part = |part: &Option<&str>| part.is_none_or(|part| is_meant(part, (member, name), fleet));
+        self.unsaid.contains(&scope)
+            || self.of_members.get(&member).is_some_and(|parts| parts.iter().any(is_part))
+            || self.lost.get(&scope).is_some_and(|lost| lost.iter().any(is_like))
+    }
+}
+
+/// True if a component says something about this reference under a name that is wrong.
+fn is_misspelt((member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
+    let given = fleet.members[member].component.references.iter();
+    given.into_iter().any(|given| is_meant(&given.name, (member, name), fleet))
+}
+
+/// True if a name that no reference of a component has stands for this one: it is like it, or like none.
+fn is_meant(written: &str, (member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
+    let names = fleet.reference_names(member).unwrap_or_default();
+    !names.contains(&written) && nearest(written, names).is_none_or(|near| near == name)
 }

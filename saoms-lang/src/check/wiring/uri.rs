@@ -1,11 +1,11 @@
 //! URIs such as `Robot001/move`, and the components that they name.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::ops::Range;
 
-use super::misread_uri::{inside, misread};
+use super::misread_uri::{inside, misread, unknown_component};
 use super::offer::Side;
-use super::replica_index::beyond;
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -83,55 +83,42 @@ impl<'t> Uri<'t> {
         rule: Option<&'static str>,
         report: &mut Report<'_>,
     ) -> Option<usize> {
-        let found = fleet.find(scope, self.component);
-        let push = |one: Diagnostic, report: &mut Report<'_>| {
-            report.push(Diagnostic { rule: rule.or(one.rule), ..one });
-        };
-        if found.is_none() {
-            if fleet.is_missing(scope, self.component) {
-                return None;
-            }
-            if let Some(condition) = fleet.absent.get(&(scope, self.component)) {
-                let message = format!("the component {} is not there", quoted(self.component));
-                let at = report.part(text, 0..self.component.len());
-                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
-                // Promotions are written in services and references of composites, and have a rule of their own.
-                report.push(one.label(*condition, "this is false").help(match rule {
-                    None => "give what names it the same condition",
-                    Some(_) => {
-                        "what a composite promotes has no condition: put both into a composite that is included with this one"
-                    }
-                }));
-                return None;
-            }
-            let at = report.part(text, 0..self.component.len());
-            if let Some([first, ..]) = fleet.group(scope, self.component) {
-                let message = format!("{} names all replicas, and one component is expected", quoted(self.component));
-                let first = fleet.members[*first].component.name.as_str();
-                let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
-                let one = one.help(format!("name one of them, such as {}", quoted(first)));
-                push(one, report);
-                return None;
-            }
-            let message = format!("there is no component {}", quoted(self.component));
-            if let Some(misread) = misread(text, scope, self.side, fleet) {
-                let one = misread.add_to(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text);
-                push(one, report);
-                return None;
-            }
-            // A reference of a composite can stand for those of all replicas.
-            let is_promoted = rule == Some(Side::Reference.rule());
-            let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
-            let own = own.map(|own| fleet.members[own].component.name.as_str());
-            let names = fleet.names(scope).filter(|name| Some(*name) != own);
-            let known = ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
-            let one = match beyond(self.component, scope, fleet) {
-                Some(beyond) => beyond.diagnostic(self.component, own, at, message),
-                None => report.unknown(&codes::UNKNOWN_COMPONENT, at, message, self.component, known),
-            };
-            push(one, report);
+        if let Some(found) = fleet.find(scope, self.component) {
+            return Some(found);
         }
-        found
+        if fleet.is_missing(scope, self.component) {
+            return None;
+        }
+        let at = report.part(text, 0..self.component.len());
+        if let Some(condition) = fleet.absent.get(&(scope, self.component)) {
+            let message = format!("the component {} is not there", quoted(self.component));
+            let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+            // Promotions are written in services and references of composites, and have a rule of their own.
+            report.push(one.label(*condition, "this is false").help(match rule {
+                None => "give what names it the same condition",
+                Some(_) => {
+                    "what a composite promotes has no condition: put both into a composite that is included with this one"
+                }
+            }));
+            return None;
+        }
+        let one = if let Some([first, ..]) = fleet.group(scope, self.component) {
+            let message = format!("{} names all replicas, and one component is expected", quoted(self.component));
+            let first = quoted(&fleet.members[*first].component.name);
+            let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+            one.help(format!("name one of them, such as {first}"))
+        } else {
+            let message = format!("there is no component {}", quoted(self.component));
+            match misread(text, scope, self.side, fleet) {
+                Some(misread) => misread.add_to(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text),
+                None => {
+                    let is_promoted = rule == Some(Side::Reference.rule());
+                    unknown_component(self.component, (scope, own), is_promoted, at, message, fleet, report)
+                }
+            }
+        };
+        report.push(Diagnostic { rule: rule.or(one.rule), ..one });
+        None
     }
 }
 
@@ -157,4 +144,38 @@ pub(crate) fn spread<'t>(
 pub(crate) fn is_address(text: &str) -> bool {
     let scheme = text.split(':').next().unwrap_or_default();
     scheme.len() < text.len() && !scheme.contains('/') && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
+}
+
+/// Ends of wires that groups of replicas may come to: a group that calls a group has as many as the product of both.
+const MOST_ENDS: usize = 1_000_000;
+
+/// The number of more there may be.
+pub(crate) struct WireBudget(Cell<usize>);
+
+impl Default for WireBudget {
+    fn default() -> Self {
+        Self(Cell::new(MOST_ENDS))
+    }
+}
+
+impl WireBudget {
+    /// True if there may be as many more as this target or source stands for. That there are too many is reported,
+    /// once.
+    pub(crate) fn take(&self, text: &Text, scope: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
+        let Some(group) = fleet.group(scope, parts(text).0) else { return true };
+        let left = self.0.get();
+        let (more, is_enough) = (left.saturating_sub(group.len()), left > group.len());
+        self.0.set(more);
+        if left > 0 && !is_enough {
+            self.0.set(0);
+            let message = format!("groups of replicas come to more than {MOST_ENDS} ends of wires");
+            let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message);
+            report.push(
+                one.help(
+                    "each replica of a group that calls a group has a wire to each of that: is this what is meant?",
+                ),
+            );
+        }
+        is_enough
+    }
 }

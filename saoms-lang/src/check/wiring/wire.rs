@@ -1,12 +1,12 @@
 //! The `<wire>` elements, and the references that they start from.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
-use super::budget::WireBudget;
-use super::dangling_names::DanglingNames;
 use super::offer::{Offer, Side};
+use super::promotion::ReferenceId;
 use super::target::target;
-use super::uri::{Uri, parts, spread};
+use super::unwired::DanglingNames;
+use super::uri::{Uri, WireBudget, parts, spread};
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::options::Options;
 use crate::check::report::{Report, list};
@@ -17,21 +17,20 @@ use crate::syntax::escaped;
 /// A `<wire>` that starts from a reference.
 #[derive(Clone, Copy)]
 pub(crate) struct Wire<'f> {
-    /// The name of the reference.
-    pub(crate) name: &'f str,
     pub(crate) target: &'f Text,
     pub(crate) scope: usize,
     pub(crate) is_replacing: bool,
 }
 
-/// The `<wire>` elements of all composites by the component they start from, and those that start nowhere.
+/// The `<wire>` elements of all composites by the reference they start from, of which the name is empty where any may be
+/// meant, and those that start nowhere.
 pub(crate) fn wires<'f>(
     fleet: &'f Fleet<'_>,
     options: &Options,
     room: &WireBudget,
     report: &mut Report<'_>,
-) -> (HashMap<usize, Vec<Wire<'f>>>, DanglingNames<'f>) {
-    let mut all: HashMap<usize, Vec<Wire<'f>>> = HashMap::default();
+) -> (BTreeMap<ReferenceId<'f>, Vec<Wire<'f>>>, DanglingNames<'f>) {
+    let mut all: BTreeMap<ReferenceId<'f>, Vec<Wire<'f>>> = BTreeMap::new();
     let mut dangling = DanglingNames::default();
     for (place, unit) in fleet.units.iter().enumerate() {
         let scope = unit.scope;
@@ -46,7 +45,7 @@ pub(crate) fn wires<'f>(
                 continue;
             }
             let is_replacing = wire.replace().is_some_and(|replace| replace.value);
-            if let Some((member, name)) = backwards((source, to), scope, fleet) {
+            if let Some(from) = backwards((source, to), scope, fleet) {
                 let message = format!(
                     "this wire goes backwards: {} offers a service, and {} is a reference",
                     quoted(source),
@@ -56,14 +55,14 @@ pub(crate) fn wires<'f>(
                 let swapped = [(source, to), (to, source)];
                 let edit = |(one, other): (&Text, &Text)| Edit { location: one.location, replacement: escaped(other) };
                 report.push(one.suggest_edits("swap `source` and `target`", swapped.map(edit).into()));
-                all.entry(member).or_default().push(Wire { name, target: source, scope, is_replacing });
+                all.entry(from).or_default().push(Wire { target: source, scope, is_replacing });
                 continue;
             }
             if !room.take(source, scope, fleet, report) {
                 continue;
             }
             for (one, _) in spread(source, scope, fleet) {
-                let Some((member, name)) = source_of(&one, source, scope, fleet, report) else {
+                let Some(from) = source_of(&one, source, scope, fleet, report) else {
                     dangling.add(scope, Some(source), fleet);
                     // Both ends can be wrong. All replicas of a group have the same faults.
                     if let Some((to, _)) = spread(to, scope, fleet).next() {
@@ -71,7 +70,7 @@ pub(crate) fn wires<'f>(
                     }
                     continue;
                 };
-                all.entry(member).or_default().push(Wire { name, target: to, scope, is_replacing });
+                all.entry(from).or_default().push(Wire { target: to, scope, is_replacing });
             }
         }
     }
@@ -79,7 +78,7 @@ pub(crate) fn wires<'f>(
 }
 
 /// The component and the reference that are the target of a wire, where the source is a service.
-fn backwards<'f>((source, to): (&Text, &'f Text), scope: usize, fleet: &'f Fleet<'_>) -> Option<(usize, &'f str)> {
+fn backwards<'f>((source, to): (&Text, &'f Text), scope: usize, fleet: &'f Fleet<'_>) -> Option<ReferenceId<'f>> {
     let reference = parts(to).1?;
     let ends = [source, to].map(|end| fleet.find(scope, parts(end).0));
     let [Some(from), Some(member)] = ends else { return None };
@@ -102,7 +101,7 @@ fn source_of<'f>(
     scope: usize,
     fleet: &'f Fleet<'_>,
     report: &mut Report<'_>,
-) -> Option<(usize, &'f str)> {
+) -> Option<ReferenceId<'f>> {
     let uri = Uri::of(source, (2, Side::Reference), (scope, fleet), report)?;
     let member = uri.member(source, (scope, None), fleet, None, report)?;
     let named = parts(written).1.unwrap_or_default();

@@ -1,12 +1,87 @@
-//! Multiplicities of promoted references, and references that must not be overridden.
+//! What composites say of the services and references that they promote: interfaces, multiplicities, and that nothing
+//! overrides them.
 
+use super::offer::Offer;
 use super::promotion::ReferenceId;
+use super::uri::parts;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::report::{Report, list};
-use crate::check::rules::multiplicity::of_class;
+use crate::check::rules::interface;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Multiplicity, Part, ReferenceElement};
+use crate::model::{Multiplicity, Part, ReferenceElement, ServiceElement};
+use crate::registry::InterfaceDeclaration;
 use crate::source::Location;
+
+/// A reference that is promoted, and where that is written.
+pub(crate) type Found<'f> = (ReferenceId<'f>, Location);
+
+impl Fleet<'_> {
+    /// The interface of a reference, which the innermost class declares that it leads to.
+    fn reference_interface(&self, (mut member, name): ReferenceId<'_>) -> Option<&InterfaceDeclaration> {
+        let mut name = name.to_owned();
+        // Each step leads one composite further in.
+        loop {
+            if let Some(class) = self.class_of(member) {
+                let declared = class.references.iter().find(|declared| declared.name == name)?;
+                return Some(&declared.interface);
+            }
+            let Kind::Composite(scope) = self.members[member].kind else { return None };
+            let inner = self.inner(member)?;
+            let promote = inner.references().find(|one| one.name == name.as_str())?.promote().first()?;
+            let (component, part) = parts(promote);
+            member = self.find(scope, component).or_else(|| self.group(scope, component)?.first().copied())?;
+            name = match part {
+                Some(part) => part.to_owned(),
+                None => self.reference_names(member)?.first()?.to_string(),
+            };
+        }
+    }
+}
+
+/// Checks the interface that a composite's service says.
+pub(crate) fn service(
+    service: &ServiceElement,
+    (member, name): ReferenceId<'_>,
+    fleet: &Fleet<'_>,
+    report: &mut Report<'_>,
+) {
+    if service.interface().is_some()
+        && let Offer::Service(provider) = fleet.offer(member, name)
+        && let Some(declared) = fleet.interface_of(provider)
+    {
+        interface::check(service.interface(), declared, &service.name, "ASM60005", report);
+    }
+}
+
+/// Checks the interface that a composite's reference says, and that all that it promotes has one interface: one target
+/// cannot serve two. Whether it has.
+pub(crate) fn reference(
+    reference: &ReferenceElement,
+    found: &[Found<'_>],
+    fleet: &Fleet<'_>,
+    report: &mut Report<'_>,
+) -> bool {
+    if reference.interface().is_none() && found.len() < 2 {
+        return true;
+    }
+    let mut interfaces = found.iter().filter_map(|(place, at)| Some((fleet.reference_interface(*place)?, *at)));
+    let Some((first, first_at)) = interfaces.next() else { return true };
+    interface::check(reference.interface(), first, &reference.name, "ASM60012", report);
+    let Some((other, at)) = interfaces.find(|(other, _)| *other != first) else { return true };
+    let message = format!(
+        "reference {} of the composite promotes references with the interfaces {} and {}",
+        quoted(&reference.name),
+        quoted(&first.name),
+        quoted(&other.name)
+    );
+    report.push(
+        Diagnostic::new(&codes::INTERFACE_DIFFERS, at, message)
+            .rule("ASM60008")
+            .label(first_at, "the first")
+            .help("promote each by a reference of its own: no service has both interfaces"),
+    );
+    false
+}
 
 /// References that are named in one message.
 const SHOWN: usize = 3;
@@ -18,9 +93,9 @@ struct Narrower<'f> {
     severity: Severity,
 }
 
-/// Checks what a composite's reference promotes. What is wrong with several of them is told once, as one thing is to be
-/// changed.
-pub(crate) fn check<'f>(
+/// Checks the multiplicities of what a composite's reference promotes, and that it may be overridden. What is wrong with
+/// several of them is told once, as one thing is to be changed.
+pub(crate) fn multiplicities<'f>(
     by: &ReferenceElement,
     found: impl Iterator<Item = ReferenceId<'f>>,
     fleet: &Fleet<'_>,
@@ -30,7 +105,7 @@ pub(crate) fn check<'f>(
     let mut fixed: Vec<(ReferenceId<'f>, Location)> = Vec::new();
     for place @ (member, name) in found {
         let own = fleet.members[member].component.reference(name);
-        let Some((takes, is_known)) = takes(place, fleet) else { continue };
+        let Some(takes) = fleet.multiplicity(place) else { continue };
         let said = own.and_then(|own| own.non_overridable()).filter(|said| said.value && !takes.is_many());
         fixed.extend(said.map(|said| (place, said.location)));
         let Some(outer) = by.multiplicity() else { continue };
@@ -41,7 +116,7 @@ pub(crate) fn check<'f>(
         }
         // In SCA 1.0 files the two often differ, and other programs take the outer one: it is wrong where a class needs
         // its target.
-        let is_error = fleet.members[member].composite.version.is_1_1() || is_known;
+        let is_error = fleet.members[member].composite.version.is_1_1() || fleet.class_of(member).is_some();
         let severity = if is_error { Severity::Error } else { Severity::Warning };
         narrower.push(Narrower { place, takes, severity });
     }
@@ -52,21 +127,6 @@ pub(crate) fn check<'f>(
         let (outer, at) = (outer.value, outer.location);
         report.push(widened(by, (outer, at), &narrower, fleet));
     }
-}
-
-/// The number of targets a reference of a component takes, as far as that is known, and whether its class is.
-fn takes((member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> Option<(Multiplicity, bool)> {
-    let own = fleet.members[member].component.reference(name);
-    let class = fleet.class_of(member);
-    let declared = class.and_then(|class| class.references.iter().find(|declared| declared.name == name));
-    let given = own.and_then(|own| own.multiplicity()).map(|given| given.value);
-    let takes = match declared {
-        Some(declared) => given.unwrap_or(of_class(declared)),
-        // The multiplicity is in a class that is not known here.
-        None if fleet.members[member].kind == Kind::Given => given?,
-        None => fleet.multiplicity_of((member, name)),
-    };
-    Some((takes, declared.is_some()))
 }
 
 fn overridden(by: &ReferenceElement, fixed: &[(ReferenceId<'_>, Location)], fleet: &Fleet<'_>) -> Diagnostic {
