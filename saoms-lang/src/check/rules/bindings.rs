@@ -1,4 +1,4 @@
-//! Rules on the bindings of one service or reference: their names, and a target beside an address.
+//! Rules on the bindings of one service or reference: their names, and addresses where there must be none.
 
 use std::collections::HashMap;
 
@@ -27,6 +27,22 @@ pub(crate) fn of_reference(reference: &ReferenceElement, version: Version, repor
             format!("reference {} has a target, and a binding that leads to {}", quoted(&reference.name), quoted(uri));
         let one = Diagnostic::new(&codes::TARGET_IN_TWO_WAYS, uri.location, message).rule("ASM50026");
         report.push(one.label(target.location, "the target").help("keep one of them"));
+    }
+}
+
+/// Reports a `uri` of `binding.sca`. In SCA 1.0 it is where the service can be reached from outside.
+pub(crate) fn uris(service: &ServiceElement, version: Version, report: &mut Report<'_>) {
+    let of_sca = service.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+    for binding in of_sca.filter(|_| version.is_1_1()) {
+        if let Some(uri) = &binding.uri {
+            let message = format!("`binding.sca` of service {} has a `uri`", quoted(&service.name));
+            let one = Diagnostic::new(
+                &codes::SERVICE_BINDING_URI,
+                if uri.is_empty() { binding.tag() } else { uri.location },
+                message,
+            );
+            report.push(one.help("remove it: a service is where its component is, and references name that"));
+        }
     }
 }
 

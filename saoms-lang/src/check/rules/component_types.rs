@@ -5,7 +5,7 @@ use crate::check::fleet::Fleet;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::properties::foreign;
 use crate::check::report::Report;
-use crate::check::rules::repeated_names;
+use crate::check::rules::repeated_names::Owner;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
 use crate::model::{ComponentType, Part};
 use crate::source::Text;
@@ -23,20 +23,17 @@ impl<'a> Fleet<'a> {
 
 pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for described in fleet.contribution.component_types() {
-        let repeated = |what: &'static str, rule: &'static str| {
-            let version = described.version;
-            move |name: &Text| {
-                let message = format!("the component type has two {what} {}", quoted(name));
-                // SCA 1.0 leaves it open which of them counts.
-                let severity = if version.is_1_1() { Severity::Error } else { Severity::Warning };
-                let one = Diagnostic::new(&codes::COMPONENT_TYPE_REPEATED, name.location, message);
-                one.severity(severity).rule(rule).help("give each its own name")
-            }
+        let owner = Owner {
+            name: &|| "the component type".to_owned(),
+            code: &codes::COMPONENT_TYPE_REPEATED,
+            // SCA 1.0 leaves it open which of them counts.
+            severity: if described.version.is_1_1() { Severity::Error } else { Severity::Warning },
+            help: "give each its own name",
         };
         let ComponentType { services, references, properties, .. } = described;
-        repeated_names::check(services.iter().map(|one| &one.name), repeated("services", "ASM40003"), report);
-        repeated_names::check(references.iter().map(|one| &one.name), repeated("references", "ASM40004"), report);
-        repeated_names::check(properties.iter().map(|one| &one.name), repeated("properties", "ASM40005"), report);
+        owner.check("services", "ASM40003", services.iter().map(|one| &one.name), report);
+        owner.check("references", "ASM40004", references.iter().map(|one| &one.name), report);
+        owner.check("properties", "ASM40005", properties.iter().map(|one| &one.name), report);
     }
     if !fleet.contribution.describes_any() {
         return;
@@ -69,14 +66,10 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 /// Reports what a component type says of a class that is not so.
 fn of_class(described: &ComponentType, class: &ClassIndex<'_>, report: &mut Report<'_>) {
     let of = quoted(class.class.name());
-    let mut unknown = |code: &'static Code, what: &str, name: &Text, known: &[&str]| {
+    let mut unknown = |code: &'static Code, (what, all): (&str, &str), name: &Text, known: &[&str]| {
         if !name.is_empty() && !known.contains(&name.as_str()) {
             let message = format!("class {of} has no {what} {}", quoted(name));
-            let known_as = match what {
-                "property" => "its properties are".to_owned(),
-                _ => format!("its {what}s are"),
-            };
-            let known = (known_as.as_str(), known.iter().copied());
+            let known = (&*format!("its {all} are"), known.iter().copied());
             let one = report.unknown(code, name.location, message, name, known);
             report.push(one);
         }
@@ -84,11 +77,13 @@ fn of_class(described: &ComponentType, class: &ClassIndex<'_>, report: &mut Repo
     let services: Vec<&str> = class.services.iter().map(|one| one.name.as_str()).collect();
     let references: Vec<&str> = class.references.iter().map(|one| one.name.as_str()).collect();
     let properties: Vec<&str> = class.table.names().collect();
-    described.services.iter().for_each(|one| unknown(&codes::UNKNOWN_SERVICE, "service", &one.name, &services));
+    for one in &described.services {
+        unknown(&codes::UNKNOWN_SERVICE, ("service", "services"), &one.name, &services);
+    }
     for one in &described.references {
-        unknown(&codes::UNKNOWN_REFERENCE, "reference", &one.name, &references);
+        unknown(&codes::UNKNOWN_REFERENCE, ("reference", "references"), &one.name, &references);
     }
     for one in &described.properties {
-        unknown(&codes::UNKNOWN_PROPERTY, "property", &one.name, &properties);
+        unknown(&codes::UNKNOWN_PROPERTY, ("property", "properties"), &one.name, &properties);
     }
 }

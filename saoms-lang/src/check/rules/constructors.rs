@@ -1,4 +1,7 @@
-//! Constructors: each judges whether the values of its component fit together.
+//! Constructors: each judges whether the values of its component fit together. It is called once, and what it makes is
+//! dropped: constructors do no work.
+
+use std::path::Path;
 
 use crate::check::component::{ComponentCheck, State};
 use crate::check::fleet::classes::ClassIndex;
@@ -9,54 +12,31 @@ use crate::check::report::Report;
 use crate::check::report::findings::{Subject, diagnostic};
 use crate::check::rules::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::registry::{PropertyDeclaration, RegisteredLoop};
+use crate::registry::PropertyDeclaration;
 use saoms_api::host::declaration::PropertyKind;
 use saoms_api::host::{PropertyValue, contain::contained};
 use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
-/// Constructs the component once, for its judgement on the values, and drops it: constructors do no work.
-pub(crate) fn component(
-    subject: Subject<'_>,
-    class: &ClassIndex<'_>,
-    (repeated, options): (&RepeatedValues, &Options),
-    report: &mut Report<'_>,
-) {
-    if options.without_plugin_code && class.class.origin().is_some() {
-        return;
-    }
-    judge(|| class.class.construct(subject.values).map(drop), subject, class.class.name(), repeated, report);
-}
-
-/// The same for a loop.
-pub(crate) fn looping(
-    subject: Subject<'_>,
-    class: &RegisteredLoop,
-    (repeated, options): (&RepeatedValues, &Options),
-    report: &mut Report<'_>,
-) {
-    if options.without_plugin_code && class.origin().is_some() {
-        return;
-    }
-    judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
-}
-
-/// The same for a component of which some values are not known, for faults that are reported: `unsure` are the places
-/// of these properties. Told is what the constructor finds about the others whichever values those have, from one end
-/// of what is allowed to the other, so that a wrong value has no consequences.
-pub(crate) fn partly(
+/// The components that some values are not known of, for faults that are reported: `unsure` are the places of these
+/// properties. Told is what the constructor finds about the others whichever values those have, from one end of what is
+/// allowed to the other, so that a wrong value has no consequences.
+fn partly(
     subject: Subject<'_>,
     class: &ClassIndex<'_>,
     unsure: &[usize],
-    (repeated, options): (&RepeatedValues, &Options),
+    repeated: &RepeatedValues,
     report: &mut Report<'_>,
 ) {
     let unsure: Vec<&PropertyDeclaration> = unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
     if unsure.is_empty() {
-        return component(subject, class, (repeated, options), report);
-    }
-    if options.without_plugin_code && class.class.origin().is_some() {
-        return;
+        return judge(
+            || class.class.construct(subject.values).map(drop),
+            subject,
+            class.class.name(),
+            repeated,
+            report,
+        );
     }
     let ends: Option<Vec<[String; 2]>> = unsure.iter().map(|one| ends(one)).collect();
     let Some(ends) = ends else { return };
@@ -161,23 +141,30 @@ pub(crate) fn check_all(
     report: &mut Report<'_>,
 ) {
     saoms_api::host::contain::install_hook();
-    let sound = fleet.members.iter().zip(checks).filter(|(_, check)| check.is_sound());
-    for (member, check) in sound {
+    let is_asked = |origin: Option<&Path>| !options.without_plugin_code || origin.is_none();
+    let all = || {
+        let all = fleet.members.iter().zip(checks);
+        all.filter_map(|(member, check)| match member.kind {
+            Kind::Class(class) => Some((member, check, &fleet.classes[class])),
+            _ => None,
+        })
+    };
+    for (member, check, of) in all().filter(|(_, check, _)| check.is_sound()) {
         report.about(member);
-        if let Kind::Class(class) = member.kind {
-            component(check.subject(member), &fleet.classes[class], (repeated, options), report);
+        let (subject, class) = (check.subject(member), of.class);
+        if is_asked(class.origin()) {
+            judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
         }
         for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {
-            looping(subject, class, (repeated, options), report);
+            if is_asked(class.origin()) {
+                judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
+            }
         }
     }
-    let faulty = fleet.members.iter().zip(checks).filter(|(_, check)| check.state == State::Faulty);
-    for (member, check) in faulty.filter(|(member, _)| !member.lacks_table()) {
+    let faulty = all().filter(|(member, check, _)| check.state == State::Faulty && !member.lacks_table());
+    for (member, check, class) in faulty.filter(|(.., class)| is_asked(class.class.origin())) {
         report.about(member);
-        if let Kind::Class(class) = member.kind {
-            let unknown = &check.given.unknown;
-            partly(check.subject(member), &fleet.classes[class], unknown, (repeated, options), report);
-        }
+        partly(check.subject(member), class, &check.given.unknown, repeated, report);
     }
     report.about_all();
 }

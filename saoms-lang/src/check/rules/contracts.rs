@@ -1,12 +1,11 @@
 //! Services and references of components, held against their classes.
 
-use std::fmt;
-
-use super::{interface, multiplicity, repeated_names};
+use super::repeated_names::Owner;
+use super::{interface, multiplicity};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
 use crate::check::wiring::offer::Offer;
-use crate::diagnostic::{Code, Diagnostic, Edit, codes, quoted};
+use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, quoted};
 use crate::model::{Binding, Multiplicity, Part, ServiceElement};
 use crate::source::Text;
 use crate::syntax::{Document, escaped};
@@ -16,46 +15,31 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
         let component = member.component;
-        let repeated = |what: &'static str, rule: &'static str| {
-            move |name: &Text| {
-                let message = format!("component {} has two {what} {}", quoted(&component.name), quoted(name));
-                let one = Diagnostic::new(&codes::CONTRACT_REPEATED, name.location, message);
-                one.rule(rule).help("keep one of them")
-            }
+        let owner = Owner {
+            name: &|| format!("component {}", quoted(&component.name)),
+            code: &codes::CONTRACT_REPEATED,
+            severity: Severity::Error,
+            help: "keep one of them",
         };
-        let names = component.services.iter().map(|service| &service.name);
-        repeated_names::check(names, repeated("services", "ASM50002"), report);
-        if !component.services.is_empty() {
-            services(place, fleet, report);
-        }
-        let names = component.references.iter().map(|reference| &reference.name);
-        repeated_names::check(names, repeated("references", "ASM50007"), report);
-        if !component.references.is_empty() {
-            references(place, fleet, report);
-        }
+        owner.check("services", "ASM50002", component.services.iter().map(|one| &one.name), report);
+        services(place, fleet, report);
+        owner.check("references", "ASM50007", component.references.iter().map(|one| &one.name), report);
+        references(place, fleet, report);
     }
     report.about_all();
 }
 
 /// The implementation of a component, for messages.
-struct Whose<'w>(&'static str, &'w str);
-
-impl fmt::Display for Whose<'_> {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{} {}", self.0, quoted(self.1))
+fn whose(member: usize, fleet: &Fleet<'_>) -> Option<String> {
+    match fleet.class_of(member) {
+        Some(class) => Some(format!("class {}", quoted(class.class.name()))),
+        None => Some(format!("composite {}", quoted(&fleet.inner(member)?.main().name))),
     }
-}
-
-fn whose<'w>(member: usize, fleet: &Fleet<'w>) -> Option<Whose<'w>> {
-    if let Some(class) = fleet.class_of(member) {
-        return Some(Whose("class", class.class.name()));
-    }
-    Some(Whose("composite", &fleet.inner(member)?.main().name))
 }
 
 fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    let Some(whose) = whose(member, fleet) else { return };
     for service in &fleet.members[member].component.services {
+        let Some(whose) = whose(member, fleet) else { return };
         let name = &service.name;
         match fleet.offer(member, name) {
             Offer::Service(provider) => {
@@ -115,7 +99,7 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
 }
 
 /// Reports a service that is a reference, for which its `target` is no further mistake.
-fn swapped(service: &ServiceElement, whose: &Whose<'_>, document: &Document, report: &mut Report<'_>) {
+fn swapped(service: &ServiceElement, whose: &str, document: &Document, report: &mut Report<'_>) {
     let element = service.origin.element(document);
     if let Some(target) = element.attribute("target") {
         report.withdraw(&codes::UNKNOWN_ATTRIBUTE, target.name_span().in_file(document.file()));
@@ -135,7 +119,7 @@ fn unknown<'n>(
     code: &'static Code,
     what: &str,
     name: &Text,
-    whose: &Whose<'_>,
+    whose: &str,
     known: impl Iterator<Item = &'n str> + Clone,
     report: &mut Report<'_>,
 ) {

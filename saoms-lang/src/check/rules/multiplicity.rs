@@ -1,7 +1,5 @@
 //! Multiplicities that components give references, held against those of classes.
 
-use std::fmt;
-
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Multiplicity, ReferenceElement};
@@ -18,12 +16,7 @@ pub(crate) fn of_class(declared: &ReferenceDeclaration) -> Multiplicity {
 }
 
 /// Checks that the multiplicity that a component gives narrows that of what implements it.
-pub(crate) fn check(
-    reference: &ReferenceElement,
-    own: Multiplicity,
-    whose: &dyn fmt::Display,
-    report: &mut Report<'_>,
-) {
+pub(crate) fn check(reference: &ReferenceElement, own: Multiplicity, whose: &str, report: &mut Report<'_>) {
     let Some(given) = reference.multiplicity() else { return };
     if given.value.narrows(own) {
         return;

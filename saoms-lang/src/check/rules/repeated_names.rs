@@ -3,26 +3,36 @@
 use std::collections::HashMap;
 
 use crate::check::report::Report;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::source::{Location, Text};
 
-/// Reports each name that occurs before, by this diagnostic about it.
-pub(crate) fn check<'a>(
-    names: impl Iterator<Item = &'a Text> + Clone,
-    repeated: impl Fn(&Text) -> Diagnostic,
-    report: &mut Report<'_>,
-) {
-    /// So many are compared with each other sooner than they are in a table.
-    const FEW: usize = 8;
-    let is_repeated = |(place, name): (usize, &Text)| names.clone().take(place).any(|one| one.value == name.value);
-    if names.clone().nth(FEW).is_none() && !names.clone().enumerate().any(is_repeated) {
-        return;
-    }
-    let mut first: HashMap<&str, Location> = HashMap::new();
-    for name in names.filter(|name| !name.is_empty()) {
-        match first.get(name.as_str()) {
-            Some(first) => report.push(repeated(name).label(*first, "the first")),
-            None => _ = first.insert(name, name.location),
+/// Something whose parts have names of their own.
+pub(crate) struct Owner<'o> {
+    /// As messages call it.
+    pub(crate) name: &'o dyn Fn() -> String,
+    pub(crate) code: &'static Code,
+    pub(crate) severity: Severity,
+    pub(crate) help: &'static str,
+}
+
+impl Owner<'_> {
+    /// Reports each name of its parts of this kind that occurs before.
+    pub(crate) fn check<'a>(
+        &self,
+        what: &str,
+        rule: &'static str,
+        names: impl Iterator<Item = &'a Text>,
+        report: &mut Report<'_>,
+    ) {
+        let mut first: HashMap<&str, Location> = HashMap::new();
+        for name in names.filter(|name| !name.is_empty()) {
+            let Some(earlier) = first.get(name.as_str()) else {
+                first.insert(name, name.location);
+                continue;
+            };
+            let message = format!("{} has two {what} {}", (self.name)(), quoted(name));
+            let one = Diagnostic::new(self.code, name.location, message).severity(self.severity).rule(rule);
+            report.push(one.label(*earlier, "the first").help(self.help));
         }
     }
 }

@@ -39,39 +39,35 @@ fn uses<'u, 'r>(
 /// Collects values that components must not share.
 #[derive(Default)]
 pub(crate) struct Unique<'a> {
-    /// The first users of each value: of each word one, and one task.
-    seen: HashMap<Canonical, Vec<User<'a>>>,
+    /// The first user of each value of a property with a word, which says what must have a value of its own.
+    words: HashMap<(&'a str, Canonical), User>,
+    /// The first task with each ID, and the word of its property.
+    tasks: HashMap<Canonical, (User, Option<&'a str>)>,
     pub(crate) repeated: RepeatedValues,
 }
 
-/// The values that components share and must not, which is reported. Rules over them say no more.
+/// The places of values that components share and must not, which is reported, with whether replicas have them. Rules
+/// over them say no more.
 #[derive(Default)]
-pub(crate) struct RepeatedValues {
-    /// The places of the values, with whether replicas have them.
-    places: HashMap<Location, bool>,
-}
+pub(crate) struct RepeatedValues(HashMap<Location, bool>);
 
 impl RepeatedValues {
     /// True if the value at this place is one of them.
     pub(crate) fn contains(&self, at: Location) -> bool {
-        self.places.contains_key(&at)
+        self.0.contains_key(&at)
     }
 
     /// True if replicas share the value at this place.
     pub(crate) fn is_of_replicas(&self, at: Location) -> bool {
-        self.places.get(&at).is_some_and(|is_of_replicas| *is_of_replicas)
+        self.0.get(&at) == Some(&true)
     }
 }
 
 /// The component that has a value.
 #[derive(Clone, Copy)]
-struct User<'a> {
+struct User {
     member: usize,
     place: Location,
-    /// The word of the property, which says what must have a value of its own.
-    word: Option<&'a str>,
-    /// True if the value is the ID of a task.
-    is_task: bool,
 }
 
 impl<'a> Unique<'a> {
@@ -83,24 +79,24 @@ impl<'a> Unique<'a> {
         given: &PropertyValues,
         report: &mut Report<'_>,
     ) {
+        // That there are two components of one name is reported.
+        let is_other = |first: &User| fleet.members[first.member].path() != fleet.members[member].path();
         for (value, place, entry) in uses(&fleet.members[member], class, given) {
-            let (word, is_task) = (entry.main.unique.as_deref(), entry.is_task_id());
-            let user = User { member, place, word, is_task };
-            let users = self.seen.entry(value.clone()).or_default();
-            let of_word = users.iter().find(|one| one.word.is_some() && one.word == user.word).copied();
-            let of_task = users.iter().find(|one| one.is_task && user.is_task).copied();
-            if of_word.is_none() && user.word.is_some() || of_task.is_none() && user.is_task {
-                users.push(user);
+            let user = User { member, place };
+            let word = entry.main.unique.as_deref();
+            if let Some(word) = word {
+                let first = *self.words.entry((word, value.clone())).or_insert(user);
+                if is_other(&first) {
+                    *self.repeated.0.entry(place).or_default() |= fleet.members[member].is_copy;
+                    shared(&value, word, [first, user], entry.main, fleet, report);
+                }
             }
-            // That there are two components of one name is reported.
-            if let Some(first) =
-                of_word.filter(|first| fleet.members[first.member].path() != fleet.members[member].path())
-            {
-                *self.repeated.places.entry(user.place).or_default() |= fleet.members[member].is_copy;
-                shared(&value, first, user, entry.main, fleet, report);
-            }
-            if let Some(first) = of_task {
-                task(&value, first, user, fleet, report);
+            if entry.is_task_id() {
+                let (first, of_first) = *self.tasks.entry(value.clone()).or_insert((user, word));
+                let is_told = word.is_some() && word == of_first;
+                if is_other(&first) && !is_told {
+                    task(&value, [first, user], fleet, report);
+                }
             }
         }
     }
@@ -109,8 +105,8 @@ impl<'a> Unique<'a> {
 /// Reports a value that a word forbids to share.
 fn shared(
     value: &Canonical,
-    first: User<'_>,
-    user: User<'_>,
+    word: &str,
+    [first, user]: [User; 2],
     declaration: &PropertyDeclaration,
     fleet: &Fleet<'_>,
     report: &mut Report<'_>,
@@ -124,7 +120,7 @@ fn shared(
         quoted(&value.to_string())
     );
     let one = Diagnostic::new(&codes::NOT_UNIQUE, user.place, message);
-    let one = one.help(format!("every {} needs its own", user.word.unwrap_or_default()));
+    let one = one.help(format!("every {word} needs its own"));
     let own = later.component.properties.iter().filter_map(Property::only_text);
     let is_own = own.clone().any(|text| text.location == user.place);
     report.push(match first.place == user.place {
@@ -147,14 +143,9 @@ fn shared(
 }
 
 /// Tasks that share an ID run all the same, but people cannot tell them apart.
-fn task(value: &Canonical, first: User<'_>, user: User<'_>, fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    let is_told = user.word.is_some() && user.word == first.word;
-    let [earlier, later] = [first, user].map(|one| fleet.members[one.member].path());
-    if is_told || earlier == later {
-        return;
-    }
-    let message =
-        format!("components {} and {} share the ID {}", quoted(earlier), quoted(later), quoted(&value.to_string()));
+fn task(value: &Canonical, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let [earlier, later] = [first, user].map(|one| quoted(fleet.members[one.member].path()));
+    let message = format!("components {earlier} and {later} share the ID {}", quoted(&value.to_string()));
     report.push(
         Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message)
             .label(first.place, "the first")

@@ -8,7 +8,7 @@ use super::unwired::DanglingNames;
 use super::uri::{Uri, parts, spread};
 use crate::check::fleet::{Fleet, Kind, Unit};
 use crate::check::report::{Report, list};
-use crate::check::rules::repeated_names;
+use crate::check::rules::repeated_names::Owner;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Binding, Part, ReferenceElement};
 use crate::source::Text;
@@ -37,16 +37,14 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
     let inner = fleet.units.iter().filter(|unit| !is_outermost(unit));
     for unit in inner.chain(fleet.units.iter().filter(is_outermost)) {
         let known = report.diagnostics().len();
-        let repeated = |what: &'static str, rule: &'static str| {
-            move |name: &Text| {
-                let message = format!("the composite has two {what} {}", quoted(name));
-                let one = Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, name.location, message);
-                one.rule(rule).help("give each its own name")
-            }
+        let owner = Owner {
+            name: &|| "the composite".to_owned(),
+            code: &codes::COMPOSITE_PART_REPEATED,
+            severity: Severity::Error,
+            help: "give each its own name",
         };
-        let (services, references) = (unit.services(), unit.references());
-        repeated_names::check(services.map(|one| &one.name), repeated("services", "ASM60003"), report);
-        repeated_names::check(references.map(|one| &one.name), repeated("references", "ASM60006"), report);
+        owner.check("services", "ASM60003", unit.services().map(|one| &one.name), report);
+        owner.check("references", "ASM60006", unit.references().map(|one| &one.name), report);
         for (service, promote) in unit.services().filter_map(|one| Some((one, one.promote.as_ref()?))) {
             if let Some(found) = find(promote, Side::Service, unit, fleet, report) {
                 promoted::service(service, found, fleet, report);
