@@ -14,11 +14,9 @@ mod options;
 mod properties;
 mod report;
 mod rules;
-mod setting;
 mod tasks;
 mod unfolding;
 mod values;
-mod variable;
 mod wiring;
 
 use crate::assembly::Assembly;
@@ -35,10 +33,8 @@ use unfolding::append_list::AppendList;
 use values::parameters::Parameters;
 
 pub use occurrences::{Occurrences, TopicUse};
-pub use options::Options;
+pub use options::{Options, Setting, Variable};
 pub use report::severities::SeveritySetting;
-pub use setting::Setting;
-pub use variable::Variable;
 
 /// Checks composites as one fleet, and resolves them when there is no error among `diagnostics`, those from before
 /// included, and nothing had to be taken as given.

@@ -1,12 +1,10 @@
 //! Occurrences of the parts of composites in a fleet, and the topics of its components, for pictures.
 
-use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use crate::assembly::TopicRenames;
 use crate::check::fleet::classes;
-use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
 use crate::check::options::Options;
@@ -30,8 +28,7 @@ pub struct Occurrences {
     counts: HashMap<(FileId, ElementId), usize>,
     /// The fewest and the most in one of the composites around them.
     ranges: HashMap<ElementPath, (usize, usize)>,
-    /// Components of one class with the same renames share a list.
-    topics: HashMap<ElementPath, Rc<[TopicUse]>>,
+    topics: HashMap<ElementPath, Vec<TopicUse>>,
 }
 
 /// A component, with those around it that composites implement before it, the outermost first.
@@ -82,22 +79,19 @@ impl Occurrences {
                 *here.entry((member.scope, place)).or_default() += 1;
             }
         }
-        // How often each composite is there at the same place of the picture.
-        let mut times: HashMap<&[(FileId, ElementId)], usize> = HashMap::new();
-        for (path, scope) in paths.iter().zip(&fleet.scopes) {
-            let is_there = scope.owner.is_none_or(|owner| !fleet.members[owner].is_absent);
-            *times.entry(path).or_default() += usize::from(is_there);
+        let mut ranges: HashMap<ElementPath, (usize, usize)> = HashMap::new();
+        for (at, (path, scope)) in paths.iter().zip(&fleet.scopes).enumerate() {
+            if scope.owner.is_some_and(|owner| fleet.members[owner].is_absent) {
+                continue;
+            }
+            let composites = scope.units.iter().flat_map(|unit| &fleet.units[*unit].composites);
+            let components = composites.flat_map(|composite| &composite.components).map(|one| place(one.origin));
+            for place in components.filter(|place| counts.contains_key(place)) {
+                let count = here.get(&(at, place)).copied().unwrap_or_default();
+                let (least, most) = ranges.entry(within(path, place)).or_insert((count, count));
+                (*least, *most) = ((*least).min(count), (*most).max(count));
+            }
         }
-        let mut all: HashMap<ElementPath, (usize, usize, usize)> = HashMap::new();
-        for ((scope, place), count) in here {
-            let (least, most, found) = all.entry(within(&paths[scope], place)).or_insert((count, count, 0));
-            (*least, *most, *found) = ((*least).min(count), (*most).max(count), *found + 1);
-        }
-        let ranges = all.into_iter().map(|(path, (least, most, found))| {
-            let is_everywhere = times.get(&path[..path.len() - 1]).is_none_or(|times| *times <= found);
-            (path, (if is_everywhere { least } else { 0 }, most))
-        });
-        let ranges = ranges.collect();
         counts.extend(fleet.conditional.iter().map(|(place, is_there)| (*place, usize::from(*is_there))));
         Self { counts, ranges, topics }
     }
@@ -117,7 +111,7 @@ impl Occurrences {
     /// The topics that a component in the composites that implement `around` and its loops use, those of all its
     /// replicas.
     pub fn topics(&self, around: &[Origin], origin: Origin) -> &[TopicUse] {
-        self.topics.get(&path_of(around, origin)).map_or(&[], |uses| &**uses)
+        self.topics.get(&path_of(around, origin)).map_or(&[], Vec::as_slice)
     }
 }
 
@@ -155,14 +149,14 @@ fn topics<'a>(
     mut parameters: Parameters<'a>,
     (registry, options): (&'a Registry, &Options),
     sources: &Sources,
-) -> HashMap<ElementPath, Rc<[TopicUse]>> {
+) -> HashMap<ElementPath, Vec<TopicUse>> {
     let mut unheard = Diagnostics::new();
     let report = &mut Report::new(sources, &mut unheard);
     classes::resolve(fleet, registry, options, report);
     let mut checks = properties::check_all(fleet, &mut parameters, report);
     loops::resolve(fleet, &mut checks, (registry, options), &mut parameters, report);
-    let mut lists = Lists::default();
-    let mut all: HashMap<ElementPath, Used> = HashMap::new();
+    let mut declared: HashMap<*const ClassTopic, Rc<ClassTopic>> = HashMap::new();
+    let mut all: HashMap<ElementPath, Vec<TopicUse>> = HashMap::new();
     for (at, member) in fleet.members.iter().enumerate().filter(|(_, member)| !member.is_absent) {
         let Kind::Class(index) = member.kind else { continue };
         let class = &fleet.classes[index];
@@ -170,65 +164,19 @@ fn topics<'a>(
         let task = Task { component: member.component, class, given: &checks[at].given };
         let renamed = if is_periodic { task.renamed(report) } else { Vec::new() };
         let renames = TopicRenames(renamed.into_iter().map(|one| (one.old, one.new)).collect());
-        let list = lists.of((index, class), renames);
-        let used = all.entry(within(&paths[member.scope], place(member.component.origin))).or_default();
-        if used.seen.insert(list.as_ptr()) {
-            used.lists.push(list);
-        }
-    }
-    all.into_iter().map(|(path, used)| (path, used.joined())).collect()
-}
-
-/// Lists of topics, each made once.
-#[derive(Default)]
-struct Lists {
-    /// By the place of the class and what is renamed.
-    known: HashMap<(usize, TopicRenames), Rc<[TopicUse]>>,
-    declared: HashMap<*const ClassTopic, Rc<ClassTopic>>,
-}
-
-impl Lists {
-    /// The topics of a component of this class.
-    fn of(&mut self, (index, class): (usize, &ClassIndex<'_>), renames: TopicRenames) -> Rc<[TopicUse]> {
-        let Self { known, declared } = self;
-        let list = known.entry((index, renames));
-        if let Entry::Occupied(list) = list {
-            return Rc::clone(list.get());
-        }
-        let renames = &list.key().1;
         let published = class.publishes.iter().map(|topic| (*topic, true));
         let topics = published.chain(class.subscribes.iter().map(|topic| (*topic, false)));
         let uses = topics.map(|(topic, is_published)| {
-            let declared = declared.entry(std::ptr::from_ref(topic));
-            TopicUse {
-                name: renames.name(&topic.name).to_owned(),
-                declared: Rc::clone(declared.or_insert_with(|| Rc::new(topic.clone()))),
-                is_published,
-            }
+            let declared = declared.entry(topic).or_insert_with(|| Rc::new(topic.clone()));
+            let name = renames.name(&topic.name).to_owned();
+            TopicUse { name, declared: Rc::clone(declared), is_published }
         });
-        let uses = once(uses).collect();
-        Rc::clone(list.or_insert(uses))
+        all.entry(within(&paths[member.scope], place(member.component.origin))).or_default().extend(uses);
     }
-}
-
-/// The different lists of a component: its replicas may have several.
-#[derive(Default)]
-struct Used {
-    lists: Vec<Rc<[TopicUse]>>,
-    seen: HashSet<*const TopicUse>,
-}
-
-impl Used {
-    fn joined(mut self) -> Rc<[TopicUse]> {
-        match self.lists.len() {
-            1 => self.lists.swap_remove(0),
-            _ => once(self.lists.iter().flat_map(|list| list.iter().cloned())).collect(),
-        }
+    // Each topic of a component, whose replicas may have several, once for its writer, once for its reader.
+    for uses in all.values_mut() {
+        let mut seen = HashSet::new();
+        uses.retain(|one| seen.insert((one.name.clone(), one.is_published)));
     }
-}
-
-/// Each topic once for its writer, once for its reader.
-fn once(uses: impl Iterator<Item = TopicUse>) -> impl Iterator<Item = TopicUse> {
-    let mut seen: HashSet<(String, bool)> = HashSet::new();
-    uses.filter(move |one| seen.insert((one.name.clone(), one.is_published)))
+    all
 }

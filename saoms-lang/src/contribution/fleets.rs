@@ -55,7 +55,7 @@ impl Finder {
         let mut waiting = vec![folder.to_owned()];
         while let Some(root) = waiting.pop() {
             let contents = self.index.contents(&root);
-            waiting.extend(contents.others.into_iter().rev());
+            waiting.extend(contents.folders.into_iter().rev());
             let description = Description::of(&root, context);
             let contribution = Files::read(contents.composites, context);
             contribution.repeated(describes(&root), context);
@@ -102,7 +102,7 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
     while let Some(root) = waiting.pop() {
         let contents = index.contents(&root);
         all.extend(contents.composites);
-        waiting.extend(contents.others);
+        waiting.extend(contents.folders);
     }
     all.sort_unstable();
     unlisted(folder, all.is_empty(), &index, sources, diagnostics);
@@ -111,10 +111,10 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
 
 /// Reports a folder that has no composites, or too many files to look at all of them.
 fn unlisted(folder: &Path, is_empty: bool, index: &Index, sources: &mut Sources, diagnostics: &mut Diagnostics) {
-    let (message, help) = match (index.is_complete(), is_empty) {
-        (true, false) => return,
-        (true, true) => ("a directory without composites", "the names of composites end with `.composite`"),
-        (false, _) => ("a directory with too many files in it and below", "name the directories in it one by one"),
+    let (message, help) = match (index.is_cut, is_empty) {
+        (false, false) => return,
+        (false, true) => ("a directory without composites", "the names of composites end with `.composite`"),
+        (true, _) => ("a directory with too many files in it and below", "name the directories in it one by one"),
     };
     let file = sources.add(folder.display().to_string(), "");
     let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);

@@ -29,26 +29,18 @@ pub(super) struct Index {
     roots: HashMap<PathBuf, PathBuf>,
     left: usize,
     /// True if there were more entries than are looked at.
-    is_cut: bool,
+    pub(super) is_cut: bool,
     open: OpenTexts,
 }
 
-/// What a folder has, sorted.
+/// What a folder or a contribution has, sorted.
 #[derive(Debug, Default)]
 pub(super) struct Listing {
-    composites: Vec<PathBuf>,
-    folders: Vec<PathBuf>,
-    /// Definitions of policies.
-    definitions: Vec<PathBuf>,
-}
-
-/// What a contribution has, sorted.
-#[derive(Default)]
-pub(super) struct Contents {
     pub(super) composites: Vec<PathBuf>,
+    /// Definitions of policies.
     pub(super) definitions: Vec<PathBuf>,
-    /// The folders of other contributions below it.
-    pub(super) others: Vec<PathBuf>,
+    /// The folders in a folder; for a contribution those of other contributions below it.
+    pub(super) folders: Vec<PathBuf>,
 }
 
 /// The files called as composites in folders.
@@ -237,15 +229,15 @@ impl Index {
     }
 
     /// The files of the contribution in a folder.
-    pub(super) fn contents(&mut self, root: &Path) -> Contents {
-        let (folders, others) = self.own_folders(root);
-        let mut all = Contents { others, ..Contents::default() };
-        for folder in folders {
+    pub(super) fn contents(&mut self, root: &Path) -> Listing {
+        let (own, folders) = self.own_folders(root);
+        let mut all = Listing { folders, ..Listing::default() };
+        for folder in own {
             let listing = self.listing(&folder);
             all.composites.extend_from_slice(&listing.composites);
             all.definitions.extend_from_slice(&listing.definitions);
         }
-        for paths in [&mut all.composites, &mut all.definitions, &mut all.others] {
+        for paths in [&mut all.composites, &mut all.definitions, &mut all.folders] {
             paths.sort_unstable();
         }
         all
@@ -258,11 +250,6 @@ impl Index {
             names.extend(&self.names(&folder));
         }
         names.heads().into_iter().cloned().collect()
-    }
-
-    /// True if every file was looked at.
-    pub(super) fn is_complete(&self) -> bool {
-        !self.is_cut
     }
 
     /// Makes a file that was found for one in `folder` one of its contribution.

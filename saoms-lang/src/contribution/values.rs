@@ -9,7 +9,7 @@ use super::value_file::{self, FileValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
 use crate::load::read;
 use crate::model::Composite;
-use crate::source::{Sources, Span, Text};
+use crate::source::{Sources, Text};
 
 /// Reads the files that properties of the composite's components and their loops name with `file`, each of at most
 /// `max_size` bytes. A name is a URI (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the
@@ -41,8 +41,10 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
         if !known.contains_key(&path) {
             match read::value(&path, max_size, file.location, sources.open()) {
                 Ok(text) => {
-                    let text = add(&path, text, sources);
-                    let value = value_file::read(text.location.file, text, sources, diagnostics);
+                    let file = sources.add(path.display().to_string(), text);
+                    let whole = sources.get(file).text();
+                    let text = Text::part_of(file, whole, whole.trim_start_matches('\u{feff}'));
+                    let value = value_file::read(file, text, sources, diagnostics);
                     known.insert(path.clone(), value);
                 }
                 Err(diagnostic) => diagnostics.push(*diagnostic),
@@ -113,13 +115,4 @@ fn decoded(text: &str) -> Cow<'_, str> {
         }
     }
     String::from_utf8(bytes).map_or(Cow::Borrowed(text), Cow::Owned)
-}
-
-fn add(path: &Path, text: String, sources: &mut Sources) -> Text {
-    let whole = text.trim_start_matches('\u{feff}');
-    let value = whole.trim();
-    let start = text.len() - whole.len() + whole.find(value).unwrap_or(0);
-    let (value, span) = (value.into(), Span::new(start as u32, (start + value.len()) as u32));
-    let file = sources.add(path.display().to_string(), text);
-    Text::new(value, span.in_file(file))
 }

@@ -38,6 +38,13 @@ impl<T> Located<T> {
 }
 
 impl Text {
+    /// A part of the text of `file`, without white space at its ends, and its place.
+    pub(crate) fn part_of(file: FileId, text: &str, part: &str) -> Self {
+        let part = part.trim();
+        let start = part.as_ptr() as usize - text.as_ptr() as usize;
+        Self::new(part.into(), Span::new(start as u32, (start + part.len()) as u32).in_file(file))
+    }
+
     /// The text itself.
     pub fn as_str(&self) -> &str {
         &self.value

@@ -7,18 +7,15 @@ use std::sync::Arc;
 use super::{Fleet, Kind};
 use crate::check::options::Options;
 use crate::check::properties::property_table::PropertyTable;
-use crate::check::report::{Report, list, replacing};
+use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
+use crate::limits::OFFERED_NAMES;
 use crate::model::{ComponentElement, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::{
     ClassTopic, LoopDeclaration, ReferenceDeclaration, RegisteredClass, Registry, ServiceDeclaration,
 };
 use crate::source::{Sources, Text};
-use crate::syntax::escaped;
-
-/// The number of names are offered in place of one that a library does not have.
-const OFFERED: usize = 3;
 
 /// A class of the fleet, with its declaration at hand; where components of it have loops, together with these.
 pub(crate) struct ClassIndex<'r> {
@@ -71,7 +68,7 @@ impl<'r> ClassIndex<'r> {
 /// Finds the class of every component.
 pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options: &Options, report: &mut Report<'_>) {
     let contribution = fleet.contribution;
-    let mut known: HashMap<&str, usize> = HashMap::default();
+    let mut known: HashMap<&str, Option<usize>> = HashMap::new();
     // What is near an unknown name, which a whole fleet may have.
     let mut near: HashMap<&str, Vec<&str>> = HashMap::new();
     for place in 0..fleet.members.len() {
@@ -80,8 +77,10 @@ pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options
         let assumes = options.assume_classes || fleet.members[place].is_absent;
         report.about(&fleet.members[place]);
         let Some(class) = runnable(component, assumes, report) else {
-            if assumes && fleet.members[place].kind == Kind::Nothing {
-                fleet.members[place].kind = given(component);
+            // A composite that is faulty, or missing, was seen to when the fleet was unfolded.
+            let kind = component.implementation.as_ref().map(|implementation| &implementation.kind);
+            if assumes && !matches!(kind, Some(ImplementationKind::Composite { .. })) {
+                fleet.members[place].kind = Kind::Given;
             }
             continue;
         };
@@ -95,27 +94,21 @@ pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options
             }
             continue;
         }
-        let index = match known.get(class.as_str()).copied() {
-            Some(index) => index,
-            None => match registry.get(class) {
-                Some(found) => {
-                    fleet.classes.push(ClassIndex::new(found));
-                    known.insert(class, fleet.classes.len() - 1);
-                    fleet.classes.len() - 1
-                }
-                None if assumes => {
-                    fleet.members[place].kind = Kind::Given;
-                    continue;
-                }
-                None if report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) => continue,
-                None => {
+        let found = *known.entry(class).or_insert_with(|| {
+            fleet.classes.push(ClassIndex::new(registry.get(class)?));
+            Some(fleet.classes.len() - 1)
+        });
+        fleet.members[place].kind = match found {
+            Some(index) => Kind::Class(index),
+            None if assumes => Kind::Given,
+            None => {
+                if !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) {
                     let near = near.entry(class).or_insert_with(|| registry.nearest(class));
                     report.push(unknown(class, near, registry));
-                    continue;
                 }
-            },
+                continue;
+            }
         };
-        fleet.members[place].kind = Kind::Class(index);
     }
     report.about_all();
 }
@@ -129,7 +122,7 @@ fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &
         }
         // Reported by the loader, for SCA 1.0 as a warning.
         let why = "SCA 1.0 allows a component without an implementation, but it cannot run";
-        report.escalate(&codes::MISSING_IMPLEMENTATION, component.origin.file(), why);
+        report.diagnostics().escalate(&codes::MISSING_IMPLEMENTATION, component.origin.file(), why);
         return None;
     };
     match &implementation.kind {
@@ -145,15 +138,6 @@ fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &
             report.push(one.help(SUPPORTED));
             None
         }
-    }
-}
-
-/// The kind of a component without a class, where that is taken as given.
-fn given(component: &ComponentElement) -> Kind {
-    match component.implementation.as_ref().map(|implementation| &implementation.kind) {
-        // A composite that is faulty, or missing: seen to when the fleet was unfolded.
-        Some(ImplementationKind::Composite { .. }) => Kind::Nothing,
-        _ => Kind::Given,
     }
 }
 
@@ -178,8 +162,8 @@ fn is_in_library(
             let file = quoted(&path.display().to_string());
             let mut one = wrong(format!("the library {file} has no class {}", quoted(class)));
             let own: Vec<&str> = registry.of(path).collect();
-            for meant in nearest_few(class, own.iter().copied(), OFFERED) {
-                one = one.suggest(replacing(class, meant), class.location, escaped(meant));
+            for meant in nearest_few(class, own.iter().copied(), OFFERED_NAMES) {
+                one = one.replace(class, class.location, meant);
             }
             one = one.help(match own.len() {
                 0 => "it has no class of components".to_owned(),
@@ -222,7 +206,7 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
     let message = format!("there is no class {}", quoted(class));
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
     for meant in near {
-        one = one.suggest(replacing(class, meant), class.location, escaped(meant));
+        one = one.replace(class, class.location, meant);
     }
     if registry.get_loop(class).is_some() {
         let inside = format!("`<saoms:loop name=\"...\" class=\"{class}\"/>`");

@@ -1,25 +1,21 @@
 //! All components of all composites as one fleet.
 
 pub(crate) mod classes;
-pub(crate) mod composite_names;
-pub(crate) mod member;
-pub(crate) mod name_pattern;
+pub(crate) mod names;
 pub(crate) mod similar_names;
-pub(crate) mod unique_names;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
-use crate::check::fleet::classes::ClassIndex;
-use crate::check::fleet::name_pattern::is_like;
-use crate::check::unfolding::expression_scope::Names;
 use smol_str::SmolStr;
 
-use crate::model::{Composite, Contribution, ReferenceElement, ServiceElement, WireElement};
+use crate::check::fleet::classes::ClassIndex;
+use crate::check::unfolding::expression_scope::Names;
+use crate::check::unfolding::replica::Instance;
+use crate::expression::has_expression;
+use crate::model::{ComponentElement, Composite, Contribution, ReferenceElement, ServiceElement, WireElement};
 use crate::source::{FileId, Location};
 use crate::syntax::ElementId;
-
-pub(crate) use member::{Kind, Member};
 
 /// The components of a fleet in document order, those of inner composites behind the component that each implements.
 ///
@@ -89,6 +85,88 @@ impl<'a> Unit<'a> {
     }
 }
 
+/// A component with what is found out about it.
+pub(crate) struct Member<'a> {
+    /// The composite that it is written in.
+    pub(crate) composite: &'a Composite,
+    pub(crate) unit: usize,
+    pub(crate) scope: usize,
+    pub(crate) component: &'a ComponentElement,
+    /// True if its composite asks for autowire.
+    pub(crate) autowire: bool,
+    pub(crate) kind: Kind,
+    /// The replica that it is.
+    pub(crate) instance: Option<&'a Instance>,
+    /// True if it, or a component around it, is a replica.
+    pub(crate) is_copy: bool,
+    /// True if a condition keeps it away: it is checked as far as it can be known, and is in no fleet.
+    pub(crate) is_absent: bool,
+    /// True if it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is
+    /// said of what others would share with it.
+    pub(crate) is_partial: bool,
+    /// True if it has the name of an earlier one, which is reported.
+    pub(crate) is_repeated: bool,
+    /// Its path, where that is more than its name.
+    path: Option<String>,
+}
+
+/// The implementation of a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Nothing that could run; that is reported.
+    Nothing,
+    /// The class of this place.
+    Class(usize),
+    /// The composite of this scope.
+    Composite(usize),
+    /// Something that is taken as given.
+    Given,
+}
+
+impl<'a> Member<'a> {
+    pub(crate) fn new(composite: &'a Composite, unit: usize, scope: usize, component: &'a ComponentElement) -> Self {
+        Self {
+            composite,
+            unit,
+            scope,
+            component,
+            autowire: false,
+            kind: Kind::Nothing,
+            instance: None,
+            is_copy: false,
+            is_absent: false,
+            is_partial: false,
+            is_repeated: false,
+            path: None,
+        }
+    }
+
+    /// The name that tells it from all others of the fleet: the names of the components around it, and its own.
+    pub(crate) fn path(&self) -> &str {
+        self.path.as_deref().unwrap_or(&self.component.name)
+    }
+
+    /// True if it is there in a run, rather than the composite that it is.
+    pub(crate) fn runs(&self) -> bool {
+        !matches!(self.kind, Kind::Composite(_))
+    }
+
+    /// True if a table that is not known may give it other values.
+    pub(crate) fn lacks_table(&self) -> bool {
+        self.instance.and_then(|instance| instance.partial).is_some_and(|partial| partial.has_table)
+    }
+
+    /// True if it may give other properties than those that are known: a table is not, or what one of them is called.
+    pub(crate) fn may_give_others(&self) -> bool {
+        let Some(partial) = self.instance.and_then(|instance| instance.partial) else { return false };
+        partial.has_table || self.component.properties.iter().any(|one| has_expression(&one.name))
+    }
+
+    pub(crate) fn set_path(&mut self, path: String) {
+        self.path = Some(path);
+    }
+}
+
 impl<'a> Fleet<'a> {
     /// The component of this name in a scope.
     pub(crate) fn find(&self, scope: usize, name: &str) -> Option<usize> {
@@ -145,4 +223,20 @@ impl<'a> Fleet<'a> {
             _ => None,
         }
     }
+}
+
+/// True if a name is like a pattern, in which `*` stands for anything.
+pub(crate) fn is_like(name: &str, pattern: &str) -> bool {
+    let (Some((first, rest)), mut left) = (pattern.split_once('*'), name) else { return name == pattern };
+    let Some(behind) = left.strip_prefix(first) else { return false };
+    left = behind;
+    let mut parts = rest.split('*').peekable();
+    while let Some(part) = parts.next() {
+        if parts.peek().is_none() {
+            return left.ends_with(part);
+        }
+        let Some(place) = left.find(part) else { return false };
+        left = &left[place + part.len()..];
+    }
+    true
 }

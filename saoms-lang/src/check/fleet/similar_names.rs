@@ -1,6 +1,5 @@
 //! The topic that is probably meant by the name of another one: of the same messages, with nearly its name.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
 
 use crate::assembly::{Traffic, TrafficTopic};
@@ -12,7 +11,7 @@ pub(crate) struct Similar<'t> {
     groups: HashMap<(&'static str, &'t str), Vec<Known<'t>>>,
     /// The number of more names are looked at for all topics together: in a fleet in which each robot has topics of its
     /// own every search goes through those of all others.
-    candidates: RefCell<Candidates>,
+    candidates: Candidates,
 }
 
 /// A topic with what is asked of it.
@@ -30,13 +29,17 @@ impl<'t> Similar<'t> {
             let known = Known { topic, is_renamed: is_renamed(topic), name: Name::of(&topic.name) };
             groups.entry(key(topic)).or_default().push(known);
         }
-        Self { groups, candidates: RefCell::default() }
+        Self { groups, candidates: Candidates::default() }
     }
 
     /// The topic with the most similar name among those that fit.
-    pub(crate) fn nearest(&self, topic: &TrafficTopic, fits: impl Fn(&Known<'t>) -> bool) -> Option<&'t TrafficTopic> {
+    pub(crate) fn nearest(
+        &mut self,
+        topic: &TrafficTopic,
+        fits: impl Fn(&Known<'t>) -> bool,
+    ) -> Option<&'t TrafficTopic> {
         let group = self.groups.get(&key(topic))?;
-        if !self.candidates.borrow_mut().admit(group.len()) {
+        if !self.candidates.admit(group.len()) {
             return None;
         }
         let fitting = group.iter().filter(|other| other.topic.name != topic.name && fits(other));

@@ -4,7 +4,6 @@ pub(crate) mod findings;
 pub(crate) mod severities;
 
 use std::collections::{HashMap, HashSet};
-use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::ops::Range;
 
 use crate::check::fleet::Member;
@@ -15,27 +14,21 @@ use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
 use crate::syntax::{SourceMap, escaped};
 
-/// The number of diagnostics are taken back.
-const WITHDRAWALS: usize = 1000;
-
 /// Collects diagnostics, and knows the texts they are about.
 pub(crate) struct Report<'a> {
     sources: &'a Sources,
     diagnostics: &'a mut Diagnostics,
     /// The number of right names are still looked at for wrong ones.
     candidates: Candidates,
-    /// The number of may still be taken back.
-    withdrawals: usize,
-    escalated: HashSet<(&'static str, FileId)>,
     /// The prefixes of types that are bound to nothing, by their files.
     unbound: HashSet<(FileId, String)>,
     /// Diagnostics by code, place and message: a composite that implements several components has its faults once.
-    said: HashSet<Said>,
+    said: HashSet<(&'static str, Location, String)>,
     /// The replica that is looked at.
     copy: Option<Copied>,
-    /// Diagnostics about replicas: of the first one, and of how many more.
+    /// Diagnostics about replicas, and where each is by its place and code.
     copies: Vec<ReplicaDiagnostic>,
-    known_copies: HashMap<(&'static str, Location), usize>,
+    known_copies: HashMap<(Location, &'static str), usize>,
     /// The lines of tables that are about replicas that are there.
     lines: HashSet<Location>,
     /// Diagnostics about lines without a replica: the same composite may have the replica where it is there another
@@ -59,9 +52,6 @@ struct ReplicaDiagnostic {
     more: usize,
 }
 
-/// The code of a diagnostic, its place, and what stands for its message.
-type Said = (&'static str, Location, u64);
-
 /// The number of diagnostics about replicas are kept together; further ones are told as they come.
 const MOST_COPIES: usize = 2000;
 
@@ -74,8 +64,6 @@ impl<'a> Report<'a> {
             sources,
             diagnostics,
             candidates: Candidates::default(),
-            withdrawals: WITHDRAWALS,
-            escalated: HashSet::new(),
             unbound: HashSet::new(),
             said: HashSet::new(),
             copy: None,
@@ -88,7 +76,7 @@ impl<'a> Report<'a> {
 
     /// True if something of this code was told at this place.
     pub(crate) fn has_diagnostic(&self, code: &'static Code, at: Location) -> bool {
-        self.known_copies.contains_key(&(code.id, at))
+        self.known_copies.contains_key(&(at, code.id))
             || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
     }
 
@@ -102,24 +90,12 @@ impl<'a> Report<'a> {
 
     /// Takes back what was told of this code at this place, since something else says it better.
     pub(crate) fn withdraw(&mut self, code: &'static Code, at: Location) {
-        // Each goes through all that were said: a file full of them has some told twice.
-        if let Some(left) = self.withdrawals.checked_sub(1) {
-            self.withdrawals = left;
-            self.diagnostics.withdraw(code, at);
-        }
+        self.diagnostics.withdraw(code, at);
     }
 
     /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how
     /// many.
-    #[inline]
     pub(crate) fn about(&mut self, member: &Member<'_>) {
-        if member.is_copy || self.copy.is_some() {
-            self.about_copy(member);
-        }
-    }
-
-    #[cold]
-    fn about_copy(&mut self, member: &Member<'_>) {
         let index = member.instance.map(|instance| instance.index);
         self.copy = member.is_copy.then(|| Copied { path: member.path().into(), index });
     }
@@ -166,7 +142,8 @@ impl<'a> Report<'a> {
                 self.diagnostics.push(one);
             }
         }
-        for ReplicaDiagnostic { mut one, first: Copied { path, index }, more, .. } in std::mem::take(&mut self.copies) {
+        for kept in std::mem::take(&mut self.copies) {
+            let ReplicaDiagnostic { mut one, first: Copied { path, index }, more, .. } = kept;
             // What a component around them is told at this place is the same mistake.
             if self.said.contains(&said(&one)) {
                 continue;
@@ -187,7 +164,7 @@ impl<'a> Report<'a> {
 
     /// Keeps a diagnostic about a replica for [`Report::finish`].
     fn push_copy(&mut self, mut one: Diagnostic, copy: Copied) {
-        let key = (one.code.id, one.location);
+        let key = (one.location, one.code.id);
         if let Some(known) = self.known_copies.get(&key) {
             let ReplicaDiagnostic { first, last, more, .. } = &mut self.copies[*known];
             // What is found again from components inside of a replica is of that one.
@@ -229,28 +206,16 @@ impl<'a> Report<'a> {
         self.unbound.insert((file, prefix.to_owned()))
     }
 
-    /// Makes errors of all warnings of one code in one file.
-    pub(crate) fn escalate(&mut self, code: &'static Code, file: FileId, why: &str) {
-        if self.escalated.insert((code.id, file)) {
-            self.diagnostics.escalate(code, file, why);
-        }
-    }
-
     /// All that was said.
     pub(crate) fn diagnostics(&mut self) -> &mut Diagnostics {
         self.diagnostics
     }
 
+    /// True if an error was said, of whatever is told at the end as well.
     pub(crate) fn has_errors(&self) -> bool {
-        self.errors() > 0
-    }
-
-    /// The number of errors there are, as far as they are told.
-    pub(crate) fn errors(&self) -> usize {
-        let of_copies = self.copies.iter().filter(|kept| kept.one.severity == Severity::Error);
-        let of_lines = self.lines_of_none.iter().filter(|one| one.severity == Severity::Error);
-        let of_lines = of_lines.filter(|one| !self.lines.contains(&one.location));
-        self.diagnostics.errors() + of_copies.count() + of_lines.count()
+        let is_told = |one: &&Diagnostic| !self.lines.contains(&one.location);
+        let mut later = self.copies.iter().map(|kept| &kept.one).chain(self.lines_of_none.iter().filter(is_told));
+        self.diagnostics.has_errors() || later.any(|one| one.severity == Severity::Error)
     }
 
     /// The place of a part of `text`, in bytes of the text as it is meant.
@@ -315,14 +280,13 @@ impl<'a> Report<'a> {
         match near[..] {
             [] if candidates.clone().into_iter().next().is_none() => one,
             [] => one.help(format!("{known_as} {}", list(candidates))),
-            _ => near.iter().fold(one, |one, meant| one.suggest(replacing(name, meant), at, escaped(meant))),
+            _ => near.iter().fold(one, |one, meant| one.replace(name, at, meant)),
         }
     }
 }
 
-fn said(one: &Diagnostic) -> Said {
-    let message = BuildHasherDefault::<DefaultHasher>::default().hash_one(&one.message);
-    (one.code.id, one.location, message)
+fn said(one: &Diagnostic) -> (&'static str, Location, String) {
+    (one.code.id, one.location, one.message.clone())
 }
 
 /// The places of the parts of a text.
@@ -342,6 +306,14 @@ impl Parts {
             Some(part) => Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file),
             None => self.written,
         }
+    }
+}
+
+impl Diagnostic {
+    /// Adds the suggestion to write another name in place of the one at a place.
+    #[must_use]
+    pub(crate) fn replace(self, written: &str, at: Location, meant: &str) -> Self {
+        self.suggest(replacing(written, meant), at, escaped(meant))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::check::options::Options;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, SetBy, Severity, SeverityLevel, codes, nearest, quoted};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Label, SetBy, Severity, SeverityLevel, codes, nearest, quoted};
 use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::{FileId, Located, Location, Sources, Span, Text};
@@ -25,27 +25,23 @@ impl SeveritySetting {
     pub fn parse(option: &str, text: &str, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Self> {
         let file = sources.add(option, text);
         let split = text.find('=').unwrap_or(text.len());
-        let (code, level) = (text[..split].trim(), &text[(split + 1).min(text.len())..]);
+        let (code, level) = (&text[..split], &text[(split + 1).min(text.len())..]);
         let with_reason = level.split_once(':').filter(|(_, reason)| !reason.trim().is_empty());
-        let (level, reason) = with_reason.unwrap_or((level, ""));
-        let (level, reason) = (level.trim(), reason.trim());
-        let place = |part: &str| {
-            let start = part.as_ptr() as usize - text.as_ptr() as usize;
-            Span::new(start as u32, (start + part.len()) as u32).in_file(file)
-        };
-        if let Some(level) = SeverityLevel::from_name(level).map(|found| Located::new(found, place(level))) {
-            let reason = (!reason.is_empty()).then(|| Located::new(reason.into(), place(reason)));
-            return Some(Self { code: Located::new(code.into(), place(code)), level, reason });
+        let (level, reason) = with_reason.unwrap_or((level, &text[text.len()..]));
+        let [code, level, reason] = [code, level, reason].map(|part| Text::part_of(file, text, part));
+        if let Some(found) = SeverityLevel::from_name(&level) {
+            let level = Located::new(found, level.location);
+            return Some(Self { code, level, reason: Some(reason).filter(|reason| !reason.is_empty()) });
         }
         let names = SeverityLevel::ALL.map(SeverityLevel::name);
         let one = if level.is_empty() {
             let whole = Span::new(0, text.len() as u32).in_file(file);
             Diagnostic::new(&codes::SEVERITY, whole, format!("{} sets no severity", quoted(text)))
         } else {
-            let message = format!("there is no severity {}", quoted(level));
-            let one = Diagnostic::new(&codes::SEVERITY, place(level), message);
-            match nearest(level, names) {
-                Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), place(level), meant),
+            let message = format!("there is no severity {}", quoted(&level));
+            let one = Diagnostic::new(&codes::SEVERITY, level.location, message);
+            match nearest(&level, names) {
+                Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), level.location, meant),
                 None => one,
             }
         };
@@ -60,8 +56,6 @@ impl SeveritySetting {
 /// All that is said about severities, what counts first before the others.
 pub(crate) struct Severities {
     rules: Vec<Rule>,
-    /// Those about each code.
-    by_code: HashMap<String, Vec<usize>>,
     /// The codes of rules over fleets whose errors keep a fleet from starting.
     preventing: Vec<&'static str>,
 }
@@ -165,11 +159,7 @@ impl Severities {
         rules.sort_by_key(|rule| rule.scope.size());
         let preventing = registry.rules().iter().filter(|rule| rule.prevents_start());
         let preventing = preventing.map(|rule| rule.code().id).collect();
-        let mut by_code: HashMap<String, Vec<usize>> = HashMap::new();
-        for (place, rule) in rules.iter().enumerate() {
-            by_code.entry(rule.code.clone()).or_default().push(place);
-        }
-        Self { rules, by_code, preventing }
+        Self { rules, preventing }
     }
 
     /// True if files have faults of syntax or structure that nobody lets pass.
@@ -179,7 +169,7 @@ impl Severities {
 
     /// True if anything is said about a code.
     pub(crate) fn mentions(&self, code: &Code) -> bool {
-        self.by_code.get(code.id).is_some_and(|rules| rules.iter().any(|place| !self.rules[*place].is_wrong))
+        self.rules.iter().any(|rule| rule.code == code.id && !rule.is_wrong)
     }
 
     /// Sets the severities of the diagnostics from this place on.
@@ -188,16 +178,15 @@ impl Severities {
             return;
         }
         diagnostics.adjust(from, |one| {
-            let Some(rules) = self.by_code.get(one.code.id) else { return };
-            let holds = |place: &usize, at: Location| self.rules[*place].scope.holds(at);
-            let own = rules.iter().copied().find(|place| holds(place, one.location));
-            let is_element = |place: &usize| matches!(self.rules[*place].scope, Scope::Element(_));
+            let holds = |rule: &Rule, at: Location| rule.code == one.code.id && rule.scope.holds(at);
+            let is_element = |rule: &Rule| matches!(rule.scope, Scope::Element(_));
+            let own = self.rules.iter().position(|rule| holds(rule, one.location));
             // What is wrong between two elements is found in the second of them, and is about the first as well.
             let of_other = || {
-                let mut elements = rules.iter().copied().filter(is_element);
-                elements.find(|place| one.labels.iter().any(|label| holds(place, label.location)))
+                let is_about = |rule: &Rule| one.labels.iter().any(|label| holds(rule, label.location));
+                self.rules.iter().position(|rule| is_element(rule) && is_about(rule))
             };
-            let Some(place) = own.filter(is_element).or_else(of_other).or(own) else { return };
+            let Some(place) = own.filter(|own| is_element(&self.rules[*own])).or_else(of_other).or(own) else { return };
             let rule = &mut self.rules[place];
             if rule.is_wrong && one.severity == Severity::Error {
                 return;
@@ -207,7 +196,7 @@ impl Severities {
             let is_fixed = !codes::is_judgement(one.code) || self.preventing.contains(&one.code.id);
             if one.severity == Severity::Error && is_lowered && is_fixed {
                 let label = format!("not set to `{}`", rule.set.level.name());
-                one.labels.push(crate::diagnostic::Label { location: rule.set.at, text: label });
+                one.labels.push(Label { location: rule.set.at, text: label });
                 one.help.push("its severity cannot be lowered: nothing can run with it".to_owned());
                 return;
             }
@@ -215,7 +204,7 @@ impl Severities {
                 one.severity = severity;
                 if let Some(reason) = &rule.set.reason {
                     let text = format!("set to `{}`: {reason}", severity.name());
-                    one.labels.push(crate::diagnostic::Label { location: rule.set.at, text });
+                    one.labels.push(Label { location: rule.set.at, text });
                 }
             }
             one.set = Some(rule.set.clone());
@@ -264,7 +253,7 @@ fn twice(code: &Text, level: SeverityLevel, first: &SetBy) -> Diagnostic {
 fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {
     let one = Diagnostic::new(&codes::SEVERITY, code.location, format!("there is no code {}", quoted(code)));
     match meant(code, known) {
-        Some(meant) => one.suggest(super::replacing(code, meant), code.location, meant),
+        Some(meant) => one.replace(code, code.location, meant),
         None => one.help("each diagnostic shows its code, and `docs/diagnostics.md` lists them"),
     }
 }

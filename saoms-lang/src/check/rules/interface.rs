@@ -1,10 +1,9 @@
 //! Interfaces that files name, held against those of classes.
 
-use crate::check::report::{Report, replacing};
+use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{InterfaceElement, InterfaceKind, Part};
 use crate::registry::InterfaceDeclaration;
-use crate::syntax::escaped;
 
 /// Checks that the interface that a file names is that of the class.
 pub(crate) fn check(
@@ -23,11 +22,8 @@ pub(crate) fn check(
     let one = match &given.interface {
         Some(name) if can_name(given.kind) => {
             let message = format!("the interface of {of} is {expected}, not {}", quoted(name));
-            Diagnostic::new(&codes::INTERFACE_DIFFERS, name.location, message).suggest(
-                replacing(name, &declared.name),
-                name.location,
-                escaped(&declared.name),
-            )
+            Diagnostic::new(&codes::INTERFACE_DIFFERS, name.location, message)
+                .replace(name, name.location, &declared.name)
         }
         // One without its name, which is reported.
         None if matches!(given.kind, InterfaceKind::Java | InterfaceKind::Rust) => return,

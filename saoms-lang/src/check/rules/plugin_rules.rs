@@ -69,26 +69,25 @@ pub(crate) fn check<'s>(
     let all = || parts.iter().filter_map(part);
     let open = all().filter(|(place, ..)| wiring[*place].iter().any(Option::is_none));
     open.for_each(|(.., class)| miss(&mut missing, Some(class)));
-    let mut views_of_classes = ClassViews::default();
-    let mut wires: Vec<(&str, usize)> = Vec::new();
-    let mut ends = Vec::with_capacity(parts.len());
-    for (place, _, class) in all() {
-        for (reference, targets) in class.references.iter().zip(&wiring[place]) {
+    let wires = all().map(|(place, _, class)| {
+        let ends = class.references.iter().zip(&wiring[place]);
+        let known = ends.flat_map(|(reference, targets)| {
             let known = targets.iter().flatten().filter_map(|provider| indices[provider.member]);
-            wires.extend(known.map(|index| (reference.name.as_str(), index)));
-        }
-        ends.push(wires.len());
-    }
-    let mut start = 0;
-    let mut views: Vec<ComponentView<'_>> = Vec::with_capacity(parts.len());
-    views.extend(all().zip(ends).map(|((place, check, class), end)| ComponentView {
+            known.map(|index| (reference.name.as_str(), index))
+        });
+        known.collect()
+    });
+    let wires: Vec<Vec<(&str, usize)>> = wires.collect();
+    let mut classes = ClassViews::new();
+    let views = all().zip(&wires).map(|((place, check, class), wires)| ComponentView {
         path: fleet.members[place].path(),
-        class: views_of_classes.of(class, check),
+        class: class_view(&mut classes, class, check),
         values: check.given.own(),
         period: check.task.as_ref().map(|task| task.period),
         has_broker: check.task.as_ref().is_some_and(|task| task.url.is_some()),
-        wires: &wires[std::mem::replace(&mut start, end)..end],
-    }));
+        wires,
+    });
+    let views: Vec<ComponentView<'_>> = views.collect();
     let view = FleetView::new(&views).without(&missing);
     for rule in rules.filter(|rule| rule.judges_parts() || is_whole) {
         let findings = match rule.check(&view) {
@@ -119,25 +118,26 @@ pub(crate) fn check<'s>(
 }
 
 /// The views of classes with their loops, each made once.
-#[derive(Default)]
-struct ClassViews<'s>(HashMap<(*const RegisteredClass, *const LoopSpec), Rc<ClassView<'s>>>);
+type ClassViews<'s> = HashMap<(*const RegisteredClass, *const LoopSpec), Rc<ClassView<'s>>>;
 
-impl<'s> ClassViews<'s> {
-    /// The view of the class of a component.
-    fn of(&mut self, class: &ClassIndex<'s>, check: &'s ComponentCheck<'_>) -> Rc<ClassView<'s>> {
-        let class: &'s RegisteredClass = class.class;
-        let loops: &'s [LoopSpec] = check.loops.as_ref().map_or(&[], |loops| &loops.specs);
-        let make = || {
-            let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
-            let published = class.declaration().publishes.iter().chain(of_loops);
-            Rc::new(ClassView {
-                name: &class.declaration().name,
-                declaration: class.declaration_json(),
-                extends: class.extended_json().collect(),
-                publishes: published.map(|topic| topic.name.as_str()).collect(),
-                loops: loops.iter().map(|one| one.class.name()).collect(),
-            })
-        };
-        Rc::clone(self.0.entry((class, loops.as_ptr())).or_insert_with(make))
-    }
+/// The view of the class of a component.
+fn class_view<'s>(
+    known: &mut ClassViews<'s>,
+    class: &ClassIndex<'s>,
+    check: &'s ComponentCheck<'_>,
+) -> Rc<ClassView<'s>> {
+    let class: &'s RegisteredClass = class.class;
+    let loops: &'s [LoopSpec] = check.loops.as_ref().map_or(&[], |loops| &loops.specs);
+    let make = || {
+        let of_loops = loops.iter().flat_map(|one| &one.class.declaration().publishes);
+        let published = class.declaration().publishes.iter().chain(of_loops);
+        Rc::new(ClassView {
+            name: &class.declaration().name,
+            declaration: class.declaration_json(),
+            extends: class.extended_json().collect(),
+            publishes: published.map(|topic| topic.name.as_str()).collect(),
+            loops: loops.iter().map(|one| one.class.name()).collect(),
+        })
+    };
+    Rc::clone(known.entry((class, loops.as_ptr())).or_insert_with(make))
 }

@@ -14,7 +14,6 @@ use crate::check::tasks::Task;
 use crate::check::tasks::renames::Renamed;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
-use crate::syntax::escaped;
 
 /// The places of a component, and of the names of its topics.
 pub(crate) struct ComponentPlaces {
@@ -44,14 +43,14 @@ pub(crate) fn places(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], report: &
 pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mut Report<'_>) {
     let traffic = Traffic::of(assembly);
     let all = All { assembly, places };
-    let similar = Similar::of(&traffic, |topic| topic.ends().all(|end| all.is_renamed(end, topic)));
+    let mut similar = Similar::of(&traffic, |topic| topic.ends().all(|end| all.is_renamed(end, topic)));
     let is_lone = |topic: &&TrafficTopic| topic.writers.is_empty() || topic.readers.is_empty();
     let mut lone: HashMap<&str, &TrafficTopic> =
         traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
     let mut told: HashSet<&str> = HashSet::new();
     for topic in &traffic.topics {
         if lone.contains_key(topic.name.as_str())
-            && let Some(meant) = meant(topic, &similar)
+            && let Some(meant) = meant(topic, &mut similar)
         {
             for name in [topic.name.as_str(), meant.name.as_str()] {
                 lone.remove(name);
@@ -62,7 +61,7 @@ pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mu
     }
     for topic in &traffic.topics {
         if !told.contains(topic.name.as_str())
-            && let Some(meant) = left(topic, &similar).or_else(|| all.missed(topic, &similar))
+            && let Some(meant) = left(topic, &mut similar).or_else(|| all.missed(topic, &mut similar))
         {
             all.alone(topic, meant, report);
         }
@@ -112,7 +111,7 @@ impl All<'_> {
     /// The topic that those who use this one meant by a `topicRename`: of the same messages, with nearly its name,
     /// which is the one that it has without renaming. Names that only add something to another one, or differ in their
     /// numbers, keep parts of a fleet apart.
-    fn missed<'t>(&self, topic: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
+    fn missed<'t>(&self, topic: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t TrafficTopic> {
         if topic.writers.is_empty() || topic.readers.is_empty() || !topic.ends().all(|end| self.is_renamed(end, topic))
         {
             return None;
@@ -158,7 +157,7 @@ impl All<'_> {
         one = one.label(there, format!("{do_not} {}", quoted(&meant.name)));
         let is_renamed = at != self.places[end.component].name;
         report.push(match is_renamed {
-            true => one.suggest(crate::check::report::replacing(&lone.name, &meant.name), at, escaped(&meant.name)),
+            true => one.replace(&lone.name, at, &meant.name),
             false => one.help("`topicRename` gives topics other names"),
         });
     }
@@ -245,7 +244,7 @@ impl All<'_> {
 
 /// The topic that the name of a lone one probably stands for: of the same messages, with the end that the lone one
 /// lacks.
-fn meant<'t>(lone: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
+fn meant<'t>(lone: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t TrafficTopic> {
     similar.nearest(lone, |other| match lone.writers.is_empty() {
         true => !other.topic.writers.is_empty(),
         false => !other.topic.readers.is_empty(),
@@ -254,7 +253,7 @@ fn meant<'t>(lone: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTo
 
 /// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with
 /// nearly its name, and used by several others.
-fn left<'t>(topic: &TrafficTopic, similar: &Similar<'t>) -> Option<&'t TrafficTopic> {
+fn left<'t>(topic: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t TrafficTopic> {
     let only = topic.writers.first()?.component;
     if topic.readers.is_empty() || topic.ends().any(|end| end.component != only) {
         return None;

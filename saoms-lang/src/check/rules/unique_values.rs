@@ -1,7 +1,6 @@
 //! Values that must not occur twice in a fleet.
 
 use std::collections::HashMap;
-use std::fmt;
 
 use saoms_api::host::PropertyValue;
 use saoms_api::host::declaration::{PropertyKind, Scalar, parse_scalar};
@@ -11,20 +10,19 @@ use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Member};
 use crate::check::properties::given_values::PropertyValues;
 use crate::check::properties::property_table::TableEntry;
-use crate::check::report::{Report, replacing};
+use crate::check::report::Report;
 use crate::check::unfolding::replica_plan::with_index;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
-use crate::syntax::escaped;
 
 /// The values of a component that others must not have, where each is, and which property has it.
 fn uses<'u, 'r>(
     member: &'u Member<'_>,
     class: &'u ClassIndex<'r>,
     given: &'u PropertyValues,
-) -> impl Iterator<Item = (Canonical, Location, &'u TableEntry<'r>)> {
+) -> impl Iterator<Item = (SmolStr, Location, &'u TableEntry<'r>)> {
     let table = class.table.unique.iter().filter(|_| !member.is_partial);
     table.filter_map(move |&place| {
         let entry = &class.table.all[place];
@@ -32,7 +30,7 @@ fn uses<'u, 'r>(
             Some(given) => (given.value, given.place),
             None => (class.table.preset(&entry.name)?, member.component.name.location),
         };
-        Some((Canonical::of(value, entry.main)?, place, entry))
+        Some((canonical(value, entry.main)?, place, entry))
     })
 }
 
@@ -40,9 +38,9 @@ fn uses<'u, 'r>(
 #[derive(Default)]
 pub(crate) struct Unique<'a> {
     /// The first user of each value of a property with a word, which says what must have a value of its own.
-    words: HashMap<(&'a str, Canonical), User>,
+    words: HashMap<(&'a str, SmolStr), User>,
     /// The first task with each ID, and the word of its property.
-    tasks: HashMap<Canonical, (User, Option<&'a str>)>,
+    tasks: HashMap<SmolStr, (User, Option<&'a str>)>,
     pub(crate) repeated: RepeatedValues,
 }
 
@@ -104,7 +102,7 @@ impl<'a> Unique<'a> {
 
 /// Reports a value that a word forbids to share.
 fn shared(
-    value: &Canonical,
+    value: &str,
     word: &str,
     [first, user]: [User; 2],
     declaration: &PropertyDeclaration,
@@ -117,7 +115,7 @@ fn shared(
         quoted(earlier.path()),
         quoted(later.path()),
         quoted(&declaration.name),
-        quoted(&value.to_string())
+        quoted(value)
     );
     let one = Diagnostic::new(&codes::NOT_UNIQUE, user.place, message);
     let one = one.help(format!("every {word} needs its own"));
@@ -130,11 +128,8 @@ fn shared(
         }
         // Of replicas.
         true if later.instance.is_some() && is_own => {
-            let meant = match value {
-                Canonical::Integer(_) => "${index}".to_owned(),
-                Canonical::Text(text) => with_index(text),
-            };
-            one.suggest(replacing(&value.to_string(), &meant), user.place, escaped(&meant))
+            let meant = if declaration.is_number() { "${index}".to_owned() } else { with_index(value) };
+            one.replace(value, user.place, &meant)
         }
         // In a composite that is there several times.
         true => one.help("both have it from here: let each get its own from outside, by a property or an index"),
@@ -143,9 +138,9 @@ fn shared(
 }
 
 /// Tasks that share an ID run all the same, but people cannot tell them apart.
-fn task(value: &Canonical, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut Report<'_>) {
+fn task(value: &str, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let [earlier, later] = [first, user].map(|one| quoted(fleet.members[one.member].path()));
-    let message = format!("components {earlier} and {later} share the ID {}", quoted(&value.to_string()));
+    let message = format!("components {earlier} and {later} share the ID {}", quoted(value));
     report.push(
         Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message)
             .label(first.place, "the first")
@@ -154,37 +149,16 @@ fn task(value: &Canonical, [first, user]: [User; 2], fleet: &Fleet<'_>, report: 
 }
 
 /// The canonical form of a value: `07` and `7` are one number.
-#[derive(Clone, PartialEq, Eq, Hash)]
-enum Canonical {
-    Integer(i64),
-    Text(SmolStr),
-}
-
-impl Canonical {
-    fn of(value: &PropertyValue, declaration: &PropertyDeclaration) -> Option<Self> {
-        let text = value.as_text()?;
-        if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
-            return Some(Self::Text(text.trim().into()));
-        }
-        Some(match parse_scalar(declaration.kind, text)? {
-            // Of larger ones there are few.
-            Scalar::Integer(number) => match i64::try_from(number) {
-                Ok(number) => Self::Integer(number),
-                Err(_) => Self::Text(number.to_string().into()),
-            },
-            Scalar::Float(number) => Self::Text(number.to_string().into()),
-            Scalar::Duration(duration) => Self::Text(saoms_api::host::format_duration(duration).into()),
-            Scalar::Boolean(value) => Self::Text(value.to_string().into()),
-            Scalar::Text(text) => Self::Text(text.into()),
-        })
+fn canonical(value: &PropertyValue, declaration: &PropertyDeclaration) -> Option<SmolStr> {
+    let text = value.as_text()?;
+    if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
+        return Some(text.trim().into());
     }
-}
-
-impl fmt::Display for Canonical {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Integer(number) => number.fmt(out),
-            Self::Text(text) => text.fmt(out),
-        }
-    }
+    Some(match parse_scalar(declaration.kind, text)? {
+        Scalar::Integer(number) => number.to_string().into(),
+        Scalar::Float(number) => number.to_string().into(),
+        Scalar::Duration(duration) => saoms_api::host::format_duration(duration).into(),
+        Scalar::Boolean(value) => value.to_string().into(),
+        Scalar::Text(text) => text.into(),
+    })
 }

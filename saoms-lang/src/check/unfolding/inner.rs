@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::{MOST_DEEP, MOST_MEMBERS, Unfolding};
-use crate::check::fleet::composite_names;
+use crate::check::fleet::names;
 use crate::check::fleet::{Kind, Scope};
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -79,14 +79,14 @@ impl<'a> Unfolding<'a> {
         match link {
             Link::To(place) => {
                 let composite = &contribution.composites()[*place];
-                if !composite_names::is_exact(naming, around, composite) && self.loose.insert(naming.name.location) {
-                    report.push(composite_names::loose(naming, around, composite));
+                if !names::is_exact(naming, around, composite) && self.loose.insert(naming.name.location) {
+                    report.push(names::loose(naming, around, composite));
                 }
                 Some((*place, composite))
             }
             Link::Faulty => None,
             Link::Missing(missing) => {
-                report.push(composite_names::not_found(naming, missing, around, self.options.assume_classes));
+                report.push(names::not_found(naming, missing, around, self.options.assume_classes));
                 None
             }
         }

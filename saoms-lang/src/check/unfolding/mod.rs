@@ -13,7 +13,7 @@ pub(crate) mod replica_plan;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use crate::check::fleet::unique_names;
+use crate::check::fleet::names;
 use crate::check::fleet::{Fleet, Scope, Unit};
 use crate::check::options::Options;
 use crate::check::report::Report;
@@ -66,7 +66,7 @@ pub(crate) fn unfold<'a>(
         replicas_left: MOST_REPLICAS,
         known: Vec::new(),
     };
-    let again = unique_names::composites(asked_for, report);
+    let again = names::composites(asked_for, report);
     let included = included(contribution);
     for (place, composite) in asked_for.iter().enumerate() {
         // It stands where it is included.
@@ -77,7 +77,7 @@ pub(crate) fn unfold<'a>(
         }
     }
     let fleet = unfolding.fleet;
-    unique_names::paths(&fleet, report);
+    names::paths(&fleet, report);
     fleet
 }
 

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use super::expression_scope::Names;
 use super::replica::Instance;
-use crate::check::fleet::name_pattern::is_like;
+use crate::check::fleet::is_like;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::expression::{
@@ -287,7 +287,7 @@ fn is_count_misread(
     if is_near {
         let why =
             format!("{} in it says how many replicas there are, and they cannot be made without", quoted(meant.name()));
-        report.escalate(&codes::NAMESPACE_NEAR, file, &why);
+        report.diagnostics().escalate(&codes::NAMESPACE_NEAR, file, &why);
     }
     is_near
 }

@@ -84,39 +84,33 @@ pub(crate) fn cycles(nodes: usize, edges: &[(usize, usize)], mut found: impl FnM
         Open(usize),
         Done,
     }
-    // The edges of all nodes in order, and where those of each start.
-    let mut starts = vec![0; nodes + 1];
-    edges.iter().for_each(|(from, _)| starts[from + 1] += 1);
-    for node in 0..nodes {
-        starts[node + 1] += starts[node];
+    let mut leaving: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+    for (edge, (from, _)) in edges.iter().enumerate() {
+        leaving[*from].push(edge);
     }
-    let mut leaving: Vec<usize> = (0..edges.len()).collect();
-    leaving.sort_by_key(|edge| edges[*edge].0);
     let mut states = vec![State::New; nodes];
     // Nodes from the start of a walk, each with its next edge, and the edges between them.
     let mut path: Vec<(usize, usize)> = Vec::new();
     let mut walked: Vec<usize> = Vec::new();
     for start in 0..nodes {
-        if states[start] != State::New || starts[start] == starts[start + 1] {
+        if states[start] != State::New {
             continue;
         }
-        path.push((start, starts[start]));
+        path.push((start, 0));
         states[start] = State::Open(0);
         while let Some((node, next)) = path.last_mut() {
-            let node = *node;
-            if *next == starts[node + 1] {
-                states[node] = State::Done;
+            let Some(&edge) = leaving[*node].get(*next) else {
+                states[*node] = State::Done;
                 path.pop();
                 walked.pop();
                 continue;
-            }
-            let edge = leaving[*next];
+            };
             let to = edges[edge].1;
             *next += 1;
             match states[to] {
                 State::New => {
                     states[to] = State::Open(path.len());
-                    path.push((to, starts[to]));
+                    path.push((to, 0));
                     walked.push(edge);
                 }
                 State::Open(place) => {

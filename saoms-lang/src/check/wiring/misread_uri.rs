@@ -3,11 +3,10 @@
 use super::offer::Side;
 use super::uri::parts;
 use crate::check::fleet::Fleet;
-use crate::check::report::{Report, list, replacing};
+use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::expression::pattern;
 use crate::source::{Location, Text};
-use crate::syntax::escaped;
 
 /// The meaning of a URI, as far as it is known, and the reason why the URI does not say it.
 pub(crate) struct Misread {
@@ -20,7 +19,7 @@ impl Misread {
     pub(crate) fn add_to(self, one: Diagnostic, text: &Text) -> Diagnostic {
         let one = one.help(self.help);
         match self.meant {
-            Some(meant) => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),
+            Some(meant) => one.replace(text, text.location, &meant),
             None => one,
         }
     }
@@ -102,7 +101,7 @@ pub(crate) fn unknown_component(
         let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help);
         return match Some(meant) == own {
             true => one,
-            false => one.suggest(replacing(name, meant), at, escaped(meant)),
+            false => one.replace(name, at, meant),
         };
     }
     // A reference of a composite can stand for those of all replicas.

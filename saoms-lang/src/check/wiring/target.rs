@@ -5,13 +5,12 @@ use super::offer::{Offer, Side};
 use super::uri::{Uri, is_address};
 use crate::check::fleet::Fleet;
 use crate::check::options::Options;
-use crate::check::report::{Report, list, replacing};
+use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
 use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
-use crate::syntax::escaped;
 
 /// A service of a component of a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -95,9 +94,7 @@ pub(crate) fn target(
             let is_fitting = |offer: Offer| interface.is_some_and(|interface| fits(offer, interface, fleet));
             let mut fitting = offers.iter().filter(|(_, offer)| is_fitting(*offer));
             report.push(match (fitting.next(), fitting.next()) {
-                (Some((fitting, _)), None) if one.suggestions.is_empty() => {
-                    one.suggest(replacing(name, fitting), at, escaped(fitting))
-                }
+                (Some((fitting, _)), None) if one.suggestions.is_empty() => one.replace(name, at, fitting),
                 _ => one,
             });
             return Target::Wrong;
@@ -117,7 +114,7 @@ pub(crate) fn target(
         let offers = fleet.offers(member);
         let fitting = offers.iter().find(|(_, offer)| fits(*offer, interface, fleet));
         report.push(match fitting {
-            Some((fitting, _)) => one.suggest(replacing(name, fitting), at, escaped(fitting)),
+            Some((fitting, _)) => one.replace(name, at, fitting),
             None => one.help(offered(member, interface, fleet)),
         });
         return Target::Wrong;

@@ -3,7 +3,7 @@
 use super::Wires;
 use super::promotion::ReferenceId;
 use super::uri::parts;
-use crate::check::report::{Report, replacing};
+use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::Multiplicity;
 use crate::source::{Location, Text};
@@ -61,14 +61,11 @@ impl<'f> Wires<'f, '_> {
         let is_there = |name: &String| self.fleet.find(scope, name).is_some_and(|one| members.contains(&one));
         if mine.as_ref().is_some_and(is_there) {
             let meant = format!("{}{rest}", component.replacen('*', "${index}", 1));
-            return one.suggest(replacing(text, &meant), text.location, meant);
+            return one.replace(text, text.location, &meant);
         }
         let names = members.iter().take(SHOWN).map(|member| &self.fleet.members[*member].component.name);
         let names = names.map(|name| format!("{name}{rest}"));
-        names.fold(one, |one, meant| {
-            let meant = meant.clone();
-            one.suggest(replacing(text, &meant), text.location, meant)
-        })
+        names.fold(one, |one, meant| one.replace(text, text.location, &meant))
     }
 
     /// The text of a group of replicas at this place among what a reference is given, here or around, and the replicas.

@@ -7,10 +7,9 @@ use std::ops::Range;
 use super::misread_uri::{inside, misread, unknown_component};
 use super::offer::Side;
 use crate::check::fleet::Fleet;
-use crate::check::report::{Report, replacing};
+use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Text;
-use crate::syntax::escaped;
 
 /// The component of a URI, and the name behind it.
 pub(crate) fn parts(uri: &str) -> (&str, Option<&str>) {
@@ -62,9 +61,7 @@ impl<'t> Uri<'t> {
             });
             report.push(match promoted {
                 Some(promoted) => promoted.add_to(one, text),
-                None if is_known && named.len() <= most => {
-                    one.suggest(replacing(text, &meant), text.location, escaped(&meant))
-                }
+                None if is_known && named.len() <= most => one.replace(text, text.location, &meant),
                 None => one.help(format!("write {form}")),
             });
             return None;
