@@ -8,7 +8,7 @@ use super::finder::Finder;
 use super::index::is_of_definitions;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::limits::FOLDER_ENTRIES;
-use crate::load::description::{Description, Entry};
+use crate::load::description::{Description, Entry, Kind};
 
 /// The endings of files that hold no names that others could import, or of which they are known.
 const USUAL: &[&str] = &["composite", "componentType", "csv", "txt", "md", "properties"];
@@ -27,14 +27,12 @@ impl Finder {
             return;
         }
         let own: BTreeSet<String> = self.index.heads(root).into_iter().map(|one| one.namespace).collect();
-        let named = |entries: &[Entry]| -> BTreeSet<String> {
-            entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
-        };
-        let imported = named(&description.imports);
         for entry in &description.exports {
-            let Some(namespace) = entry.namespace() else { continue };
+            let Some(namespace) = entry.namespace().filter(|one| !own.is_empty() && !own.contains(*one)) else {
+                continue;
+            };
             // What is imported can be given on.
-            if own.is_empty() || own.contains(namespace) || imported.contains(namespace) {
+            if description.imports.iter().any(|entry| entry.is(Kind::Namespace, namespace)) {
                 continue;
             }
             let is_near = nearest(namespace, own.iter().map(String::as_str)).is_some();

@@ -149,11 +149,11 @@ impl Imports {
         _ = self.description(root, context);
         let mut all = self.others(root, Kind::Namespace, namespace);
         all.truncate(FOLDERS_BESIDE);
-        let exported = |other: PathBuf| {
+        let exports = |other: PathBuf| {
             let exports = namespaces(&self.description(&other, context)?.exports);
             Some((other, exports))
         };
-        all.into_iter().filter_map(exported).collect()
+        all.into_iter().filter_map(exports).collect()
     }
 
     /// The contributions that that in `root` may import this from, the likeliest first.
@@ -185,13 +185,11 @@ fn namespaces(entries: &[Entry]) -> Vec<String> {
 pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (sources, diagnostics) = (&mut Sources::with_open(open.clone()), &mut Diagnostics::new());
     let context = &mut ReadContext { max_size: MAX_SIZE, sources, diagnostics };
-    let (mut imports, mut index) = (Imports::default(), Index::new(open.clone()));
-    let root = index::root(folder);
-    let wanted = imports.description(&root, context).map_or_else(Vec::new, |one| namespaces(&one.imports));
+    let (mut imports, mut index, root) = (Imports::default(), Index::new(open.clone()), index::root(folder));
     let mut all = Vec::new();
-    for namespace in wanted {
-        for other in &imports.exporters(&root, Kind::Namespace, &namespace, context) {
-            let composites = index.heads(other).into_iter().filter(|one| one.namespace == namespace);
+    for namespace in imports.description(&root, context).map_or_else(Vec::new, |one| namespaces(&one.imports)) {
+        for other in imports.exporters(&root, Kind::Namespace, &namespace, context) {
+            let composites = index.heads(&other).into_iter().filter(|one| one.namespace == namespace);
             all.extend(composites.map(|one| one.path));
         }
     }
@@ -203,17 +201,15 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
 pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (sources, diagnostics) = (&mut Sources::with_open(open.clone()), &mut Diagnostics::new());
     let context = &mut ReadContext { max_size: MAX_SIZE, sources, diagnostics };
-    let (mut imports, mut index) = (Imports::default(), Index::new(open.clone()));
-    let root = index::root(folder);
+    let (mut imports, mut index, root) = (Imports::default(), Index::new(open.clone()), index::root(folder));
     let given = imports.description(&root, context).map_or_else(Vec::new, |one| namespaces(&one.exports));
     let own = identity(&root);
-    let mut others: Vec<PathBuf> = Vec::new();
-    if !given.is_empty() {
-        let beside = beside(&root);
-        others.extend(beside.iter().filter(|one| one.identity != own).map(|one| one.folder.clone()));
-    }
-    others.retain(|other| given.iter().any(|what| imports.imports(other, Kind::Namespace, what, context)));
-    others.iter().flat_map(|other| index.contents(other).composites).collect()
+    let mut others = beside(&root);
+    others.retain(|other| {
+        let is_given = |what: &String| imports.imports(&other.folder, Kind::Namespace, what, context);
+        other.identity != own && given.iter().any(is_given)
+    });
+    others.iter().flat_map(|other| index.contents(&other.folder).composites).collect()
 }
 
 /// The folders of contributions in the folder that a contribution is in.

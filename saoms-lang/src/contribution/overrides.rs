@@ -138,18 +138,12 @@ fn lines(file: FileId, text: &str, diagnostics: &mut Diagnostics) -> Vec<Vec<Tex
 fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (Text, usize) {
     let is_end = |c: char| matches!(c, ',' | '\n' | '\r');
     let end_of = |from: usize| text[from..].find(is_end).map_or(text.len(), |length| from + length);
-    // What stands there without white space at its ends, and where.
-    let trimmed = |from: usize, end: usize| {
-        let value = text[from..end].trim();
-        let start = if value.is_empty() { from } else { end - text[from..end].trim_start().len() };
-        (value, Span::new(start as u32, (start + value.len()) as u32).in_file(file))
-    };
     let end = end_of(at);
-    let (value, place) = trimmed(at, end);
-    if !value.starts_with('"') {
-        return (Text::new(value.into(), place), end);
+    let plain = Text::part_of(file, text, &text[at..end]);
+    if !plain.starts_with('"') {
+        return (plain, end);
     }
-    let start = place.span.start as usize;
+    let start = plain.location.span.start as usize;
     let mut value = String::new();
     let mut inside = start + 1;
     loop {
@@ -168,9 +162,10 @@ fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (
         inside += 1;
     }
     let end = end_of(inside);
-    let (behind, place) = trimmed(inside, end);
+    let behind = Text::part_of(file, text, &text[inside..end]);
     if !behind.is_empty() {
-        let one = Diagnostic::new(&codes::OVERRIDES, place, format!("{} behind a closing `\"`", quoted(behind)));
+        let message = format!("{} behind a closing `\"`", quoted(&behind));
+        let one = Diagnostic::new(&codes::OVERRIDES, behind.location, message);
         diagnostics.push(one.help("a `\"` in a value between two of them is written twice"));
     }
     let span = Span::new(start as u32 + 1, inside as u32 - 1).in_file(file);

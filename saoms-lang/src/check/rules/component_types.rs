@@ -5,10 +5,10 @@ use crate::check::fleet::Fleet;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::properties::foreign;
 use crate::check::report::Report;
+use crate::check::rules::contracts::unknown;
 use crate::check::rules::repeated_names::Owner;
-use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{ComponentType, Part};
-use crate::source::Text;
 
 impl<'a> Fleet<'a> {
     /// The component type beside the implementation of a component.
@@ -65,25 +65,17 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 
 /// Reports what a component type says of a class that is not so.
 fn of_class(described: &ComponentType, class: &ClassIndex<'_>, report: &mut Report<'_>) {
-    let of = quoted(class.class.name());
-    let mut unknown = |code: &'static Code, (what, all): (&str, &str), name: &Text, known: &[&str]| {
-        if !name.is_empty() && !known.contains(&name.as_str()) {
-            let message = format!("class {of} has no {what} {}", quoted(name));
-            let known = (&*format!("its {all} are"), known.iter().copied());
-            let one = report.unknown(code, name.location, message, name, known);
-            report.push(one);
-        }
-    };
-    let services: Vec<&str> = class.services.iter().map(|one| one.name.as_str()).collect();
-    let references: Vec<&str> = class.references.iter().map(|one| one.name.as_str()).collect();
-    let properties: Vec<&str> = class.table.names().collect();
+    let of = format!("class {}", quoted(class.class.name()));
+    let names: Vec<&str> = class.services.iter().map(|one| one.name.as_str()).collect();
     for one in &described.services {
-        unknown(&codes::UNKNOWN_SERVICE, ("service", "services"), &one.name, &services);
+        unknown(&codes::UNKNOWN_SERVICE, ("service", "services"), &one.name, &of, &names, report);
     }
+    let names: Vec<&str> = class.references.iter().map(|one| one.name.as_str()).collect();
     for one in &described.references {
-        unknown(&codes::UNKNOWN_REFERENCE, ("reference", "references"), &one.name, &references);
+        unknown(&codes::UNKNOWN_REFERENCE, ("reference", "references"), &one.name, &of, &names, report);
     }
+    let names: Vec<&str> = class.table.names().collect();
     for one in &described.properties {
-        unknown(&codes::UNKNOWN_PROPERTY, ("property", "properties"), &one.name, &properties);
+        unknown(&codes::UNKNOWN_PROPERTY, ("property", "properties"), &one.name, &of, &names, report);
     }
 }

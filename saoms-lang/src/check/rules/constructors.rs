@@ -18,9 +18,9 @@ use saoms_api::host::{PropertyValue, contain::contained};
 use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
-/// The components that some values are not known of, for faults that are reported: `unsure` are the places of these
-/// properties. Told is what the constructor finds about the others whichever values those have, from one end of what is
-/// allowed to the other, so that a wrong value has no consequences.
+/// The judgement on a component of which some values are not known, for faults that are reported: `unsure` are the places
+/// of these properties. Told is what the constructor finds about the others whichever values those have, from one end of
+/// what is allowed to the other, so that a wrong value has no consequences.
 fn partly(
     subject: Subject<'_>,
     class: &ClassIndex<'_>,
@@ -28,15 +28,10 @@ fn partly(
     repeated: &RepeatedValues,
     report: &mut Report<'_>,
 ) {
+    let construct = |values: &[(SmolStr, PropertyValue)]| class.class.construct(values).map(drop);
     let unsure: Vec<&PropertyDeclaration> = unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
     if unsure.is_empty() {
-        return judge(
-            || class.class.construct(subject.values).map(drop),
-            subject,
-            class.class.name(),
-            repeated,
-            report,
-        );
+        return judge(|| construct(subject.values), subject, class.class.name(), repeated, report);
     }
     let ends: Option<Vec<[String; 2]>> = unsure.iter().map(|one| ends(one)).collect();
     let Some(ends) = ends else { return };
@@ -53,9 +48,7 @@ fn partly(
     }
     let mut found: Option<Vec<Finding>> = None;
     for values in tries.iter().rev() {
-        let Err(failure) = contained(|| class.class.construct(values).map(drop)).and_then(|result| result) else {
-            return;
-        };
+        let Err(failure) = contained(|| construct(values)).and_then(|result| result) else { return };
         match &mut found {
             None => found = Some(failure.findings().to_vec()),
             Some(found) => found.retain(|one| failure.findings().contains(one)),

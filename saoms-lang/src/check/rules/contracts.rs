@@ -55,7 +55,7 @@ fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
                     continue;
                 }
                 let names = fleet.service_names(member).unwrap_or_default();
-                unknown(&codes::UNKNOWN_SERVICE, "service", name, &whose, names.iter().copied(), report);
+                unknown(&codes::UNKNOWN_SERVICE, ("service", "services"), name, &whose, &names, report);
             }
         }
         if fleet.class_of(member).is_some() {
@@ -93,7 +93,7 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
                 report.push(one.label(inner.main().name.location, "this one").help(help));
                 continue;
             }
-            unknown(&codes::UNKNOWN_REFERENCE, "reference", name, &whose, names.iter().copied(), report);
+            unknown(&codes::UNKNOWN_REFERENCE, ("reference", "references"), name, &whose, &names, report);
         }
     }
 }
@@ -115,19 +115,21 @@ fn swapped(service: &ServiceElement, whose: &str, document: &Document, report: &
     report.push(one.suggest_edits(replacing(element.name(), &tag), edits.collect()));
 }
 
-fn unknown<'n>(
+/// Reports the name of a part that is not among those of a kind, which are called `all`.
+pub(crate) fn unknown(
     code: &'static Code,
-    what: &str,
+    (what, all): (&str, &str),
     name: &Text,
     whose: &str,
-    known: impl Iterator<Item = &'n str> + Clone,
+    known: &[&str],
     report: &mut Report<'_>,
 ) {
-    if name.is_empty() {
+    if name.is_empty() || known.contains(&name.as_str()) {
         return;
     }
     let message = format!("{whose} has no {what} {}", quoted(name));
-    let one = report.unknown(code, name.location, message, name, (&format!("its {what}s are"), known));
+    let known = (&*format!("its {all} are"), known.iter().copied());
+    let one = report.unknown(code, name.location, message, name, known);
     report.push(one);
 }
 

@@ -152,11 +152,10 @@ impl All<'_> {
             quoted(&lone.name),
             quoted(&meant.name)
         );
-        let (at, there) = (self.at(end, lone), self.at(other, meant));
-        let mut one = Diagnostic::new(&codes::TOPIC_NEAR, at, message);
-        one = one.label(there, format!("{do_not} {}", quoted(&meant.name)));
-        let is_renamed = at != self.places[end.component].name;
-        report.push(match is_renamed {
+        let at = self.at(end, lone);
+        let one = Diagnostic::new(&codes::TOPIC_NEAR, at, message)
+            .label(self.at(other, meant), format!("{do_not} {}", quoted(&meant.name)));
+        report.push(match self.is_renamed(end, lone) {
             true => one.replace(&lone.name, at, &meant.name),
             false => one.help("`topicRename` gives topics other names"),
         });

@@ -45,8 +45,7 @@ pub(crate) fn service(
     fleet: &Fleet<'_>,
     report: &mut Report<'_>,
 ) {
-    if service.interface().is_some()
-        && let Offer::Service(provider) = fleet.offer(member, name)
+    if let Offer::Service(provider) = fleet.offer(member, name)
         && let Some(declared) = fleet.interface_of(provider)
     {
         interface::check(service.interface(), declared, &service.name, "ASM60005", report);

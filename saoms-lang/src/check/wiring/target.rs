@@ -8,7 +8,6 @@ use crate::check::options::Options;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
-use crate::model::Binding;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
 
@@ -137,15 +136,14 @@ fn bound(
     let component = fleet.members[member].component;
     let declared = component.service(name).map_or(&[][..], |service| service.bindings());
     // A binding without a name has that of its service, and a service without bindings has one of SCA.
-    let called = |known: &'_ Binding| known.name.as_ref().map_or(name, |name| name.as_str()) == *binding;
-    if declared.iter().any(called) || declared.is_empty() && *binding == name {
+    let names = declared.iter().map(|known| known.name.as_ref().map_or(name, |name| name.as_str()));
+    let known: Vec<&str> = if declared.is_empty() { vec![name] } else { names.collect() };
+    if known.contains(binding) {
         return true;
     }
     let at = report.part(text, at.clone());
     let message =
         format!("service {} of component {} has no binding {}", quoted(name), quoted(&component.name), quoted(binding));
-    let known = declared.iter().map(|known| known.name.as_ref().map_or(name, |name| name.as_str()));
-    let known: Vec<&str> = if declared.is_empty() { vec![name] } else { known.collect() };
     let known = ("its bindings are", known.iter().copied());
     let one = report.unknown(&codes::UNKNOWN_BINDING, at, message, binding, known);
     report.push(one);

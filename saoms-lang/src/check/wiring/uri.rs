@@ -146,33 +146,25 @@ pub(crate) fn is_address(text: &str) -> bool {
 /// Ends of wires that groups of replicas may come to: a group that calls a group has as many as the product of both.
 const MOST_ENDS: usize = 1_000_000;
 
-/// The number of more there may be.
+/// The number of them so far.
+#[derive(Default)]
 pub(crate) struct WireBudget(Cell<usize>);
-
-impl Default for WireBudget {
-    fn default() -> Self {
-        Self(Cell::new(MOST_ENDS))
-    }
-}
 
 impl WireBudget {
     /// True if there may be as many more as this target or source stands for. That there are too many is reported,
     /// once.
     pub(crate) fn take(&self, text: &Text, scope: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
         let Some(group) = fleet.group(scope, parts(text).0) else { return true };
-        let left = self.0.get();
-        let (more, is_enough) = (left.saturating_sub(group.len()), left > group.len());
-        self.0.set(more);
-        if left > 0 && !is_enough {
-            self.0.set(0);
-            let message = format!("groups of replicas come to more than {MOST_ENDS} ends of wires");
-            let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message);
-            report.push(
-                one.help(
-                    "each replica of a group that calls a group has a wire to each of that: is this what is meant?",
-                ),
-            );
+        let before = self.0.get();
+        self.0.set(before.saturating_add(group.len()));
+        if self.0.get() < MOST_ENDS {
+            return true;
         }
-        is_enough
+        if before < MOST_ENDS {
+            let message = format!("groups of replicas come to more than {MOST_ENDS} ends of wires");
+            let help = "each replica of a group that calls a group has a wire to each of that: is this what is meant?";
+            report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message).help(help));
+        }
+        false
     }
 }
