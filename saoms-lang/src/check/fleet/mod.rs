@@ -4,6 +4,7 @@ pub(crate) mod classes;
 pub(crate) mod names;
 pub(crate) mod similar_names;
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
@@ -41,6 +42,8 @@ pub(crate) struct Fleet<'a> {
     pub(crate) is_misread: bool,
     /// The scopes of expressions in units that have any.
     pub(crate) names: Vec<Option<Rc<Names>>>,
+    /// How many more elements the paths of sources may look at.
+    pub(crate) elements_left: Rc<Cell<u64>>,
 }
 
 /// Components that can be wired to each other.

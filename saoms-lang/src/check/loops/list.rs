@@ -142,24 +142,20 @@ fn by_default<'a>(
 /// What one element says has to make sense: one that is removed cannot be anything else, and nothing stands at two
 /// places.
 fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
-    let contradiction = |at, message: String, other, what: &str| {
-        Diagnostic::new(&codes::LOOP_CONTRADICTION, at, message).label(other, what)
-    };
+    let code = &codes::LOOP_CONTRADICTION;
     if let Some(remove) = one.remove.filter(|remove| remove.value) {
-        let attributes = [("class", &one.class), ("before", &one.before), ("after", &one.after)];
-        let mut further = attributes
-            .into_iter()
-            .filter_map(|(name, value)| Some((format!("`{name}`"), value.as_ref()?.location)))
-            .chain(one.properties.first().map(|property| ("properties".to_owned(), property.tag())));
-        let Some((what, at)) = further.next() else { return true };
+        let attributes = [("`class`", &one.class), ("`before`", &one.before), ("`after`", &one.after)];
+        let given = attributes.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?.location)));
+        let properties = one.properties.first().map(|property| ("properties", property.tag()));
+        let Some((what, at)) = given.chain(properties).next() else { return true };
         let message = format!("the loop {} is removed, and {what} given", quoted(&one.name));
-        let one = contradiction(at, message, remove.location, "removed here");
+        let one = Diagnostic::new(code, at, message).label(remove.location, "removed here");
         report.push(one.help("what is removed has no class, no place and no properties"));
         return false;
     }
     if let (Some(before), Some(after)) = (&one.before, &one.after) {
         let message = format!("the loop {} is given two places", quoted(&one.name));
-        let one = contradiction(after.location, message, before.location, "the other one");
+        let one = Diagnostic::new(code, after.location, message).label(before.location, "the other one");
         report.push(one.help("a loop stands directly before another, or directly after another: keep one"));
         return false;
     }

@@ -13,7 +13,6 @@ use crate::assembly::LoopSpec;
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Kind, Member};
 use crate::check::options::Options;
-use crate::check::properties::conversion::Conversion;
 use crate::check::properties::given_values::ValuePlace;
 use crate::check::properties::property_table::PropertyTable;
 use crate::check::properties::{self, Giver};
@@ -28,7 +27,6 @@ use crate::registry::{RegisteredLoop, Registry};
 pub(crate) struct Resolved<'a> {
     /// In their order; components that say nothing about them share those of their class.
     pub(crate) specs: Arc<[LoopSpec]>,
-    /// Those that the composite says something about.
     changed: Vec<Changed<'a>>,
 }
 
@@ -60,17 +58,6 @@ struct Planned<'a> {
     element: Option<&'a LoopElement>,
 }
 
-/// A place among the classes, and the value that chooses among the lists of loops that the class has.
-type Choice = (usize, Option<SmolStr>);
-
-/// The loops as they are where the composite says nothing about them.
-#[derive(Clone)]
-struct Usual {
-    /// The place of the class together with these loops.
-    with: usize,
-    specs: Arc<[LoopSpec]>,
-}
-
 /// Finds the loops of all components. The class of a component with loops becomes one that uses the topics and
 /// references of these as well.
 pub(crate) fn resolve<'a>(
@@ -80,11 +67,11 @@ pub(crate) fn resolve<'a>(
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
 ) {
-    let mut values = Conversion::default();
     // The class of each place together with these loops.
     let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
-    // The loops of components that say nothing about them.
-    let mut usual: HashMap<Choice, Usual> = HashMap::new();
+    // The loops of components that say nothing about them, with the place of their class together with these: by the
+    // place of the class alone, and the value that chooses among its lists of loops.
+    let mut usual = HashMap::new();
     for (place, check) in checks.iter_mut().enumerate() {
         let member = &fleet.members[place];
         report.about(member);
@@ -95,7 +82,7 @@ pub(crate) fn resolve<'a>(
         let class = &fleet.classes[index];
         let says_nothing = member.component.loops().is_empty();
         let choice = says_nothing.then(|| (index, list::choice(class, &check.given).map(SmolStr::new)));
-        if let Some(Usual { with, specs }) = choice.as_ref().and_then(|choice| usual.get(choice)) {
+        if let Some((with, specs)) = choice.as_ref().and_then(|choice| usual.get(choice)) {
             fleet.members[place].kind = Kind::Class(*with);
             check.loops = Some(Resolved { specs: Arc::clone(specs), changed: Vec::new() });
             continue;
@@ -113,10 +100,10 @@ pub(crate) fn resolve<'a>(
             });
             fleet.members[place].kind = Kind::Class(with);
         }
-        let resolved = resolved(&loops, &fleet.members[place], parameters, &mut values, report);
+        let resolved = resolved(&loops, &fleet.members[place], parameters, report);
         check.loops = resolved.filter(|_| is_team);
         if let (Some(choice), Some(resolved)) = (choice, &check.loops) {
-            usual.insert(choice, Usual { with, specs: Arc::clone(&resolved.specs) });
+            usual.insert(choice, (with, Arc::clone(&resolved.specs)));
         }
     }
     report.about_all();
@@ -127,22 +114,20 @@ fn resolved<'a>(
     planned: &[Planned<'a>],
     member: &Member<'a>,
     parameters: &mut Parameters<'a>,
-    values: &mut Conversion,
     report: &mut Report<'_>,
 ) -> Option<Resolved<'a>> {
     let mut specs = Vec::with_capacity(planned.len());
     let mut changed = Vec::new();
     for one in planned {
         let Some(class) = one.class else {
-            let properties = one.element.into_iter().flat_map(|element| &element.properties);
-            sources(properties, member, parameters, report);
+            one.element.into_iter().for_each(|element| sources(element, member, parameters, report));
             continue;
         };
         let mut spec = LoopSpec { name: one.name.to_owned(), class: Arc::clone(class), values: Vec::new() };
         if let Some(element) = one.element {
             let table = PropertyTable::of_loop(class);
             let giver = Giver::looping(element, member);
-            let given = properties::check(&giver, &table, parameters, values, report);
+            let given = properties::check(&giver, &table, parameters, report);
             if !given.is_sound {
                 continue;
             }
@@ -155,14 +140,9 @@ fn resolved<'a>(
     (specs.len() == planned.len()).then(|| Resolved { specs: specs.into(), changed })
 }
 
-/// Looks at where the properties of loops without a class take their values from.
-fn sources<'a>(
-    properties: impl Iterator<Item = &'a Property>,
-    member: &Member<'a>,
-    parameters: &mut Parameters<'a>,
-    report: &mut Report<'_>,
-) {
-    for source in properties.filter_map(|property| property.source()) {
+/// Looks at where the properties of a loop without a class take their values from.
+fn sources<'a>(one: &LoopElement, member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
+    for source in one.properties.iter().filter_map(Property::source) {
         let _ = parameters.resolve(member.unit, source, report);
     }
 }
@@ -170,7 +150,7 @@ fn sources<'a>(
 /// Checks the loops of a component that has no class, as far as that is possible.
 fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
     let loops = member.component.loops();
-    sources(loops.iter().flat_map(|one| &one.properties), member, parameters, report);
+    loops.iter().for_each(|one| sources(one, member, parameters, report));
     if let (Kind::Composite(_), Some(first)) = (member.kind, loops.first()) {
         let message = format!("component {} is a composite, which has no loops", quoted(&member.component.name));
         let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, first.origin.tag, message);

@@ -4,7 +4,7 @@ use super::Planned;
 use crate::check::fleet::Member;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::{Report, list};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::registry::{LoopDeclaration, Team, TeamFault};
 use crate::source::Location;
 
@@ -55,20 +55,25 @@ impl TeamDiagnostics<'_, '_> {
     }
 
     fn diagnostic(&self, fault: &TeamFault<'_>) -> Diagnostic {
+        let component = quoted(&self.member.component.name);
         match *fault {
-            TeamFault::Knowledge { at } => self.knowledge(at),
-            TeamFault::UnknownEntry { at, entry, verb } => {
+            TeamFault::Knowledge { at } => {
+                let wanted = self.loops[at].class.and_then(|class| class.declaration().knowledge.as_deref());
+                let known = self.class.class.declaration().knowledge.as_ref().map_or("", |known| &known.name);
+                let (wanted, known) = (quoted(wanted.unwrap_or_default()), quoted(known));
                 let message = format!(
-                    "the loop {} {verb} {}, and component {} has no such entry",
-                    self.name(at),
-                    quoted(entry),
-                    quoted(&self.member.component.name)
+                    "the loop {} works on the knowledge {wanted}, and component {component} has {known}",
+                    self.name(at)
                 );
+                let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, self.place_or_component(at), message);
+                one.help("it is made for components of another class")
+            }
+            TeamFault::UnknownEntry { at, entry, verb } => {
+                let (name, wanted) = (self.name(at), quoted(entry));
+                let message = format!("the loop {name} {verb} {wanted}, and component {component} has no such entry");
                 let one = Diagnostic::new(&codes::UNKNOWN_ENTRY, self.place_or_component(at), message);
-                one.help(match crate::diagnostic::nearest(entry, self.entries.iter().copied()) {
-                    Some(near) => {
-                        format!("there is {}: is the loop made for another component?", quoted(near))
-                    }
+                one.help(match nearest(entry, self.entries.iter().copied()) {
+                    Some(near) => format!("there is {}: is the loop made for another component?", quoted(near)),
                     None => format!("the entries are {}", list(self.entries.iter().copied())),
                 })
             }
@@ -80,29 +85,12 @@ impl TeamDiagnostics<'_, '_> {
             }
             TeamFault::Clash { at, entry, with } => self.clash(at, entry, with),
             TeamFault::Reference { at, reference, with } => {
-                let message = format!(
-                    "the loop {} has the reference {} with another interface",
-                    self.name(at),
-                    quoted(reference)
-                );
+                let (name, reference) = (self.name(at), quoted(reference));
+                let message = format!("the loop {name} has the reference {reference} with another interface");
                 let one = Diagnostic::new(&codes::LOOP_REFERENCE, self.place_or_component(at), message);
                 self.other(one, with, "has it as well", "the reference")
             }
         }
-    }
-
-    fn knowledge(&self, at: usize) -> Diagnostic {
-        let wanted = self.loops[at].class.and_then(|class| class.declaration().knowledge.as_deref());
-        let known = self.class.class.declaration().knowledge.as_ref().map_or("", |known| &known.name);
-        let message = format!(
-            "the loop {} works on the knowledge {}, and component {} has {}",
-            self.name(at),
-            quoted(wanted.unwrap_or_default()),
-            quoted(&self.member.component.name),
-            quoted(known)
-        );
-        let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, self.place_or_component(at), message);
-        one.help("it is made for components of another class")
     }
 
     /// Says which other loop has it, or that the class has.

@@ -2,12 +2,12 @@
 
 use saoms_api::host::PropertyValue;
 
-use super::conversion::{Conversion, Target};
-use super::given_values::{Origin, PropertyValues};
+use super::conversion::{Target, convert};
+use super::given_values::{PropertyValues, ValuePlace};
 use super::property_table::{PropertyTable, TableEntry};
 use super::{Giver, given_twice, missing};
 use crate::check::report::Report;
-use crate::check::values::parameters::{Found, Parameters, ValueSite};
+use crate::check::values::parameters::Parameters;
 use crate::check::values::raw::{Piece, Raw, raw};
 use crate::diagnostic::{Diagnostic, codes, nearest_equal, quoted};
 use crate::expression::has_expression;
@@ -21,30 +21,29 @@ pub(crate) fn check<'a>(
     giver: &Giver<'_, 'a>,
     table: &PropertyTable<'a>,
     parameters: &mut Parameters<'a>,
-    conversion: &mut Conversion,
     report: &mut Report<'_>,
 ) -> PropertyValues {
     let mut slots = Vec::new();
     slots.resize_with(table.all.len(), Slot::default);
     let (unsure, unknown) = (Vec::new(), Vec::new());
-    let mut check = PropertyCheck { giver, table, parameters, conversion, slots, unsure, unknown };
+    let mut check = PropertyCheck { giver, table, parameters, report, slots, unsure, unknown };
     for property in giver.properties {
-        check.given(property, report);
+        check.given(property);
     }
     for (default, document) in giver.defaults() {
-        check.described(default, document, report);
+        check.described(default, document);
     }
     for &place in &table.required {
-        check.required(place, report);
+        check.required(place);
     }
     check.finish()
 }
 
-struct PropertyCheck<'c, 'm, 'a> {
+struct PropertyCheck<'c, 'm, 'r, 'a> {
     giver: &'c Giver<'m, 'a>,
     table: &'c PropertyTable<'a>,
     parameters: &'c mut Parameters<'a>,
-    conversion: &'c mut Conversion,
+    report: &'c mut Report<'r>,
     /// The values of each property of the table.
     slots: Vec<Slot<'a>>,
     /// The places of properties whose values are not known, since a fault of theirs is reported.
@@ -58,14 +57,14 @@ struct PropertyCheck<'c, 'm, 'a> {
 struct Slot<'a> {
     /// The first element that gives it.
     element: Option<&'a Property>,
-    value: Option<(PropertyValue, Origin)>,
+    value: Option<(PropertyValue, ValuePlace)>,
     /// True if its `source` is right, and has no value.
     is_unset: bool,
 }
 
-impl<'a> PropertyCheck<'_, '_, 'a> {
+impl<'a> PropertyCheck<'_, '_, '_, 'a> {
     /// Checks a property that the composite gives.
-    fn given(&mut self, property: &'a Property, report: &mut Report<'_>) {
+    fn given(&mut self, property: &'a Property) {
         let (name, member) = (property.name.as_str(), self.giver.member);
         let has_open_names = member.instance.is_some_and(|one| one.partial.is_some());
         if name.is_empty() || has_open_names && has_expression(name) {
@@ -73,21 +72,21 @@ impl<'a> PropertyCheck<'_, '_, 'a> {
             return;
         }
         let Some(place) = self.table.place(name) else {
-            missing::unknown(property, self.giver, self.table, report);
+            missing::unknown(property, self.giver, self.table, self.report);
             if let Some(source) = property.source() {
-                let _ = self.parameters.resolve(member.unit, source, report);
+                let _ = self.parameters.resolve(member.unit, source, self.report);
             }
             self.unknown.push(name);
             return;
         };
         if let Some(first) = self.slots[place].element {
-            report.push(given_twice(property, first));
+            self.report.push(given_twice(property, first));
             self.unsure.push(place);
             return;
         }
         self.slots[place].element = Some(property);
-        many_of_one(property, &self.table.all[place], report);
-        if self.value(place, property, report).is_err() {
+        many_of_one(property, &self.table.all[place], self.report);
+        if self.value(place, property).is_err() {
             if property.only_text().is_some_and(|text| has_expression(text)) {
                 self.parameters.leave_open(member.unit);
             }
@@ -101,71 +100,58 @@ impl<'a> PropertyCheck<'_, '_, 'a> {
     }
 
     /// Finds the value of a property, and converts it. None is left where its `source` has none.
-    fn value(&mut self, place: usize, property: &'a Property, report: &mut Report<'_>) -> Result<(), ()> {
-        let member = self.giver.member;
-        let site = ValueSite { unit: member.unit, composite: member.composite, instance: member.instance };
-        let Found { raw, source } = self.parameters.taken(site, property, report)?;
+    fn value(&mut self, place: usize, property: &'a Property) -> Result<(), ()> {
+        let (raw, source) = self.parameters.taken(self.giver.member, property, self.report)?;
         if source.is_none() && property.source().is_some() && raw.0.is_empty() {
             self.slots[place].is_unset = true;
             return Ok(());
         }
-        self.convert(place, raw, source.unwrap_or(property.tag()), source, report)
+        self.convert(place, raw, source.unwrap_or(property.tag()), source)
     }
 
     /// Checks a property that the file beside the class gives, where the composite does not.
-    fn described(&mut self, default: &'a Property, document: &'a Document, report: &mut Report<'_>) {
+    fn described(&mut self, default: &'a Property, document: &'a Document) {
         let place = self.table.place(&default.name);
         let Some(place) = place.filter(|place| self.slots[*place].element.is_none()) else { return };
         self.slots[place].element = Some(default);
-        let found = raw(default, document, None, report);
+        let found = raw(default, document, None, self.report);
         let found = found.map(|found| found.inside_elements_of(default));
         let by = Some(self.giver.name.location);
-        if found.and_then(|found| self.convert(place, found, default.tag(), by, report)).is_err() {
+        if found.and_then(|found| self.convert(place, found, default.tag(), by)).is_err() {
             self.unsure.push(place);
         }
     }
 
     /// Converts what was found for a property to what the class takes.
-    fn convert(
-        &mut self,
-        place: usize,
-        found: Raw<'_>,
-        at: Location,
-        source: Option<Location>,
-        report: &mut Report<'_>,
-    ) -> Result<(), ()> {
+    fn convert(&mut self, place: usize, found: Raw<'_>, at: Location, source: Option<Location>) -> Result<(), ()> {
         let mut places: Vec<Location> = found.0.iter().map(Piece::location).collect();
         if places.is_empty() {
             places.push(at);
         }
         let entry = &self.table.all[place];
         let target = Target { outer: None, declaration: entry.main, also: entry.also(), at, source };
-        let value = self.conversion.convert(found, target, report).ok_or(())?;
-        self.slots[place].value = Some((value, Origin::of(places, source)));
+        let value = convert(found, target, self.report).ok_or(())?;
+        self.slots[place].value = Some((value, ValuePlace { property: place, places: places.into(), source }));
         Ok(())
     }
 
     /// Checks that a property that has to be given is. What is given wrongly is reported already.
-    fn required(&mut self, place: usize, report: &mut Report<'_>) {
+    fn required(&mut self, place: usize) {
         let (slot, declaration) = (&self.slots[place], self.table.all[place].main);
         if slot.value.is_some() || self.table.preset(&declaration.name).is_some() {
             return;
         }
         self.unsure.push(place);
         let Some(property) = slot.element else {
-            return missing::missing(self.giver, declaration, self.table, report);
+            return missing::missing(self.giver, declaration, self.table, self.report);
         };
-        if !slot.is_unset {
-            return;
-        }
-        let message = format!("the property {} has no value: its source has none", quoted(&declaration.name));
-        let at = property.source().map_or(property.tag(), |source| source.location);
-        let one = Diagnostic::new(&codes::PROPERTY_MISSING, at, message);
         let unit = self.giver.member.unit;
-        match property.source() {
-            Some(source) if self.parameters.is_told(unit, source) => {}
-            Some(source) => report.push(self.parameters.supply(unit, source, one)),
-            None => report.push(one),
+        if let (true, Some(source)) = (slot.is_unset, property.source())
+            && !self.parameters.is_told(unit, source)
+        {
+            let message = format!("the property {} has no value: its source has none", quoted(&declaration.name));
+            let one = Diagnostic::new(&codes::PROPERTY_MISSING, source.location, message);
+            self.report.push(self.parameters.supply(unit, source, one));
         }
     }
 

@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use super::{given_twice, missing};
+use super::given_twice;
 use crate::check::fleet::{Member, Unit};
 use crate::check::report::Report;
-use crate::check::values::type_match::{self, Match};
-use crate::check::values::value_type::Typed;
+use crate::check::values::value_type::{Typed, check_match};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
 use crate::model::{ComponentElement, ComponentProperty, Part, Property, Version};
+use crate::source::{Location, Text};
 use crate::syntax::escaped;
 
 /// Checks that what a component gives the composite that implements it are properties of that, of types that fit.
@@ -22,7 +22,7 @@ pub(crate) fn check(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'
     let declared = declared.map(|(property, document)| Typed { property, document });
     let names: Vec<&str> = declared.clone().map(|one| one.property.name.as_str()).collect();
     // The first of each name.
-    let mut by_name: HashMap<&str, Typed<'_>> = HashMap::with_capacity(names.len());
+    let mut by_name: HashMap<&str, Typed<'_>> = HashMap::new();
     declared.for_each(|one| _ = by_name.entry(&one.property.name).or_insert(one));
     let is_partial = member.instance.is_some_and(|instance| instance.partial.is_some());
     let is_known = |one: &&Property| !(one.name.is_empty() || is_partial && has_expression(&one.name));
@@ -34,7 +34,7 @@ pub(crate) fn check(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'
                     several((property, first, second), declared.property, report);
                 }
                 let own = Typed { property, document: &member.composite.document };
-                type_match::check(own, *declared, Match::Declaration, report);
+                check_match(own, *declared, None, report);
             }
             // It is the one without a name, which is reported.
             None if names.contains(&"") => {}
@@ -50,16 +50,26 @@ fn unknown(property: &Property, names: &[&str], inner: &Unit<'_>, report: &mut R
         return;
     }
     let message = format!("composite {} has no property {}", quoted(&inner.main().name), quoted(name));
-    let one = match missing::taken_inside(name, inner) {
+    let known = ("its properties are", names.iter().copied());
+    let one = match taken_inside(name, inner) {
         Some(source) => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message)
             .label(source, "taken here")
             .help(format!("declare it in the composite: `<property name=\"{}\"/>`", escaped(name))),
-        None => {
-            let known = ("its properties are", names.iter().copied());
-            report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known)
-        }
+        None => report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known),
     };
     report.push(one);
+}
+
+/// The place where a component of a composite takes the value of a property that the composite does not have.
+fn taken_inside(name: &str, inner: &Unit<'_>) -> Option<Location> {
+    let components = inner.composites.iter().flat_map(|composite| &composite.components);
+    let mut sources = components.flat_map(|one| &one.properties).filter_map(Property::source);
+    let is_inner = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.');
+    let is_it = |source: &&Text| {
+        let mut behind = source.split('$').skip(1).filter_map(|rest| rest.strip_prefix(name));
+        behind.any(|rest| !rest.starts_with(is_inner))
+    };
+    Some(sources.find(is_it)?.location)
 }
 
 /// Says that a property that its declaration says takes one value is given several.

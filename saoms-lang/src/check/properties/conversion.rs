@@ -1,6 +1,5 @@
 //! Conversion of values to what the declarations of properties ask for.
 
-use std::collections::HashSet;
 use std::fmt;
 
 use saoms_api::host::PropertyValue;
@@ -58,164 +57,144 @@ impl Target<'_> {
     }
 }
 
-/// Converts values, and reports those that are wrong.
-#[derive(Default)]
-pub(crate) struct Conversion {
-    /// The faults in values that many components may use, so that each is reported once.
-    shared: HashSet<(Location, &'static str, String)>,
+/// The value of a property. `None` when there is a fault, which is reported.
+pub(crate) fn convert(raw: Raw<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
+    let mut pieces = raw.0;
+    if target.declaration.many {
+        // All are looked at, so that all faults are found.
+        let values: Vec<Option<PropertyValue>> =
+            pieces.into_iter().map(|piece| one_value(piece, target, report)).collect();
+        return values.into_iter().collect::<Option<_>>().map(PropertyValue::Many);
+    }
+    if let [first, second, ..] = &pieces[..] {
+        let message = format!("the property {} takes one value, and here are {}", target.quoted(), pieces.len());
+        let one = Diagnostic::new(&codes::MANY_VALUES, second.location(), message);
+        tell(one.label(first.location(), "the first"), target, report);
+        return None;
+    }
+    let nothing = || match target.declaration.kind {
+        PropertyKind::Complex => Piece::Elements([].into(), None),
+        _ => Piece::text(Text::new("".into(), target.at), None),
+    };
+    one_value(pieces.pop().unwrap_or_else(nothing), target, report)
 }
 
-impl Conversion {
-    /// The value of a property. `None` when there is a fault, which is reported.
-    pub(crate) fn convert(
-        &mut self,
-        raw: Raw<'_>,
-        target: Target<'_>,
-        report: &mut Report<'_>,
-    ) -> Option<PropertyValue> {
-        let mut pieces = raw.0;
-        if target.declaration.many {
-            // All are looked at, so that all faults are found.
-            let values: Vec<Option<PropertyValue>> =
-                pieces.into_iter().map(|piece| self.piece(piece, target, report)).collect();
-            return values.into_iter().collect::<Option<_>>().map(PropertyValue::Many);
+fn one_value(piece: Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
+    let declaration = target.declaration;
+    let one = match (piece, declaration.kind) {
+        (Piece::Elements(elements, instance), PropertyKind::Complex) => {
+            return complex_value(&elements, instance, target, report);
         }
-        if let [first, second, ..] = &pieces[..] {
-            let message = format!("the property {} takes one value, and here are {}", target.quoted(), pieces.len());
-            let one = Diagnostic::new(&codes::MANY_VALUES, second.location(), message);
-            self.report(one.label(first.location(), "the first"), target, report);
+        (Piece::Whole(_, root, instance), PropertyKind::Complex) => {
+            // A part by its name, or all of them in an element around them.
+            let is_part = declaration.properties.iter().any(|part| part.name == root.local_name());
+            let elements = if is_part { vec![root] } else { root.children().collect() };
+            return complex_value(&elements, instance, target, report);
+        }
+        (Piece::Text(text), PropertyKind::Complex) => {
+            let found = if text.is_empty() { "nothing".to_owned() } else { quoted(&text) };
+            let (name, expected) = (target.quoted(), declaration.expected());
+            let message = format!("property {name}: found {found}, expected {expected}");
+            let code = if text.is_empty() { &codes::VALUE_EMPTY } else { &codes::VALUE_TYPE };
+            Diagnostic::new(code, text.location, message).help("write each as an element inside")
+        }
+        (Piece::Whole(text, ..), _) => return text_value(text, target, report),
+        (Piece::Text(text), _) => return text_value(&text, target, report),
+        (Piece::Elements(elements, _), _) => {
+            let at = elements.first().map_or(target.at, |first| first.name_location());
+            let (name, expected) = (target.quoted(), declaration.expected());
+            let message = format!("the property {name} has elements inside: expected {expected}");
+            Diagnostic::new(&codes::VALUE_TYPE, at, message)
+        }
+    };
+    tell(one, target, report);
+    None
+}
+
+/// The value of a property that takes one text, which all declarations have to accept.
+fn text_value(text: &Text, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
+    for declaration in [Some(target.declaration), target.also].into_iter().flatten() {
+        if let Err(message) = declaration.allows(text) {
+            let target = Target { declaration, ..target };
+            let one = wrong_text::diagnostic(text, target, &message, report.has_index());
+            tell(one, target, report);
             return None;
         }
-        let nothing = || match target.declaration.kind {
-            PropertyKind::Complex => Piece::Elements([].into(), None),
-            _ => Piece::text(Text::new("".into(), target.at), None),
-        };
-        self.piece(pieces.pop().unwrap_or_else(nothing), target, report)
     }
+    Some(PropertyValue::Text(text.value.clone()))
+}
 
-    fn piece(&mut self, piece: Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
-        let declaration = target.declaration;
-        let one = match (piece, declaration.kind) {
-            (Piece::Elements(elements, instance), PropertyKind::Complex) => {
-                return self.complex(&elements, instance, target, report);
+/// The value of a complex property, of its parts.
+fn complex_value(
+    elements: &[Element<'_>],
+    instance: Option<&Instance>,
+    target: Target<'_>,
+    report: &mut Report<'_>,
+) -> Option<PropertyValue> {
+    let parts = &target.declaration.properties;
+    let given = given_parts(elements, target, report);
+    let mut is_sound = given.iter().map(Vec::len).sum::<usize>() == elements.len();
+    let mut values = Vec::new();
+    for (declaration, given) in parts.iter().zip(given) {
+        let inner = Target { outer: Some(&target), declaration, also: None, ..target };
+        let Some(first) = given.first() else {
+            if declaration.required {
+                let (name, expected) = (inner.quoted(), declaration.expected());
+                let message = format!("the property {name} is missing: expected {expected}");
+                let one = Diagnostic::new(&codes::PROPERTY_MISSING, target.at, message);
+                tell(one, inner, report);
+                is_sound = false;
             }
-            (Piece::Whole(_, root, instance), PropertyKind::Complex) => {
-                // A part by its name, or all of them in an element around them.
-                let is_part = declaration.properties.iter().any(|part| part.name == root.local_name());
-                let elements = if is_part { vec![root] } else { root.children().collect() };
-                return self.complex(&elements, instance, target, report);
-            }
-            (Piece::Text(text), PropertyKind::Complex) => {
-                let found = if text.is_empty() { "nothing".to_owned() } else { quoted(&text) };
-                let (name, expected) = (target.quoted(), declaration.expected());
-                let message = format!("property {name}: found {found}, expected {expected}");
-                let code = if text.is_empty() { &codes::VALUE_EMPTY } else { &codes::VALUE_TYPE };
-                Diagnostic::new(code, text.location, message).help("write each as an element inside")
-            }
-            (Piece::Whole(text, ..), _) => return self.text(text, target, report),
-            (Piece::Text(text), _) => return self.text(&text, target, report),
-            (Piece::Elements(elements, _), _) => {
-                let at = elements.first().map_or(target.at, |first| first.name_location());
-                let (name, expected) = (target.quoted(), declaration.expected());
-                let message = format!("the property {name} has elements inside: expected {expected}");
-                Diagnostic::new(&codes::VALUE_TYPE, at, message)
-            }
+            continue;
         };
-        self.report(one, target, report);
-        None
-    }
-
-    /// The value of a property that takes one text, which all declarations have to accept.
-    fn text(&mut self, text: &Text, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
-        for declaration in [Some(target.declaration), target.also].into_iter().flatten() {
-            if let Err(message) = declaration.allows(text) {
-                let target = Target { declaration, ..target };
-                let one = wrong_text::diagnostic(text, target, &message, report.has_index());
-                self.report(one, target, report);
-                return None;
-            }
+        let inner = Target { at: first.name_location(), ..inner };
+        match convert(Raw::of_elements(&given, instance), inner, report) {
+            Some(value) => values.push((declaration.name.as_str().into(), value)),
+            None => is_sound = false,
         }
-        Some(PropertyValue::Text(text.value.clone()))
     }
+    is_sound.then_some(PropertyValue::Complex(values.into()))
+}
 
-    /// The value of a complex property, of its parts.
-    fn complex(
-        &mut self,
-        elements: &[Element<'_>],
-        instance: Option<&Instance>,
-        target: Target<'_>,
-        report: &mut Report<'_>,
-    ) -> Option<PropertyValue> {
-        let parts = &target.declaration.properties;
-        let given = self.parts(elements, target, report);
-        let mut is_sound = given.iter().map(Vec::len).sum::<usize>() == elements.len();
-        let mut values = Vec::new();
-        for (declaration, given) in parts.iter().zip(given) {
-            let inner = Target { outer: Some(&target), declaration, also: None, ..target };
-            let Some(first) = given.first() else {
-                if declaration.required {
-                    let (name, expected) = (inner.quoted(), declaration.expected());
-                    let message = format!("the property {name} is missing: expected {expected}");
-                    let one = Diagnostic::new(&codes::PROPERTY_MISSING, target.at, message);
-                    self.report(one, inner, report);
-                    is_sound = false;
-                }
+/// The elements of each part of a complex property. Those that are of none, and second ones of a single part, are
+/// reported and left out.
+fn given_parts<'e>(elements: &[Element<'e>], target: Target<'_>, report: &mut Report<'_>) -> Vec<Vec<Element<'e>>> {
+    let parts = &target.declaration.properties;
+    let mut given: Vec<Vec<Element<'e>>> = vec![Vec::new(); parts.len()];
+    for element in elements {
+        let (name, at) = (element.local_name(), element.name_location());
+        let one = match parts.iter().position(|part| part.name == name) {
+            Some(part) if parts[part].many || given[part].is_empty() => {
+                given[part].push(*element);
                 continue;
-            };
-            let inner = Target { at: first.name_location(), ..inner };
-            match self.convert(Raw::of_elements(&given, instance), inner, report) {
-                Some(value) => values.push((declaration.name.as_str().into(), value)),
-                None => is_sound = false,
             }
-        }
-        is_sound.then_some(PropertyValue::Complex(values.into()))
-    }
-
-    /// The elements of each part of a complex property. Those that are of none, and second ones of a single part, are
-    /// reported and left out.
-    fn parts<'e>(
-        &mut self,
-        elements: &[Element<'e>],
-        target: Target<'_>,
-        report: &mut Report<'_>,
-    ) -> Vec<Vec<Element<'e>>> {
-        let parts = &target.declaration.properties;
-        let mut given: Vec<Vec<Element<'e>>> = vec![Vec::new(); parts.len()];
-        for element in elements {
-            let (name, at) = (element.local_name(), element.name_location());
-            let one = match parts.iter().position(|part| part.name == name) {
-                Some(part) if parts[part].many || given[part].is_empty() => {
-                    given[part].push(*element);
-                    continue;
-                }
-                Some(part) => {
-                    let message = format!("the property {} has two parts {}", target.quoted(), quoted(name));
-                    let one = Diagnostic::new(&codes::PROPERTY_REPEATED, at, message);
-                    one.label(given[part][0].name_location(), "the first")
-                }
-                None => {
-                    let names = parts.iter().map(|part| part.name.as_str());
-                    let message = format!("the property {} has no part {}", target.quoted(), quoted(name));
-                    report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, ("its parts are", names))
-                }
-            };
-            self.report(one, target, report);
-        }
-        given
-    }
-
-    /// Reports a fault, with what there is to know about the property.
-    fn report(&mut self, mut one: Diagnostic, target: Target<'_>, report: &mut Report<'_>) {
-        if let Some(source) = target.source {
-            // That it is not of the type of the composite's property is told.
-            if report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, one.location)
-                || !self.shared.insert((one.location, one.code.id, target.to_string()))
-            {
-                return;
+            Some(part) => {
+                let message = format!("the property {} has two parts {}", target.quoted(), quoted(name));
+                let one = Diagnostic::new(&codes::PROPERTY_REPEATED, at, message);
+                one.label(given[part][0].name_location(), "the first")
             }
-            one = one.label(source, format!("used here as {}", target.quoted()));
-        }
-        one.help.extend(target.about());
-        report.push(one);
+            None => {
+                let names = parts.iter().map(|part| part.name.as_str());
+                let message = format!("the property {} has no part {}", target.quoted(), quoted(name));
+                report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, ("its parts are", names))
+            }
+        };
+        tell(one, target, report);
     }
+    given
+}
+
+/// Reports a fault, with what there is to know about the property.
+fn tell(mut one: Diagnostic, target: Target<'_>, report: &mut Report<'_>) {
+    if let Some(source) = target.source {
+        // That it is not of the type of the composite's property is told, or another replica that uses it.
+        if report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, one.location)
+            || report.is_told_of_replicas(one.code, one.location)
+        {
+            return;
+        }
+        one = one.label(source, format!("used here as {}", target.quoted()));
+    }
+    one.help.extend(target.about());
+    report.push(one);
 }

@@ -2,13 +2,13 @@
 
 use crate::check::fleet::{Fleet, Kind, Member};
 use crate::check::report::{Report, replacing};
-use crate::check::values::parameters::{Parameters, ValueSite};
+use crate::check::values::parameters::Parameters;
 use crate::check::wiring::offer::Side;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{ComponentElement, ComponentType, ImplementationKind, Part, ReferenceElement, ServiceElement};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 /// The component type of a component that is taken as given.
 #[derive(Clone, Copy)]
@@ -36,10 +36,8 @@ impl<'a> Fleet<'a> {
         let component = self.members[member].component;
         let described = self.known(member).into_iter().flat_map(|known| known.names(side));
         let own = names(side, &component.services, &component.references).map(Text::as_str);
-        let mut names: Vec<&str> = own.chain(described).filter(|name| !name.is_empty()).collect();
-        names.sort_unstable();
-        names.dedup();
-        names
+        let names: BTreeSet<&str> = own.chain(described).filter(|name| !name.is_empty()).collect();
+        names.into_iter().collect()
     }
 
     /// Reports the name of a service or reference that such a component does not have, as far as anybody knows. Where
@@ -72,11 +70,8 @@ impl<'a> Fleet<'a> {
             one = one.label(declared.location, "what it declares");
         }
         one = one.suggest(replacing(name, meant), at, escaped(meant));
-        one = one.help("if its class has both, declare this one in the component as well");
-        report.push(match rule {
-            Some(rule) => one.rule(rule),
-            None => one,
-        });
+        one.rule = rule.or(one.rule);
+        report.push(one.help("if its class has both, declare this one in the component as well"));
     }
 }
 
@@ -125,9 +120,7 @@ impl<'a> ForeignType<'a> {
             one =
                 one.severity(Severity::Warning).help(format!("if its class has it, add the {what} to the description"));
         }
-        if let Some(rule) = rule {
-            one = one.rule(rule);
-        }
+        one.rule = rule.or(one.rule);
         report.push(one);
     }
 }
@@ -151,14 +144,13 @@ pub(crate) fn properties<'a>(
     report: &mut Report<'_>,
 ) {
     let component = member.component;
-    let place = ValueSite { unit: member.unit, composite: member.composite, instance: member.instance };
     for property in component.properties.iter().filter(|property| !property.name.is_empty()) {
         if known.is_none() && member.instance.is_none() && property.only_text().is_some() {
             // A text of whatever type.
             continue;
         }
         // Faults of its `source` are reported.
-        let _ = parameters.taken(place, property, report);
+        let _ = parameters.taken(member, property, report);
         let Some(known) = known else { continue };
         let names: Vec<&str> = known.described.properties.iter().map(|one| one.name.as_str()).collect();
         let wrong = (&component.name, property.name.as_str(), property.name.location);

@@ -1,7 +1,5 @@
 //! The values of the properties of one component or loop.
 
-use std::slice;
-
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
@@ -24,49 +22,14 @@ pub(crate) struct PropertyValues {
 }
 
 /// The place of the value of a property.
+#[derive(Default)]
 pub(crate) struct ValuePlace {
     /// The index of the property in its table.
-    property: usize,
-    origin: Origin,
-}
-
-/// The origin of a value.
-pub(crate) enum Origin {
-    /// The class presets it.
-    Preset,
-    /// It is one, which stands in the property itself.
-    Property(Location),
-    /// It is several values, or comes from elsewhere: their places, and the `source` that leads there.
-    Others(Box<(Vec<Location>, Option<Location>)>),
-}
-
-impl Origin {
-    /// The origin of values at these places.
-    pub(crate) fn of(places: Vec<Location>, source: Option<Location>) -> Self {
-        match (&places[..], source) {
-            ([place], None) => Self::Property(*place),
-            _ => Self::Others(Box::new((places, source))),
-        }
-    }
-}
-
-impl ValuePlace {
-    /// The places that the composite gives it from; none for a preset.
-    pub(crate) fn places(&self) -> &[Location] {
-        match &self.origin {
-            Origin::Preset => &[],
-            Origin::Property(place) => slice::from_ref(place),
-            Origin::Others(others) => &others.0,
-        }
-    }
-
+    pub(crate) property: usize,
+    /// The places of each of its values; none for what the class presets.
+    pub(crate) places: Box<[Location]>,
     /// The `source` that leads there.
-    pub(crate) fn source(&self) -> Option<Location> {
-        match &self.origin {
-            Origin::Others(others) => others.1,
-            _ => None,
-        }
-    }
+    pub(crate) source: Option<Location>,
 }
 
 /// A value that a composite gives.
@@ -89,16 +52,17 @@ impl PropertyValues {
     /// The values of each property of a table, in its order, with what the class presets for others.
     pub(crate) fn of(
         table: &PropertyTable<'_>,
-        given: impl Iterator<Item = Option<(PropertyValue, Origin)>>,
+        given: impl Iterator<Item = Option<(PropertyValue, ValuePlace)>>,
         unknown: Vec<usize>,
         is_sound: bool,
     ) -> Self {
         let mut all = Self { unknown, is_sound, ..Self::default() };
         for (property, (entry, given)) in table.all.iter().zip(given).enumerate() {
-            let preset = || Some((table.preset(&entry.name)?.clone(), Origin::Preset));
-            let Some((value, origin)) = given.or_else(preset) else { continue };
+            let by_class = ValuePlace { property, ..ValuePlace::default() };
+            let preset = || Some((table.preset(&entry.name)?.clone(), by_class));
+            let Some((value, place)) = given.or_else(preset) else { continue };
             all.values.push((entry.name.clone(), value));
-            all.places.push(ValuePlace { property, origin });
+            all.places.push(place);
             all.own += usize::from(entry.own().is_some());
         }
         all
@@ -112,7 +76,7 @@ impl PropertyValues {
     /// The value that the composite gives the property of this index.
     pub(crate) fn at(&self, property: usize) -> Option<GivenValue<'_>> {
         let index = self.places.iter().position(|place| place.property == property)?;
-        Some(GivenValue { value: &self.values[index].1, place: *self.places[index].places().first()? })
+        Some(GivenValue { value: &self.values[index].1, place: *self.places[index].places.first()? })
     }
 
     /// The values of task properties, presets included.
@@ -130,11 +94,9 @@ impl PropertyValues {
     /// The same with the place of each.
     pub(crate) fn into_own(mut self) -> (Vec<(SmolStr, PropertyValue)>, Vec<ValuePlace>) {
         self.values.truncate(self.own);
-        self.values.shrink_to_fit();
         (self.values, self.places)
     }
 
-    /// The place of each value.
     pub(crate) fn places(&self) -> &[ValuePlace] {
         &self.places
     }

@@ -3,12 +3,10 @@
 use super::Giver;
 use super::property_table::PropertyTable;
 use crate::assembly::TaskProperties;
-use crate::check::fleet::Unit;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, nearest, nearest_equal, quoted};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
-use crate::source::{Location, Text};
 use crate::syntax::Element;
 
 /// Reports a property that a class or a loop does not have.
@@ -58,18 +56,6 @@ fn stands_for<'s>(giver: &Giver<'_, '_>, table: &'s PropertyTable<'_>) -> Option
     let mut lacking = required.map(|one| one.name.as_str()).filter(|name| !is_given(name));
     let (lacking, None) = (lacking.next()?, lacking.next()) else { return None };
     Some(lacking)
-}
-
-/// The place where a component of a composite takes the value of a property that the composite does not have.
-pub(crate) fn taken_inside(name: &str, inner: &Unit<'_>) -> Option<Location> {
-    let components = inner.composites.iter().flat_map(|composite| &composite.components);
-    let mut sources = components.flat_map(|one| &one.properties).filter_map(Property::source);
-    let is_inner = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.');
-    let is_it = |source: &&Text| {
-        let mut behind = source.split('$').skip(1).filter_map(|rest| rest.strip_prefix(name));
-        behind.any(|rest| !rest.starts_with(is_inner))
-    };
-    Some(sources.find(is_it)?.location)
 }
 
 /// Reports a property that has to be given and is not.

@@ -11,7 +11,6 @@ mod wrong_text;
 
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Kind, Member};
-use crate::check::properties::conversion::Conversion;
 use crate::check::report::Report;
 use crate::check::values::parameters::Parameters;
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -62,7 +61,6 @@ pub(crate) fn check_all<'a>(
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
 ) -> Vec<ComponentCheck<'a>> {
-    let mut conversion = Conversion::default();
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
@@ -70,7 +68,7 @@ pub(crate) fn check_all<'a>(
         let mut component = ComponentCheck::default();
         if let Kind::Class(index) = member.kind {
             let giver = Giver::component(member, fleet.component_type(place));
-            component.given = check(&giver, &fleet.classes[index].table, parameters, &mut conversion, report);
+            component.given = check(&giver, &fleet.classes[index].table, parameters, report);
         } else {
             composite_properties::repeated(member.component, report);
             match fleet.inner(place) {

@@ -15,7 +15,6 @@ const ID: &str = "ID";
 pub(crate) struct PropertyTable<'r> {
     /// `class` or `loop`.
     pub(crate) what: &'static str,
-    /// The name of the class or the loop.
     pub(crate) name: &'r str,
     /// Its properties, those of tasks behind its own.
     pub(crate) all: Vec<TableEntry<'r>>,
@@ -47,12 +46,8 @@ pub(crate) struct TableEntry<'r> {
 }
 
 impl<'r> TableEntry<'r> {
-    fn of_task(task: &'r PropertyDeclaration) -> Self {
-        Self { name: task.name.as_str().into(), main: task, is_own: false, task: Some(task) }
-    }
-
-    fn of_class(own: &'r PropertyDeclaration) -> Self {
-        Self { name: own.name.as_str().into(), main: own, is_own: true, task: None }
+    fn of(main: &'r PropertyDeclaration, is_own: bool) -> Self {
+        Self { name: main.name.as_str().into(), main, is_own, task: (!is_own).then_some(main) }
     }
 
     /// The declaration of the class.
@@ -91,7 +86,7 @@ impl<'r> PropertyTable<'r> {
                 Some(&place) => table.all[place].task = Some(task),
                 None => {
                     table.by_name.insert(&task.name, table.all.len());
-                    table.all.push(TableEntry::of_task(task));
+                    table.all.push(TableEntry::of(task, false));
                 }
             }
         }
@@ -111,7 +106,7 @@ impl<'r> PropertyTable<'r> {
         Self {
             what: "",
             name: "",
-            all: properties.iter().map(TableEntry::of_class).collect(),
+            all: properties.iter().map(|own| TableEntry::of(own, true)).collect(),
             by_name: places.map(|(place, own)| (own.name.as_str(), place)).collect(),
             unique: Vec::new(),
             choice: None,

@@ -25,32 +25,27 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
     }
     let is_counter = text.trim() == INDEX || has_index && COUNTERS.contains(&text.trim());
     let by_index = if is_counter { Some(format!("${{{INDEX}}}")) } else { as_index(text.trim()) };
-    match by_index.filter(|meant| meant != text.trim()) {
-        Some(meant) if has_index => {
-            return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
-        }
-        Some(meant) => {
-            return one.help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant)));
-        }
-        None => {}
-    }
-    if has_expression(text) {
-        let one = one.help("`${...}` stands for a number in components with a `saoms:count` alone");
-        let name = text.trim().strip_prefix("${").and_then(|rest| rest.strip_suffix('}')).map(str::trim);
-        return match name.filter(|name| is_name(name) && *name != INDEX) {
-            Some(name) => one.help(by_source(name)),
-            None => one,
+    if let Some(meant) = by_index.filter(|meant| meant != text.trim()) {
+        return match has_index {
+            true => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),
+            false => one.help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant))),
         };
     }
-    let argument = text.trim().strip_prefix("$(arg ").and_then(|rest| rest.strip_suffix(')'));
-    match argument.or_else(|| text.trim().strip_prefix('$')).map(str::trim).filter(|name| is_name(name)) {
-        Some(name) => one.help(by_source(name)),
+    let inside = |before, behind| text.trim().strip_prefix(before)?.strip_suffix(behind);
+    let (one, name) = match has_expression(text) {
+        true => (
+            one.help("`${...}` stands for a number in components with a `saoms:count` alone"),
+            inside("${", "}").filter(|name| name.trim() != INDEX),
+        ),
+        false => (one, inside("$(arg ", ")").or_else(|| inside("$", ""))),
+    };
+    match name.map(str::trim).filter(|name| is_name(name)) {
+        Some(name) => {
+            let property = quoted(name);
+            one.help(format!("write `source=\"${name}\"` for the value of the property {property} of the composite"))
+        }
         None => one,
     }
-}
-
-fn by_source(name: &str) -> String {
-    format!("write `source=\"${name}\"` for the value of the property {} of the composite", quoted(name))
 }
 
 fn code(text: &str, declaration: &PropertyDeclaration, said: &str) -> &'static Code {

@@ -26,7 +26,7 @@ pub(crate) struct Subject<'a> {
 impl<'a> Subject<'a> {
     /// True if the composite gives a property of this name.
     pub(crate) fn gives(&self, name: &str) -> bool {
-        self.value(name).is_some_and(|(_, place)| !place.places().is_empty())
+        self.value(name).is_some_and(|(_, place)| !place.places.is_empty())
     }
 
     /// The value of the property of this name, with its place.
@@ -89,20 +89,20 @@ fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Loca
     let nowhere = Located { at: subject.at, source: None, text: None, is_xml: false };
     let given = place.property_name().and_then(|name| subject.value(name));
     let Some((values, given)) = given else { return nowhere };
-    let Some(&first) = given.places().first() else { return nowhere };
-    let whole = Located { at: first, source: given.source(), ..nowhere };
+    let Some(&first) = given.places.first() else { return nowhere };
+    let whole = Located { at: first, source: given.source, ..nowhere };
     let Some((index, part)) = place.value_part() else { return whole };
     let value = match values {
         PropertyValue::Many(values) => values.get(index),
         one => (index == 0).then_some(one),
     };
-    let (Some(PropertyValue::Text(value)), Some(&at)) = (value, given.places().get(index)) else {
+    let (Some(PropertyValue::Text(value)), Some(&at)) = (value, given.places.get(index)) else {
         return whole;
     };
     Located {
         text: value.get(part.clone()),
         at: report.parts_of(value, at).part(part),
-        source: given.source(),
+        source: given.source,
         is_xml: report.is_xml(at.file),
     }
 }

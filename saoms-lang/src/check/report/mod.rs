@@ -74,10 +74,23 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// A report about the same texts that nobody hears.
+    pub(crate) fn unheard<'u>(&self, diagnostics: &'u mut Diagnostics) -> Report<'u>
+    where
+        'a: 'u,
+    {
+        Report::new(self.sources, diagnostics)
+    }
+
     /// True if something of this code was told at this place.
     pub(crate) fn has_diagnostic(&self, code: &'static Code, at: Location) -> bool {
         self.known_copies.contains_key(&(at, code.id))
             || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
+    }
+
+    /// True if what follows is about a replica, and something of this code was told at this place of another one.
+    pub(crate) fn is_told_of_replicas(&self, code: &'static Code, at: Location) -> bool {
+        self.copy.is_some() && self.known_copies.contains_key(&(at, code.id))
     }
 
     /// True if something of this code was told of this text anywhere in a file.

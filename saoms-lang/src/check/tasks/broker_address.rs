@@ -8,7 +8,6 @@ use std::ops::Range;
 pub(crate) struct Fault {
     /// The bytes at fault.
     pub(crate) at: Range<usize>,
-    /// The message.
     pub(crate) message: String,
     /// The right text for the bytes at `at`, where that is plain.
     pub(crate) instead: Option<String>,

@@ -5,7 +5,8 @@ pub(crate) mod renames;
 #[cfg(test)]
 mod tests;
 pub(crate) mod topic_types;
-pub(crate) mod unused_renames;
+
+use std::collections::HashSet;
 
 use saoms_api::PropertyField;
 
@@ -16,8 +17,7 @@ use crate::check::fleet::{Fleet, Kind};
 use crate::check::properties::given_values::{GivenValue, PropertyValues};
 use crate::check::report::{Report, list};
 use crate::check::rules::unique_values::{RepeatedValues, Unique};
-use crate::check::tasks::renames::Renamed;
-use crate::check::tasks::unused_renames::Listed;
+use crate::check::tasks::renames::{Renamed, Renames};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Part};
 use crate::source::{Location, Text};
@@ -30,7 +30,7 @@ pub(crate) struct Task<'t, 'a> {
     pub(crate) given: &'t PropertyValues,
 }
 
-impl<'a> Task<'_, 'a> {
+impl Task<'_, '_> {
     fn get(&self, name: &str) -> Option<GivenValue<'_>> {
         self.given.get(&self.class.table, name)
     }
@@ -49,16 +49,16 @@ impl<'a> Task<'_, 'a> {
         self.text("topicRename").map_or_else(Vec::new, |text| renames::renamed(&text, report))
     }
 
-    /// Checks all values, each alone and those that have to go together: the topics that it gives new names, and the
-    /// properties where they are sound.
-    fn check(&self, report: &mut Report<'_>) -> (Vec<Listed<'a>>, Option<TaskProperties>) {
+    /// Checks all values, each alone and those that have to go together: the properties, where they are sound.
+    fn check(&self, member: usize, renames: &mut Renames, report: &mut Report<'_>) -> Option<TaskProperties> {
         if let Some(url) = self.text("url") {
             check_url(&url, report);
         }
-        let text = self.text("topicRename");
-        let listed = text.map_or_else(Vec::new, |text| renames::check(&text, self.class, report));
+        if let Some(text) = self.text("topicRename") {
+            renames.add(member, &text, report);
+        }
         self.use_jms(report);
-        (listed, if self.given.is_sound { self.properties(report) } else { None })
+        if self.given.is_sound { self.properties(report) } else { None }
     }
 
     /// The properties, where they are sound.
@@ -89,12 +89,9 @@ impl<'a> Task<'_, 'a> {
         let mut uses = Vec::new();
         for (verb, topics) in [("publishes", &self.class.publishes), ("subscribes to", &self.class.subscribes)] {
             // Where loops declare a topic in other ways, which is reported, it is there several times.
-            let mut names: Vec<&str> = Vec::new();
-            for topic in topics {
-                if !names.contains(&topic.name.as_str()) {
-                    names.push(&topic.name);
-                }
-            }
+            let mut seen = HashSet::new();
+            let names: Vec<&str> =
+                topics.iter().map(|one| one.name.as_str()).filter(|name| seen.insert(*name)).collect();
             if !names.is_empty() {
                 uses.push(format!("{verb} {}", list(names)));
             }
@@ -187,7 +184,7 @@ pub(crate) fn check_all<'a>(
 ) -> RepeatedValues {
     let mut unique = Unique::default();
     let mut topics = topic_types::Topics::default();
-    let mut listed = unused_renames::Renames::default();
+    let mut renames = Renames::default();
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
         report.about(member);
         let Kind::Class(index) = member.kind else { continue };
@@ -197,10 +194,8 @@ pub(crate) fn check_all<'a>(
         let mut renamed = Vec::new();
         if is_periodic {
             let task = Task { component, class, given: &check.given };
-            let (of_task, properties) = task.check(report);
-            listed.add(place, of_task);
+            check.task = task.check(place, &mut renames, report);
             renamed = task.renamed(report);
-            check.task = properties;
         }
         topics.add(member, (index, class), &renamed, report);
         let is_sound = check.given.is_sound && check.loops.is_some();
@@ -210,6 +205,6 @@ pub(crate) fn check_all<'a>(
         };
     }
     report.about_all();
-    listed.finish(fleet, report);
+    renames.finish(fleet, report);
     unique.repeated
 }

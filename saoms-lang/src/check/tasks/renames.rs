@@ -1,14 +1,13 @@
-//! The topics that a component gives new names.
+//! The topics that components give new names. Components may share a list of them: a name that none of them uses is a
+//! mistake.
 
-use std::collections::HashSet;
-use std::rc::Rc;
+use std::collections::{BTreeSet, HashMap};
 
-use super::unused_renames::{Listed, Unused};
 use crate::assembly::topic_rename::{self, Fault};
+use crate::check::fleet::Fleet;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::{Parts, Report, replacing};
-use crate::diagnostic::{Diagnostic, codes};
-use crate::registry::ClassTopic;
+use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
 
@@ -30,25 +29,63 @@ pub(crate) fn renamed(text: &Text, report: &Report<'_>) -> Vec<Renamed> {
     topic_rename::read(text).0.into_iter().map(renamed).collect()
 }
 
-/// Checks a text that renames topics: the old names, with those that the class does not have.
-pub(super) fn check<'a>(text: &Text, class: &ClassIndex<'a>, report: &mut Report<'_>) -> Vec<Listed<'a>> {
-    let (pairs, faults) = topic_rename::parse(text);
-    let parts = report.parts(text);
-    faults.into_iter().for_each(|fault| report.push(wrong(fault, text, &parts)));
-    let renamed: HashSet<&str> = pairs.iter().map(|pair| pair.old.text).collect();
-    let mut others: Option<Rc<[&str]>> = None;
-    let listed = pairs.iter().map(|pair| {
-        let name = pair.old.text;
-        let is_used = topics(class).any(|topic| topic.name == name);
-        let unused = || {
-            let names = topics(class).map(|topic| topic.name.as_str());
-            let others = others.get_or_insert_with(|| names.filter(|name| !renamed.contains(name)).collect());
-            Unused { class: class.class.name(), others: Rc::clone(others) }
-        };
-        let at = parts.part(pair.old.at.clone());
-        Listed { name: name.to_owned(), at, unused: (!is_used).then(unused) }
-    });
-    listed.collect()
+/// The lists of renamed topics of a fleet.
+#[derive(Default)]
+pub(crate) struct Renames {
+    /// By their texts, in order.
+    places: HashMap<(Location, String), usize>,
+    all: Vec<List>,
+}
+
+struct List {
+    /// The topics, and where each stands.
+    names: Vec<(String, Location)>,
+    /// The components that share it.
+    members: Vec<usize>,
+}
+
+impl Renames {
+    /// Adds the list of a component. What is wrong with it as it stands is reported.
+    pub(super) fn add(&mut self, member: usize, text: &Text, report: &mut Report<'_>) {
+        let (pairs, faults) = topic_rename::parse(text);
+        let parts = report.parts(text);
+        faults.into_iter().for_each(|fault| report.push(wrong(fault, text, &parts)));
+        let place = *self.places.entry((text.location, text.to_string())).or_insert_with(|| {
+            let names = pairs.into_iter().map(|pair| (pair.old.text.to_owned(), parts.part(pair.old.at)));
+            self.all.push(List { names: names.collect(), members: Vec::new() });
+            self.all.len() - 1
+        });
+        self.all[place].members.push(member);
+    }
+
+    /// Reports the topics that none of the components uses that list them.
+    pub(super) fn finish(self, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+        for List { names, members } in &self.all {
+            let classes = members.iter().filter_map(|member| fleet.class_of(*member));
+            let classes: HashMap<&str, &ClassIndex<'_>> = classes.map(|class| (class.class.name(), class)).collect();
+            let used: BTreeSet<&str> = classes.values().flat_map(|class| topics(class)).collect();
+            let is_listed = |topic: &str| names.iter().any(|(name, _)| name == topic);
+            for (name, at) in names.iter().filter(|(name, _)| !used.contains(name.as_str())) {
+                let others: Vec<&str> = used.iter().copied().filter(|topic| !is_listed(topic)).collect();
+                let mut classes = classes.keys();
+                let whose = match (classes.next(), classes.len()) {
+                    (Some(only), 0) => format!("class {} uses no topic", quoted(only)),
+                    (_, more) => format!("none of the {} classes that share this uses a topic", more + 1),
+                };
+                let message = format!("{whose} {}: nothing is renamed", quoted(name));
+                let known = ("topics that keep their names are", others.iter().copied());
+                for member in members {
+                    report.about(&fleet.members[*member]);
+                    let one = report.unknown(&codes::RENAME_UNUSED, *at, message.clone(), name, known.clone());
+                    report.push(match others.is_empty() {
+                        true => one.help("remove the pair: all topics there have new names already"),
+                        false => one,
+                    });
+                }
+            }
+        }
+        report.about_all();
+    }
 }
 
 fn wrong(fault: Fault, text: &str, parts: &Parts) -> Diagnostic {
@@ -65,9 +102,7 @@ fn wrong(fault: Fault, text: &str, parts: &Parts) -> Diagnostic {
     }
 }
 
-/// The topics of a class, each once.
-fn topics<'c, 'a>(class: &'c ClassIndex<'a>) -> impl Iterator<Item = &'a ClassTopic> + Clone + use<'c, 'a> {
-    let published = |name: &str| class.publishes.iter().any(|topic| topic.name == name);
-    let others = class.subscribes.iter().filter(move |topic| !published(&topic.name));
-    class.publishes.iter().chain(others).copied()
+/// The names of the topics of a class.
+fn topics<'c>(class: &'c ClassIndex<'_>) -> impl Iterator<Item = &'c str> {
+    class.publishes.iter().chain(&class.subscribes).map(|topic| topic.name.as_str())
 }

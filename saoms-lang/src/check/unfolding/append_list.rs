@@ -2,7 +2,6 @@
 
 use std::cell::OnceCell;
 
-/// The values.
 pub(crate) struct AppendList<T> {
     first: Link<T>,
 }
@@ -20,7 +19,6 @@ pub(crate) struct Appender<'a, T> {
 }
 
 impl<T> AppendList<T> {
-    /// Without values.
     pub(crate) const fn new() -> Self {
         Self { first: OnceCell::new() }
     }

@@ -1,11 +1,13 @@
 //! The scope of the names in expressions: the properties of a composite.
 
-use std::cell::{Cell, RefCell};
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::cell::Cell;
+use std::collections::{BTreeMap, HashSet};
 
 use crate::check::report::{Report, list};
 use crate::check::values::parameters::is_misspelt;
-use crate::check::values::simple_type::SimpleType;
+use crate::check::values::raw::Piece;
+use crate::check::values::shared_values::Answer;
+use crate::check::values::value_type::SimpleType;
 use crate::check::values::{type_name, value_type};
 use crate::diagnostic::{codes, nearest, quoted};
 use crate::expression::{ExpressionError, ExpressionValue, INDEX};
@@ -15,13 +17,14 @@ use crate::source::{Location, Text};
 /// The properties of a composite and of what it includes, as far as they are simple.
 #[derive(Default)]
 pub(crate) struct Names {
-    all: HashMap<String, Name>,
-    used: RefCell<BTreeSet<String>>,
+    all: BTreeMap<String, Name>,
     /// Those that the component gives values to and the composite does not have, which is reported.
     undeclared: HashSet<String>,
 }
 
 struct Name {
+    /// True if an expression asks for it.
+    is_used: Cell<bool>,
     /// The property, where its value is not of its type.
     mistyped: Option<Property>,
     /// True if it has no value, and that is told.
@@ -33,26 +36,13 @@ struct Name {
     value: Result<ExpressionValue, ExpressionError>,
 }
 
-/// The value of a property as an expression takes it.
-#[derive(Clone)]
-pub(crate) enum Supplied {
-    /// One text.
-    Text(Text),
-    /// No single text: parts of a complex value, or several values.
-    Other,
-    /// Nobody knows for a fault, which whoever collects the values of sources reports.
-    Faulty,
-    /// Nobody gives a value.
-    Nothing,
-}
-
 impl Names {
-    /// The names that the expressions in a composite and in what it includes can use, the first of each, with what is
-    /// taken of each. `owner` is the component that it implements.
-    pub(crate) fn of(
-        composites: &[&Composite],
+    /// The names that the expressions in a composite and in what it includes can use, the first of each, with the values
+    /// of each. `owner` is the component that it implements.
+    pub(crate) fn of<'a>(
+        composites: &[&'a Composite],
         owner: Option<&ComponentElement>,
-        supply: &dyn Fn(&str) -> Supplied,
+        values: &mut dyn FnMut(&str) -> Answer<'a>,
     ) -> Self {
         let mut names = Self::default();
         let declared = composites.iter().flat_map(|composite| &composite.properties);
@@ -61,17 +51,19 @@ impl Names {
         for composite in composites {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {
-                    let supplied = supply(&property.name);
-                    let is_faulty = matches!(supplied, Supplied::Faulty);
-                    let is_unset = matches!(supplied, Supplied::Nothing);
-                    let value = value(property, &supplied);
-                    let text = if let Supplied::Text(text) = supplied { Some(text) } else { None };
+                    let values = values(&property.name);
+                    let pieces = values.as_ref().map(|values| &values.raw.0[..]);
+                    let text = match pieces {
+                        Ok([Piece::Text(text)]) => Some(text.clone().into_owned()),
+                        Ok([Piece::Whole(text, ..)]) => Some((*text).clone()),
+                        _ => None,
+                    };
+                    let (is_faulty, is_unset) = (pieces.is_err(), pieces.is_ok_and(<[_]>::is_empty));
+                    let value = value(property, text.as_ref(), is_unset);
                     let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
-                    // What has to be supplied and is not is told where it should be.
-                    let must = property.must_supply().is_some_and(|must| must.value);
                     let is_misspelt = |owner: &ComponentElement| is_misspelt(&property.name, owner, is_declared);
-                    let is_told = is_faulty || is_unset && (must || owner.is_some_and(is_misspelt));
-                    Name { mistyped, is_told: Cell::new(is_told), is_faulty, text, value }
+                    let is_told = is_faulty || is_unset && owner.is_some_and(is_misspelt);
+                    Name { is_used: Cell::new(false), mistyped, is_told: Cell::new(is_told), is_faulty, text, value }
                 });
             }
         }
@@ -83,9 +75,8 @@ impl Names {
 
     /// The value of a name.
     pub(crate) fn value(&self, name: &str) -> Result<ExpressionValue, ExpressionError> {
-        let Some(found) = self.all.get(name) else { return Err(self.unknown(name)) };
         self.ask(name);
-        found.value.clone()
+        self.all.get(name).map_or_else(|| Err(self.unknown(name)), |found| found.value.clone())
     }
 
     /// True if an expression has no value because a name has none, or one that is not of its type: that is told, and
@@ -109,7 +100,7 @@ impl Names {
 
     /// Notes that a name is asked for.
     pub(crate) fn ask(&self, name: &str) {
-        self.used.borrow_mut().insert(name.to_owned());
+        self.all.get(name).into_iter().for_each(|found| found.is_used.set(true));
     }
 
     /// True if what gives a name its value has a fault.
@@ -118,50 +109,46 @@ impl Names {
     }
 
     /// The names that were asked for.
-    pub(crate) fn used(&self) -> Vec<String> {
-        self.used.borrow().iter().cloned().collect()
+    pub(crate) fn used(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().filter(|(_, found)| found.is_used.get()).map(|(name, _)| name.as_str())
     }
 
     fn unknown(&self, name: &str) -> ExpressionError {
-        let mut known: Vec<&str> = self.all.keys().map(String::as_str).collect();
-        known.sort_unstable();
+        let known = || self.all.keys().map(String::as_str);
         let problem = ExpressionError::new(format!("the composite has no property {}", quoted(name)));
-        let truth = match name.to_ascii_lowercase().as_str() {
-            "true" | "yes" | "on" => Some("true"),
-            "false" | "no" | "off" => Some("false"),
-            _ => None,
-        };
-        if let Some(truth) = truth {
-            return problem.instead(truth);
+        match name.to_ascii_lowercase().as_str() {
+            "true" | "yes" | "on" => return problem.instead("true"),
+            "false" | "no" | "off" => return problem.instead("false"),
+            _ if name == INDEX => {
+                return problem.help("`index` is what replicas are counted by: give the component a `saoms:count`");
+            }
+            _ => {}
         }
-        if name == INDEX {
-            return problem.help("`index` is what replicas are counted by: give the component a `saoms:count`");
-        }
-        match nearest(name, known.iter().copied()) {
+        match nearest(name, known()) {
             Some(meant) => problem.instead(meant),
-            None if known.is_empty() => {
+            None if self.all.is_empty() => {
                 problem.help("declare it: `<property name=\"...\">...</property>` in the composite")
             }
-            None => problem.help(format!("its properties are {}", list(known))),
+            None => problem.help(format!("its properties are {}", list(known()))),
         }
     }
 }
 
 /// The value of a property as its type has it; without a type, as what it looks like.
-fn value(property: &Property, supplied: &Supplied) -> Result<ExpressionValue, ExpressionError> {
+fn value(property: &Property, text: Option<&Text>, is_unset: bool) -> Result<ExpressionValue, ExpressionError> {
     let name = quoted(&property.name);
-    let text = match supplied {
-        Supplied::Text(text) => text,
-        Supplied::Nothing => {
-            let help =
-                "write it in the file, or give it with `--set`, or in the component that the composite implements";
-            return Err(ExpressionError::new(format!("the property {name} has no value")).help(help));
-        }
-        Supplied::Other | Supplied::Faulty => {
-            let help =
-                "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`";
-            return Err(ExpressionError::new(format!("the property {name} has no simple value")).help(help));
-        }
+    let Some(text) = text else {
+        let (what, help) = match is_unset {
+            true => (
+                "value",
+                "write it in the file, or give it with `--set`, or in the component that the composite implements",
+            ),
+            false => (
+                "simple value",
+                "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`",
+            ),
+        };
+        return Err(ExpressionError::new(format!("the property {name} has no {what}")).help(help));
     };
     let of = property.r#type().filter(|of| !type_name::is_misspelt(of));
     let of = of.map_or("", |of| type_name::local(of));

@@ -5,7 +5,6 @@ use std::collections::HashMap;
 use super::{MOST_DEEP, MOST_MEMBERS, Unfolding};
 use crate::check::fleet::names;
 use crate::check::fleet::{Kind, Scope};
-use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Composite, Contribution, Link, Naming};
 
@@ -32,10 +31,10 @@ fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut Hash
     size
 }
 
-impl<'a> Unfolding<'a> {
+impl<'a> Unfolding<'a, '_, '_> {
     /// Opens the composite that implements a component.
-    pub(super) fn inner(&mut self, member: usize, naming: Naming<'a>, is_absent: bool, report: &mut Report<'_>) {
-        let Some((place, composite)) = self.find(naming, report) else {
+    pub(super) fn inner(&mut self, member: usize, naming: Naming<'a>, is_absent: bool) {
+        let Some((place, composite)) = self.find(naming) else {
             let is_given = self.options.assume_classes
                 && !matches!(self.fleet.contribution.link(naming.origin), Some(Link::Faulty));
             if is_given {
@@ -43,7 +42,7 @@ impl<'a> Unfolding<'a> {
             }
             return;
         };
-        if self.is_circle(place, naming, report) || self.is_full(place, naming, report) {
+        if self.is_circle(place, naming) || self.is_full(place, naming) {
             return;
         }
         let scope = self.fleet.scopes.len();
@@ -51,28 +50,26 @@ impl<'a> Unfolding<'a> {
         self.fleet.members[member].kind = Kind::Composite(scope);
         let unit = self.unit(scope);
         self.fleet.units[unit].is_absent = is_absent;
-        self.open(place, composite, unit, Some(naming), report);
+        self.open(place, composite, unit, Some(naming));
     }
 
-    fn is_full(&mut self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
+    fn is_full(&mut self, place: usize, naming: Naming<'a>) -> bool {
         let is_too_deep = self.open.len() > MOST_DEEP;
         let more = size(self.fleet.contribution, place, self.open.len(), &mut self.sizes);
         if !is_too_deep && self.fleet.members.len().saturating_add(more) <= MOST_MEMBERS {
             return false;
         }
-        if !std::mem::replace(&mut self.is_full, true) {
-            let message = match is_too_deep {
-                true => format!("composites are inside each other more than {MOST_DEEP} deep"),
-                false => format!("inner composites come to more than {MOST_MEMBERS} components"),
-            };
-            let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, naming.name.location, message);
-            report.push(one.help("a composite inside a composite multiplies: is this what is meant?"));
-        }
+        let message = match is_too_deep {
+            true => format!("composites are inside each other more than {MOST_DEEP} deep"),
+            false => format!("inner composites come to more than {MOST_MEMBERS} components"),
+        };
+        let help = "a composite inside a composite multiplies: is this what is meant?";
+        self.too_large(naming.name.location, message, help);
         true
     }
 
     /// The composite that a name leads to. A name that leads nowhere is reported.
-    pub(super) fn find(&mut self, naming: Naming<'a>, report: &mut Report<'_>) -> Option<(usize, &'a Composite)> {
+    pub(super) fn find(&mut self, naming: Naming<'a>) -> Option<(usize, &'a Composite)> {
         let contribution = self.fleet.contribution;
         let link = contribution.link(naming.origin)?;
         let around = self.open.last()?.composite;
@@ -80,19 +77,19 @@ impl<'a> Unfolding<'a> {
             Link::To(place) => {
                 let composite = &contribution.composites()[*place];
                 if !names::is_exact(naming, around, composite) && self.loose.insert(naming.name.location) {
-                    report.push(names::loose(naming, around, composite));
+                    self.report.push(names::loose(naming, around, composite));
                 }
                 Some((*place, composite))
             }
             Link::Faulty => None,
             Link::Missing(missing) => {
-                report.push(names::not_found(naming, missing, around, self.options.assume_classes));
+                self.report.push(names::not_found(naming, missing, around, self.options.assume_classes));
                 None
             }
         }
     }
 
-    pub(super) fn is_circle(&self, place: usize, naming: Naming<'a>, report: &mut Report<'_>) -> bool {
+    pub(super) fn is_circle(&mut self, place: usize, naming: Naming<'a>) -> bool {
         let Some(start) = self.open.iter().position(|open| open.place == place) else { return false };
         let circle = &self.open[start..];
         let mut names: Vec<String> = circle.iter().take(SHOWN).map(|open| quoted(&open.composite.name)).collect();
@@ -106,7 +103,7 @@ impl<'a> Unfolding<'a> {
         for by in self.open[start + 1..].iter().filter_map(|open| open.by).take(8) {
             one = one.label(by.name.location, "through this");
         }
-        report.push(one);
+        self.report.push(one);
         true
     }
 }

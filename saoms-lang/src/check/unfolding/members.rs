@@ -4,12 +4,11 @@ use super::Unfolding;
 use super::conditions::Presence;
 use super::replica::Instance;
 use crate::check::fleet::Member;
-use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Naming};
 use crate::syntax::Element;
 
-impl<'a> Unfolding<'a> {
+impl<'a> Unfolding<'a, '_, '_> {
     /// Adds a component as it is `written`, and what is inside it.
     pub(crate) fn member(
         &mut self,
@@ -17,7 +16,6 @@ impl<'a> Unfolding<'a> {
         component: &'a ComponentElement,
         instance: Option<&'a Instance>,
         presence: Presence,
-        report: &mut Report<'_>,
     ) {
         let Some(open) = self.open.last() else { return };
         let (composite, unit, autowire) = (open.composite, open.unit, open.autowire);
@@ -45,35 +43,29 @@ impl<'a> Unfolding<'a> {
         if is_seen {
             self.fleet.scopes[scope].members.push(index);
         }
-        let by_name = &mut self.fleet.scopes[scope].by_name;
-        let first = by_name.get(name).copied();
-        if first.is_none() && is_seen && !name.is_empty() {
-            by_name.insert(component.name.value.clone(), index);
-        }
+        let first = self.fleet.scopes[scope].by_name.get(name).copied();
         match first {
             _ if name.is_empty() => {}
-            None if is_seen => {}
-            Some(_) if is_seen && is_partial => {}
-            Some(first) if is_seen && self.fleet.members[first].is_partial => {
-                self.fleet.scopes[scope].by_name.insert(component.name.value.clone(), index);
-            }
-            Some(first) if is_seen => {
-                self.fleet.members[index].is_repeated = true;
-                report.about(&self.fleet.members[index]);
-                self.repeated(component, first, report);
-                report.about_all();
-            }
-            _ => {
+            _ if !is_seen => {
                 let condition = written.condition().map_or(component.name.location, |text| text.location);
                 self.fleet.absent.insert((scope, name), condition);
             }
+            Some(first) if is_partial || !self.fleet.members[first].is_partial => {
+                if !is_partial {
+                    self.fleet.members[index].is_repeated = true;
+                    self.report.about(&self.fleet.members[index]);
+                    self.repeated(component, first);
+                    self.report.about_all();
+                }
+            }
+            _ => _ = self.fleet.scopes[scope].by_name.insert(component.name.value.clone(), index),
         }
         if let Some(naming) = Naming::of_component(component) {
-            self.inner(index, naming, !is_seen, report);
+            self.inner(index, naming, !is_seen);
         }
     }
 
-    fn repeated(&self, component: &ComponentElement, first: usize, report: &mut Report<'_>) {
+    fn repeated(&mut self, component: &ComponentElement, first: usize) {
         let first = &self.fleet.members[first];
         let message = format!("there are two components {}", quoted(&component.name));
         let mut one = Diagnostic::new(&codes::COMPONENT_REPEATED, component.name.location, message)
@@ -84,7 +76,7 @@ impl<'a> Unfolding<'a> {
         }
         let here = self.open.last().map(|open| component.origin.element(&open.composite.document));
         let there = first.component.origin.element(&first.composite.document);
-        report.push(match here {
+        self.report.push(match here {
             Some(here) if !first.is_copy && is_same(here, there) => {
                 let at = here.span().in_file(component.origin.file());
                 one.suggest("remove the second: both are the same, word for word", at, "")

@@ -11,7 +11,9 @@ pub(crate) mod replica;
 pub(crate) mod replica_expansion;
 pub(crate) mod replica_plan;
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::rc::Rc;
 
 use crate::check::fleet::names;
 use crate::check::fleet::{Fleet, Scope, Unit};
@@ -19,9 +21,10 @@ use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::report::severities::Severities;
 use crate::check::unfolding::append_list::{AppendList, Appender};
-use crate::check::unfolding::conditions::UnitProperties;
 use crate::check::unfolding::replica::Replica;
 use crate::check::unfolding::replica_plan::{MOST_REPLICAS, Plan};
+use crate::check::values::parameters::Parameters;
+use crate::check::values::shared_values::MOST_LOOKED_AT;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
 use crate::source::Location;
@@ -40,12 +43,12 @@ pub(crate) fn unfold<'a>(
     report: &mut Report<'_>,
 ) -> Fleet<'a> {
     let asked_for = contribution.asked_for();
-    let count = asked_for.iter().map(|composite| composite.components.len()).sum();
+    let elements_left = Rc::new(Cell::new(MOST_LOOKED_AT));
     let fleet = Fleet {
         contribution,
-        scopes: vec![Scope { members: Vec::with_capacity(count), ..Scope::default() }],
-        units: Vec::with_capacity(asked_for.len()),
-        members: Vec::with_capacity(count),
+        scopes: vec![Scope::default()],
+        units: Vec::new(),
+        members: Vec::new(),
         classes: Vec::new(),
         groups: BTreeMap::new(),
         absent: HashMap::default(),
@@ -53,27 +56,29 @@ pub(crate) fn unfold<'a>(
         conditional: HashMap::new(),
         is_misread: severities.is_misread(report.diagnostics()),
         names: Vec::new(),
+        elements_left: Rc::clone(&elements_left),
     };
     let mut unfolding = Unfolding {
         fleet,
         open: Vec::new(),
         is_full: false,
         options,
+        report,
         lowers_attributes: severities.mentions(&codes::UNKNOWN_ATTRIBUTE),
         sizes: HashMap::new(),
         loose: HashSet::new(),
         replicas: replicas.end(),
         replicas_left: MOST_REPLICAS,
-        known: Vec::new(),
+        parameters: Parameters::new(options, &elements_left).unbounded(),
     };
-    let again = names::composites(asked_for, report);
+    let again = names::composites(asked_for, unfolding.report);
     let included = included(contribution);
     for (place, composite) in asked_for.iter().enumerate() {
         // It stands where it is included.
         if !included[place] && !again.contains(&place) {
             let unit = unfolding.unit(0);
-            unfolding.open(place, composite, unit, None, report);
-            unfolding.walk(report);
+            unfolding.open(place, composite, unit, None);
+            unfolding.walk();
         }
     }
     let fleet = unfolding.fleet;
@@ -85,39 +90,36 @@ pub(crate) fn unfold<'a>(
 fn included(contribution: &Contribution) -> Vec<bool> {
     let all = contribution.composites();
     let asked_for = contribution.asked_for().len();
-    // Of each the first two that lead to it: where one of them is another one than it, it is included.
-    let mut starts: Vec<[Option<usize>; 2]> = vec![[None; 2]; all.len()];
-    let mut waiting: Vec<(usize, usize)> = (0..asked_for).map(|start| (start, start)).collect();
-    while let Some((place, start)) = waiting.pop() {
-        let known = &mut starts[place];
-        let Some(free) = known.iter_mut().find(|one| one.is_none_or(|one| one == start)) else { continue };
-        if free.replace(start).is_some() {
-            continue;
-        }
-        for include in &all[place].includes {
-            if let Some(&Link::To(inner)) = contribution.link(include.origin) {
-                waiting.push((inner, start));
+    let mut included = vec![false; all.len()];
+    for start in 0..asked_for {
+        let mut seen = HashSet::from([start]);
+        let mut waiting = vec![start];
+        while let Some(place) = waiting.pop() {
+            for include in &all[place].includes {
+                if let Some(&Link::To(inner)) = contribution.link(include.origin)
+                    && seen.insert(inner)
+                {
+                    included[inner] = true;
+                    waiting.push(inner);
+                }
             }
         }
     }
-    let is_other = |place: usize| move |start: &usize| *start != place;
-    let included = starts.iter().enumerate();
-    let included = included.map(|(place, starts)| starts.iter().flatten().any(is_other(place)));
-    let mut included: Vec<bool> = included.collect();
     // A circle of includes has to start somewhere.
-    if !included.is_empty() && included.iter().take(contribution.asked_for().len()).all(|one| *one) {
+    if asked_for > 0 && included[..asked_for].iter().all(|one| *one) {
         included[0] = false;
     }
     included
 }
 
-pub(crate) struct Unfolding<'a> {
+pub(crate) struct Unfolding<'a, 'r, 's> {
     pub(crate) fleet: Fleet<'a>,
     /// From the outermost composite to the one at hand.
     pub(crate) open: Vec<Open<'a>>,
     /// True if there are too many components; reported.
     pub(crate) is_full: bool,
     pub(crate) options: &'a Options,
+    pub(crate) report: &'r mut Report<'s>,
     /// True if errors about unknown attributes may be let pass.
     pub(crate) lowers_attributes: bool,
     /// The number of components the composites come to that were asked about.
@@ -127,7 +129,7 @@ pub(crate) struct Unfolding<'a> {
     pub(crate) replicas: Appender<'a, Replica>,
     pub(crate) replicas_left: u64,
     /// The properties of units that have expressions.
-    pub(crate) known: Vec<Option<UnitProperties<'a>>>,
+    pub(crate) parameters: Parameters<'a>,
 }
 
 /// A composite whose components are being collected.
@@ -157,40 +159,26 @@ impl<'a> Open<'a> {
     fn next(&mut self) -> Option<Next<'a>> {
         let component = self.composite.components.get(self.next_component);
         let include = self.composite.includes.get(self.next_include);
-        match (component, include) {
-            (Some(component), Some(include)) if include.origin.element < component.origin.element => {
-                self.next_include += 1;
-                Some(Next::Include(include))
-            }
-            (Some(component), _) => {
-                self.next_component += 1;
-                Some(Next::Component(component))
-            }
-            (None, Some(include)) => {
-                self.next_include += 1;
-                Some(Next::Include(include))
-            }
-            (None, None) => None,
+        if let Some(include) = include
+            && component.is_none_or(|component| include.origin.element < component.origin.element)
+        {
+            self.next_include += 1;
+            return Some(Next::Include(include));
         }
+        self.next_component += 1;
+        component.map(Next::Component)
     }
 }
 
-impl<'a> Unfolding<'a> {
+impl<'a> Unfolding<'a, '_, '_> {
     fn unit(&mut self, scope: usize) -> usize {
-        self.fleet.units.push(Unit { scope, composites: Vec::with_capacity(1), is_absent: false });
+        self.fleet.units.push(Unit { scope, composites: Vec::new(), is_absent: false });
         let unit = self.fleet.units.len() - 1;
         self.fleet.scopes[scope].units.push(unit);
         unit
     }
 
-    fn open(
-        &mut self,
-        place: usize,
-        composite: &'a Composite,
-        unit: usize,
-        by: Option<Naming<'a>>,
-        report: &mut Report<'_>,
-    ) {
+    fn open(&mut self, place: usize, composite: &'a Composite, unit: usize, by: Option<Naming<'a>>) {
         // An included composite without a word of its own does as the one around it.
         let around = self.open.last().filter(|around| around.unit == unit);
         let around = around.is_some_and(|around| around.autowire);
@@ -208,14 +196,14 @@ impl<'a> Unfolding<'a> {
             plan: None,
             is_absent,
         });
-        self.wires(composite, unit, report);
+        self.wires(composite, unit);
     }
 
-    fn walk(&mut self, report: &mut Report<'_>) {
+    fn walk(&mut self) {
         while let Some(last) = self.open.len().checked_sub(1) {
             if let Some(mut plan) = self.open[last].plan.take() {
-                if let Some(index) = plan.next()
-                    && self.replica(&plan, index, report)
+                if let Some(index) = plan.left.next()
+                    && self.replica(&plan, index)
                 {
                     self.open[last].plan = Some(plan);
                 }
@@ -223,47 +211,46 @@ impl<'a> Unfolding<'a> {
             }
             match self.open[last].next() {
                 None => _ = self.open.pop(),
-                Some(Next::Include(include)) => self.include(include, report),
-                Some(Next::Component(component)) => self.component(component, report),
+                Some(Next::Include(include)) => self.include(include),
+                Some(Next::Component(component)) => self.component(component),
             }
         }
     }
 
-    fn include(&mut self, include: &'a Include, report: &mut Report<'_>) {
+    fn include(&mut self, include: &'a Include) {
         let Some(open) = self.open.last() else { return };
         let Some(naming) = Naming::of_include(include) else {
             // It names nothing, which is reported.
             return self.miss(open.unit, "*".to_owned());
         };
         let (unit, around) = (open.unit, open.composite);
-        let Some((place, composite)) = self.find(naming, report) else {
+        let Some((place, composite)) = self.find(naming) else {
             // Names that lead nowhere may be those of its components.
             return self.miss(unit, "*".to_owned());
         };
-        if self.is_circle(place, naming, report) {
+        if self.is_circle(place, naming) {
             return;
         }
-        if !self.is_there(include.condition.as_ref(), include.origin, unit, report) {
+        if !self.is_there(include.condition.as_ref(), include.origin, unit) {
             // Its components see what they would see, and nobody sees them.
             let unit = self.absent_unit(unit);
-            return self.open(place, composite, unit, Some(naming), report);
+            return self.open(place, composite, unit, Some(naming));
         }
         let is_again = self.fleet.units[unit].composites.iter().any(|known| std::ptr::eq(*known, composite));
         if is_again {
             let message = format!("the composite {} is included twice", quoted(&composite.name));
             let one = Diagnostic::new(&codes::INCLUDED_TWICE, naming.name.location, message);
-            return report.push(one.help("remove one of the includes: all of its components are there already"));
+            return self.report.push(one.help("remove one of the includes: all of its components are there already"));
         }
-        if composite.local.is_some_and(|local| local.value) && around.local.is_none_or(|local| !local.value) {
+        if let Some(local) = composite.local.filter(|local| local.value)
+            && around.local.is_none_or(|local| !local.value)
+        {
             let message =
                 format!("the composite {} is `local`, and the one that includes it is not", quoted(&composite.name));
             let one = Diagnostic::new(&codes::INCLUDE_LOCAL, naming.name.location, message)
                 .help("give both composites the same `local`");
-            report.push(match composite.local {
-                Some(local) => one.label(local.location, "said here"),
-                None => one,
-            });
+            self.report.push(one.label(local.location, "said here"));
         }
-        self.open(place, composite, unit, Some(naming), report);
+        self.open(place, composite, unit, Some(naming));
     }
 }

@@ -73,7 +73,7 @@ impl Instance {
         &self,
         template: &ComponentElement,
         table: Option<(&Table, usize)>,
-    ) -> (ComponentElement, Vec<(Text, ExpressionFault)>) {
+    ) -> (ComponentElement, Vec<(Text, Vec<ExpressionFault>)>) {
         let mut component = template.clone();
         if let Some(details) = &mut component.details {
             (details.replicas, details.condition) = (None, None);
@@ -85,7 +85,7 @@ impl Instance {
             }
             match render(text, &mut |name| self.value(name)) {
                 Ok(value) => text.value = value.into(),
-                Err(found) => faults.extend(found.into_iter().map(|fault| (text.clone(), fault))),
+                Err(found) => faults.push((text.clone(), found)),
             }
         });
         if self.partial.is_some() {

@@ -8,43 +8,42 @@ use super::conditions::Presence;
 use super::expression_scope::Names;
 use super::replica::{Instance, Partial, Replica};
 use super::replica_plan::{Plan, condition, first_index};
-use crate::check::report::Report;
 use crate::expression::pattern;
-use crate::model::{ComponentElement, Replicas};
+use crate::model::{ComponentElement, Replicas, Table};
 
-impl<'a> Unfolding<'a> {
+impl<'a> Unfolding<'a, '_, '_> {
     /// Makes what stands next in the composite at hand.
-    pub(crate) fn component(&mut self, component: &'a ComponentElement, report: &mut Report<'_>) {
+    pub(crate) fn component(&mut self, component: &'a ComponentElement) {
         let Some(open) = self.open.last() else { return };
         let (unit, document) = (open.unit, &open.composite.document);
         let Some(replicas) = component.replicas() else {
             let condition = component.condition();
-            let holds = condition.map_or(Some(true), |condition| self.holds(condition, unit, report));
+            let holds = condition.map_or(Some(true), |condition| self.holds(condition, unit));
             let presence = holds.map_or(Presence::Unknown, Presence::of);
-            return self.member(component, component, None, presence, report);
+            return self.member(component, component, None, presence);
         };
         let names = self.names(unit);
         let Some(plan) =
-            Plan::of(component, replicas, document, &names, (self.replicas_left, self.lowers_attributes), report)
+            Plan::of(component, replicas, document, &names, (self.replicas_left, self.lowers_attributes), self.report)
         else {
-            return self.unplanned(component, replicas, &names, report);
+            return self.unplanned(component, replicas, &names);
         };
-        let (is_empty, index) = (plan.count == 0, plan.sample());
+        let (is_empty, index) = (plan.left.is_empty(), plan.first);
         let group = (self.fleet.units[unit].scope, pattern(&component.name));
         self.fleet.groups.entry(group).or_default();
-        if self.complex(component, &plan.instance(index), report) {
-            let presence = self.faults_of(component, &plan.instance(index), report);
-            return self.partial(component, index, &names, presence, report);
+        if self.complex(component, &plan.instance(index)) {
+            let (_, _, presence) = self.made(component, &plan.instance(index), None);
+            return self.partial(component, index, &names, presence);
         }
         if is_empty {
             let instance = plan.instance(index);
             let (made, faults) = instance.of(component, None);
-            self.faults(&names, faults, report);
+            self.faults(&names, &faults);
             if let Some(asked) = component.condition() {
-                _ = condition(asked, &names, &mut |name| instance.value(name), report);
+                _ = condition(asked, &names, &mut |name| instance.value(name), self.report);
             }
             let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });
-            return self.member(component, made, Some(instance), Presence::Absent, report);
+            return self.member(component, made, Some(instance), Presence::Absent);
         }
         self.replicas_left -= plan.cost;
         if let Some(open) = self.open.last_mut() {
@@ -53,75 +52,62 @@ impl<'a> Unfolding<'a> {
     }
 
     /// Makes one of the replicas of a component; `false` with a fault that the others would have as well.
-    pub(crate) fn replica(&mut self, plan: &Plan<'a>, index: i64, report: &mut Report<'_>) -> bool {
+    pub(crate) fn replica(&mut self, plan: &Plan<'a>, index: i64) -> bool {
         let Some(open) = self.open.last() else { return false };
         let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
         let instance = plan.instance(index);
-        let (made, faults) = instance.of(plan.component, plan.row(index));
-        let Replica { component, instance } = self.replicas.add(Replica { component: made, instance });
-        report.about_replica(&component.name, index);
-        let asked = plan.component.condition();
-        let holds = asked.map(|text| condition(text, &plan.names, &mut |name| instance.value(name), report));
-        let is_absent = matches!(holds, Some(Some(false)));
-        let is_faulty = !faults.is_empty() || matches!(holds, Some(None));
-        self.faults(&plan.names, faults, report);
-        report.about_all();
-        if is_faulty && plan.is_at_first() {
-            self.partial(plan.component, index, &plan.names, Presence::of(!is_absent), report);
+        let (made, is_faulty, presence) = self.made(plan.component, &instance, plan.row(index));
+        if is_faulty && index == plan.first {
+            self.partial(plan.component, index, &plan.names, presence);
             return false;
         }
-        if is_faulty || self.is_beyond(plan.component, report) {
+        if is_faulty || self.is_beyond(plan.component) {
             self.miss(unit, pattern(&plan.component.name));
             return false;
         }
+        let Replica { component, instance } = self.replicas.add(Replica { component: made, instance });
         let member = self.fleet.members.len();
-        self.member(plan.component, component, Some(instance), Presence::of(!is_absent), report);
-        if !is_absent && !self.fleet.units[unit].is_absent {
+        self.member(plan.component, component, Some(instance), presence);
+        if presence != Presence::Absent && !self.fleet.units[unit].is_absent {
             self.fleet.groups.entry((scope, pattern(&plan.component.name))).or_default().push(member);
         }
         true
     }
 
     /// Looks at a component of which it is not known how many there are.
-    fn unplanned(
-        &mut self,
-        component: &'a ComponentElement,
-        replicas: &Replicas,
-        names: &Rc<Names>,
-        report: &mut Report<'_>,
-    ) {
+    fn unplanned(&mut self, component: &'a ComponentElement, replicas: &Replicas, names: &Rc<Names>) {
         let first = first_index(replicas, names);
         let index = first.unwrap_or(1);
         let instance = Instance { index, names: Rc::clone(names), partial: None };
         let mut presence = Presence::There;
         if first.is_some() {
-            self.complex(component, &instance, report);
-            presence = self.faults_of(component, &instance, report);
+            self.complex(component, &instance);
+            (_, _, presence) = self.made(component, &instance, None);
         }
-        self.partial(component, index, names, presence, report);
+        self.partial(component, index, names, presence);
     }
 
-    /// Reports the faults in the texts of a replica that is not made, and in its condition.
-    fn faults_of(&self, component: &ComponentElement, instance: &Instance, report: &mut Report<'_>) -> Presence {
-        let (made, faults) = instance.of(component, None);
-        report.about_replica(&made.name, instance.index);
-        self.faults(&instance.names, faults, report);
+    /// A component with the numbers of a replica, whether it has faults, and whether it is there as far as its condition
+    /// says. The faults in its texts and in its condition are reported.
+    fn made(
+        &mut self,
+        component: &ComponentElement,
+        instance: &Instance,
+        row: Option<(&Table, usize)>,
+    ) -> (ComponentElement, bool, Presence) {
+        let (made, faults) = instance.of(component, row);
+        self.report.about_replica(&made.name, instance.index);
+        self.faults(&instance.names, &faults);
         let asked = component.condition();
         let value = &mut |name: &str| instance.value(name);
-        let holds = asked.map(|text| condition(text, &instance.names, value, report));
-        report.about_all();
-        Presence::of(holds != Some(Some(false)))
+        let holds = asked.map(|text| condition(text, &instance.names, value, self.report));
+        self.report.about_all();
+        let is_faulty = !faults.is_empty() || holds == Some(None);
+        (made, is_faulty, Presence::of(holds != Some(Some(false))))
     }
 
     /// Adds one that stands for replicas that are not made.
-    fn partial(
-        &mut self,
-        component: &'a ComponentElement,
-        index: i64,
-        names: &Rc<Names>,
-        presence: Presence,
-        report: &mut Report<'_>,
-    ) {
+    fn partial(&mut self, component: &'a ComponentElement, index: i64, names: &Rc<Names>, presence: Presence) {
         let Some(open) = self.open.last() else { return };
         let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
         let has_table = component.replicas().is_some_and(|replicas| replicas.overrides.is_some());
@@ -132,7 +118,7 @@ impl<'a> Unfolding<'a> {
         let is_open = group.contains('*');
         self.miss(unit, if is_open { group.clone() } else { format!("{group}*") });
         let member = self.fleet.members.len();
-        self.member(component, made, Some(instance), presence, report);
+        self.member(component, made, Some(instance), presence);
         let members = self.fleet.groups.entry((scope, group)).or_default();
         if presence != Presence::Absent {
             members.push(member);

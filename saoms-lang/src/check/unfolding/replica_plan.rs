@@ -1,20 +1,20 @@
 //! The number of replicas of a component, and the table of what differs among them.
 
-use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::rc::Rc;
 
 use super::expression_scope::Names;
 use super::replica::Instance;
 use crate::check::fleet::is_like;
-use crate::check::report::{Parts, Report, replacing};
-use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
+use crate::check::report::{Report, replacing};
+use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::expression::{
     self, Expression, ExpressionError, ExpressionFault, ExpressionValue, INDEX, boolean, integer, parse, pattern,
     render,
 };
-use crate::model::{ComponentElement, Property, Replicas, Table};
-use crate::source::Text;
+use crate::model::{ComponentElement, Property, Replicas, Row, Table};
+use crate::source::{Location, Text};
 use crate::syntax::{Document, escaped};
 
 /// Replicas of a fleet in all: a slip of the finger must not take all memory.
@@ -27,12 +27,12 @@ const BYTES: u64 = 2560;
 pub(crate) struct Plan<'a> {
     pub(crate) component: &'a ComponentElement,
     pub(crate) names: Rc<Names>,
-    next: i64,
-    /// The number of there are in all, and still to come.
-    pub(crate) count: u64,
+    /// The index of the first replica, whether there is one or not: what can be known about the others is known by it.
+    pub(crate) first: i64,
+    /// The indices of those that are still to be made.
+    pub(crate) left: Range<i64>,
     /// As how many they count.
     pub(crate) cost: u64,
-    left: u64,
     /// By index, the line of the table.
     rows: HashMap<i64, usize>,
 }
@@ -71,63 +71,37 @@ impl<'a> Plan<'a> {
         let from = replicas.from.as_ref().map_or(Some(1), |from| number(from, names, report));
         let is_named = has_index(component, names, report);
         let (count, from) = (count?, from?);
-        let fault = |message: String, help: &str, report: &mut Report<'_>| {
-            let mut one = Diagnostic::new(&codes::REPLICAS, written.location, message).help(help);
-            for (name, _) in parse(written).ok().iter().flat_map(Expression::names) {
-                if let Some(at) = names.place(name) {
-                    one = one.label(at, format!("{} is this", quoted(name)));
-                }
-            }
-            report.push(one);
-        };
-        let Ok(count) = u64::try_from(count) else {
-            fault(format!("there cannot be {count} replicas"), "the number of replicas is 0 or more", report);
-            return None;
-        };
-        if count > left {
-            let message = match left {
-                MOST_REPLICAS => format!("{count} replicas are more than a fleet can have"),
-                _ => format!("with {count} replicas here there are more than a fleet can have"),
-            };
-            fault(message, &format!("a fleet has at most {MOST_REPLICAS} replicas"), report);
-            return None;
-        }
         let span = component.origin.element(document).span();
-        let cost = count.saturating_mul(1 + u64::from(span.end - span.start) / BYTES);
-        if cost > left {
-            let message = format!("{count} replicas are more than a fleet can have of one that is so long");
-            let help = format!(
-                "a replica of more than {BYTES} bytes counts as several, and a fleet has at most {MOST_REPLICAS}: put long values into a property that all take as `source`"
-            );
-            fault(message, &help, report);
-            return None;
-        }
-        if from.checked_add_unsigned(count).is_none() {
-            fault("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`", report);
-            return None;
-        }
-        let names = Rc::clone(names);
-        let mut plan = Self { component, names, next: from, count, cost, left: count, rows: HashMap::new() };
-        // With faults in its lines all others count.
-        replicas.table.iter().for_each(|table| plan.rows(table, report));
-        (is_readable && is_named).then_some(plan)
-    }
-
-    /// The next replica: its index.
-    pub(crate) fn next(&mut self) -> Option<i64> {
-        self.left = self.left.checked_sub(1)?;
-        self.next += 1;
-        Some(self.next - 1)
-    }
-
-    /// True if the replica that came last is the first one.
-    pub(crate) fn is_at_first(&self) -> bool {
-        self.left + 1 == self.count
-    }
-
-    /// The first replica, whether there is one or not: what can be known about the others is known by it.
-    pub(crate) fn sample(&self) -> i64 {
-        self.next
+        let cost = count.unsigned_abs().saturating_mul(1 + u64::from(span.end - span.start) / BYTES);
+        let (message, help) = match from.checked_add(count) {
+            _ if count < 0 => {
+                (format!("there cannot be {count} replicas"), "the number of replicas is 0 or more".to_owned())
+            }
+            _ if count.unsigned_abs() > left => {
+                let message = match left {
+                    MOST_REPLICAS => format!("{count} replicas are more than a fleet can have"),
+                    _ => format!("with {count} replicas here there are more than a fleet can have"),
+                };
+                (message, format!("a fleet has at most {MOST_REPLICAS} replicas"))
+            }
+            _ if cost > left => (
+                format!("{count} replicas are more than a fleet can have of one that is so long"),
+                format!(
+                    "a replica of more than {BYTES} bytes counts as several, and a fleet has at most {MOST_REPLICAS}: put long values into a property that all take as `source`"
+                ),
+            ),
+            None => ("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`".to_owned()),
+            Some(end) => {
+                let names = Rc::clone(names);
+                let mut plan = Self { component, names, first: from, left: from..end, cost, rows: HashMap::new() };
+                // With faults in its lines all others count.
+                replicas.table.iter().for_each(|table| plan.rows(table, report));
+                return (is_readable && is_named).then_some(plan);
+            }
+        };
+        let one = Diagnostic::new(&codes::REPLICAS, written.location, message).help(help);
+        report.push(with_values(one, written, names));
+        None
     }
 
     /// The instance of an index.
@@ -143,46 +117,47 @@ impl<'a> Plan<'a> {
 
     /// Finds the line of each replica. What is wrong with the lines is reported.
     fn rows(&mut self, table: &Table, report: &mut Report<'_>) {
-        if self.count == 0 {
+        if self.left.is_empty() {
             // As where the number comes from outside: nothing in the table is about anybody now.
             return;
         }
-        let last = self.next.saturating_add(self.count as i64 - 1);
-        let by_name = (table.key == *"name").then(|| self.by_name());
-        if let Some(other) = self.other_key(table, by_name.as_ref()) {
-            let message =
-                format!("the first column is {}, and its values are of {}", quoted(&table.key), quoted(other));
+        let is_by_name = table.key == *"name";
+        let names = self.by_name();
+        let is_name = |row: &Row| names.contains_key(row.key.as_str());
+        let is_index = |row: &Row| row.key.parse::<i64>().is_ok();
+        let other = if is_by_name { "index" } else { "name" };
+        let is_other = |row: &Row| is_name(row) != is_by_name && is_index(row) == is_by_name;
+        if !table.rows.is_empty() && table.rows.iter().all(is_other) {
+            let (key, values) = (quoted(&table.key), quoted(other));
+            let message = format!("the first column is {key}, and its values are of {values}");
             let one = Diagnostic::new(&codes::OVERRIDES, table.key.location, message);
-            report.push(one.suggest(replacing(&table.key, other), table.key.location, other));
-            return;
+            return report.push(one.suggest(replacing(&table.key, other), table.key.location, other));
         }
-        let free = OnceCell::new();
-        let mut seen: HashMap<i64, &Text> = HashMap::new();
+        let free = without_line(&names, table);
         for (place, row) in table.rows.iter().enumerate() {
-            let found = match &by_name {
-                Some(by_name) => by_name.get(row.key.as_str()).copied(),
-                None => row.key.parse().ok().filter(|index| (self.next..=last).contains(index)),
+            let found = match is_by_name {
+                true => names.get(row.key.as_str()).copied(),
+                false => row.key.parse().ok().filter(|index| self.left.contains(index)),
             };
             let Some(index) = found else {
-                let is_possible = match by_name {
-                    Some(_) => self.is_possible(&row.key),
-                    None => row.key.parse::<i64>().is_ok(),
-                };
+                let is_possible = if is_by_name { self.is_possible(&row.key) } else { is_index(row) };
                 let message = format!("there is no replica {}", quoted(&row.key));
-                let one = match &by_name {
-                    Some(_) if is_possible => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
+                let one = match is_by_name {
+                    true if is_possible => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
                         .help("there would be one if `saoms:count` were larger"),
-                    Some(by_name) => {
-                        let names = free.get_or_init(|| without_line(by_name, table));
-                        let known = ("the table says nothing of", names.iter().copied());
+                    true => {
+                        let known = ("the table says nothing of", free.iter().copied());
                         let one = report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known);
                         match one.suggestions.is_empty() {
                             true => one.help(format!("they are called {}", quoted(&self.component.name))),
                             false => one,
                         }
                     }
-                    None => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
-                        .help(format!("the indices go from {} to {last}", self.next)),
+                    false => Diagnostic::new(&codes::OVERRIDES, row.key.location, message).help(format!(
+                        "the indices go from {} to {}",
+                        self.first,
+                        self.left.end - 1
+                    )),
                 };
                 // Fewer robots than the table knows are no mistake where the number is set from outside.
                 let severity = if is_possible { Severity::Warning } else { Severity::Error };
@@ -190,33 +165,13 @@ impl<'a> Plan<'a> {
                 continue;
             };
             report.line(row.key.location);
-            if let Some(first) = seen.get(&index) {
-                let message = format!("there are two lines about the replica {}", quoted(&row.key));
-                let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
-                report.push(one.label(first.location, "the first").help("make one of them"));
-                continue;
-            }
-            seen.insert(index, &row.key);
-            self.rows.insert(index, place);
-        }
-    }
-
-    /// The right name of the first column, where its values show that it is wrong.
-    fn other_key(&self, table: &Table, by_name: Option<&HashMap<String, i64>>) -> Option<&'static str> {
-        let mut keys = table.rows.iter().map(|row| row.key.as_str()).peekable();
-        keys.peek()?;
-        match by_name {
-            Some(names) => {
-                let is_index = |key: &str| !names.contains_key(key) && key.parse::<i64>().is_ok();
-                keys.all(is_index).then_some("index")
-            }
-            None => {
-                // As a rule the first says that they are numbers.
-                if keys.peek().is_some_and(|key| key.parse::<i64>().is_ok()) {
-                    return None;
+            match self.rows.get(&index) {
+                None => _ = self.rows.insert(index, place),
+                Some(first) => {
+                    let message = format!("there are two lines about the replica {}", quoted(&row.key));
+                    let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
+                    report.push(one.label(table.rows[*first].key.location, "the first").help("make one of them"));
                 }
-                let names = self.by_name();
-                keys.all(|key| names.contains_key(key)).then_some("name")
             }
         }
     }
@@ -241,8 +196,7 @@ impl<'a> Plan<'a> {
 
     /// The index of each name.
     fn by_name(&self) -> HashMap<String, i64> {
-        let indices = (self.next..).take(self.count as usize);
-        let named = indices.filter_map(|index| {
+        let named = self.left.clone().filter_map(|index| {
             let instance = self.instance(index);
             Some((render(&self.component.name, &mut |name| instance.value(name)).ok()?, index))
         });
@@ -337,7 +291,7 @@ pub(crate) fn as_index(text: &str) -> Option<String> {
 /// The number that an attribute comes to. Faults are reported.
 fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Option<i64> {
     let value = parse(text).and_then(|one| integer(&one, &mut |name| names.value(name)));
-    value.map_err(|fault| report_fault(text, &report.parts(text), &fault, names, report)).ok()
+    value.map_err(|fault| report_faults(text, &[fault], names, report)).ok()
 }
 
 /// True if a condition is true. Faults are reported.
@@ -348,39 +302,33 @@ pub(crate) fn condition(
     report: &mut Report<'_>,
 ) -> Option<bool> {
     let holds = parse(text).and_then(|one| boolean(&one, value));
-    holds.map_err(|fault| report_fault(text, &report.parts(text), &fault, names, report)).ok()
+    holds.map_err(|fault| report_faults(text, &[fault], names, report)).ok()
 }
 
-/// Reports what is wrong with an expression in a text.
-pub(crate) fn report_fault(
-    text: &Text,
-    parts: &Parts,
-    fault: &ExpressionFault,
-    names: &Names,
-    report: &mut Report<'_>,
-) {
-    let written = text.get(fault.at.clone()).unwrap_or_default();
-    if !names.report_value(written.trim(), report) {
-        report.push(wrong(text, parts, fault, names));
+/// Reports what is wrong with the expressions in a text.
+pub(crate) fn report_faults(text: &Text, faults: &[ExpressionFault], names: &Names, report: &mut Report<'_>) {
+    let parts = report.parts(text);
+    for fault in faults {
+        let written = text.get(fault.at.clone()).unwrap_or_default();
+        if !names.report_value(written.trim(), report) {
+            report.push(wrong(written, parts.part(fault.at.clone()), &fault.problem, names));
+        }
     }
+}
+
+/// A diagnostic with the places of the values that an expression asks for.
+fn with_values(one: Diagnostic, written: &str, names: &Names) -> Diagnostic {
+    let inside = parse(written).ok();
+    let asked = inside.iter().flat_map(Expression::names);
+    let known = asked.filter_map(|(name, _)| Some((names.place(name)?, format!("{} is this", quoted(name)))));
+    known.fold(one, |one, (place, what)| one.label(place, what))
 }
 
 /// The diagnostic about an expression in a text.
-fn wrong(text: &Text, parts: &Parts, fault: &ExpressionFault, names: &Names) -> Diagnostic {
-    let code: &'static Code = &codes::EXPRESSION;
-    let at = parts.part(fault.at.clone());
-    let ExpressionError { message, help, instead, .. } = &fault.problem;
-    let mut one = Diagnostic::new(code, at, message.clone());
-    let written = text.get(fault.at.clone()).unwrap_or_default();
-    let inside = parse(written).ok();
-    for (name, _) in inside.iter().flat_map(Expression::names) {
-        if let Some(place) = names.place(name) {
-            one = one.label(place, format!("{} is this", quoted(name)));
-        }
-    }
-    if let Some(help) = help {
-        one = one.help(help.clone());
-    }
+fn wrong(written: &str, at: Location, problem: &ExpressionError, names: &Names) -> Diagnostic {
+    let ExpressionError { message, help, instead, .. } = problem;
+    let mut one = with_values(Diagnostic::new(&codes::EXPRESSION, at, message.clone()), written, names);
+    one.help.extend(help.clone());
     match instead {
         Some(instead) if instead.is_empty() => one.suggest(format!("remove {}", quoted(written)), at, ""),
         Some(instead) => one.suggest(replacing(written, instead.trim()), at, escaped(instead)),

@@ -5,42 +5,66 @@
 //! leads to several elements, the next one starts from all of them, as in XPath. Prefixes do not count. Everything else
 //! of XPath is an error.
 
+use std::borrow::Cow;
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::raw::{Piece, Raw};
+use super::shared_values::MOST_LOOKED_AT;
+use super::type_name::local;
 use crate::check::report::list;
+use crate::check::unfolding::replica::Instance;
 use crate::diagnostic::{nearest, quoted};
+use crate::source::Text;
 use crate::syntax::{Attribute, Element};
 
 /// The fault of a step of another form.
 const NO_STEP: &str = "no step of a path is written like this";
 
+/// The place of an element among its siblings.
+pub(crate) const POSITION: &str = "position()";
+
 /// The forms of steps, for help.
 pub(crate) const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
 
-/// Parts that are looked at for what could have been meant.
-const MOST_LOOKED_AT: usize = 1_000;
+/// Parts that are looked at for what could have been meant, and names of them that are told.
+const MOST_MEANT: usize = 1_000;
+const MOST_TOLD: usize = 50;
+
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum FaultKind {
+    /// The path leads nowhere.
+    Wrong,
+    /// It is an XPath that is no path: another program may understand it.
+    Unknown,
+    /// The paths of the fleet look at too many elements.
+    TooMany,
+}
 
 /// A fault of a path.
 pub(crate) struct Fault {
     /// Its bytes.
     pub(crate) step: Range<usize>,
-    /// The message.
     pub(crate) message: String,
-    /// False for an XPath that is no path: another program may understand it.
-    pub(crate) is_understood: bool,
+    pub(crate) kind: FaultKind,
     /// A name in the step, and the one that is probably meant by it.
     pub(crate) instead: Option<(String, String)>,
 }
 
 impl Fault {
     pub(crate) fn new(step: Range<usize>, message: impl Into<String>) -> Self {
-        Self { step, message: message.into(), is_understood: true, instead: None }
+        Self { step, message: message.into(), kind: FaultKind::Wrong, instead: None }
     }
 
     /// The fault of what another program may understand.
     pub(crate) fn unknown(step: Range<usize>, message: impl Into<String>) -> Self {
-        Self { step, message: message.into(), is_understood: false, instead: None }
+        Self { kind: FaultKind::Unknown, ..Self::new(step, message) }
+    }
+
+    /// The fault of a step where paths have looked at too many elements.
+    pub(crate) fn too_many(step: Range<usize>) -> Self {
+        let message = format!("paths of sources look at more than {MOST_LOOKED_AT} elements");
+        Self { kind: FaultKind::TooMany, ..Self::new(step, message) }
     }
 
     /// With the name among those that there are which is nearly this one.
@@ -75,18 +99,23 @@ pub(crate) fn ends<'a>(
     around: &[Element<'a>],
     (at, step): (Range<usize>, &str),
     is_last: bool,
-    instance: Option<&'a crate::check::unfolding::replica::Instance>,
+    instance: Option<&'a Instance>,
 ) -> Option<Result<Raw<'a>, Fault>> {
+    let raw = |texts: Vec<Text>| Raw(texts.into_iter().map(|text| Piece::text(text, instance)).collect());
     if let Some(name) = step.strip_prefix('@').filter(|name| is_name(name)) {
+        let found = around.iter().filter_map(|one| Some(attribute(*one, name)?.trimmed())).collect::<Vec<_>>();
         return Some(match is_last {
             false => Err(Fault::new(at, "an attribute has no parts")),
-            true => attributes(around, name, instance).ok_or_else(|| no_attribute(at, name, around)),
+            true if found.is_empty() => Err(no_attribute(at, name, around)),
+            true => Ok(raw(found)),
         });
     }
     if step == "text()" {
+        let found = around.iter().filter_map(|one| one.trimmed_text()).collect::<Vec<_>>();
         return Some(match is_last {
             false => Err(Fault::new(at, "a text has no parts")),
-            true => texts(around, instance).ok_or_else(|| Fault::new(at, "there is no text here")),
+            true if found.is_empty() => Err(Fault::new(at, "there is no text here")),
+            true => Ok(raw(found)),
         });
     }
     let is_missing = step.is_empty();
@@ -136,10 +165,22 @@ pub(crate) struct Test<'p> {
 
 pub(crate) enum Predicate<'p> {
     Position(Position),
-    /// An attribute has this value.
-    Attribute(&'p str, &'p str),
-    /// An element inside has this text.
-    Part(&'p str, &'p str),
+    /// An attribute such as `@id`, or an element inside, has this value.
+    Value {
+        of: &'p str,
+        value: &'p str,
+    },
+}
+
+impl<'p> Predicate<'p> {
+    /// The value that it asks for, and what has to have it.
+    pub(crate) fn asked(&self) -> Option<(&'p str, Cow<'p, str>)> {
+        match *self {
+            Self::Value { of, value } => Some((of, value.into())),
+            Self::Position(Position::Number(number)) => Some((POSITION, number.to_string().into())),
+            Self::Position(Position::Last) => None,
+        }
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -178,15 +219,15 @@ impl<'p> Test<'p> {
         Some(Self { name, predicate })
     }
 
+    /// True if an element has the name that the step asks for.
+    pub(crate) fn is_of_name(&self, one: Element<'_>) -> bool {
+        self.name.is_none_or(|name| one.local_name() == name)
+    }
+
     /// The reason why the step at these bytes leads to none of these elements, of which some have its name.
     pub(crate) fn fault(&self, at: Range<usize>, all: &[Element<'_>], named: &[Element<'_>]) -> Fault {
         if named.is_empty() {
-            let mut known: Vec<&str> = Vec::new();
-            for one in all.iter().take(MOST_LOOKED_AT).map(|one| one.local_name()) {
-                if known.len() < 50 && !known.contains(&one) {
-                    known.push(one);
-                }
-            }
+            let known = different(all.iter().map(|one| one.local_name()));
             let asked = self.name.map_or(String::new(), |name| format!(" {}", quoted(name)));
             let message = match known.is_empty() {
                 true => format!("there is no part{asked}: there are no parts here"),
@@ -195,17 +236,13 @@ impl<'p> Test<'p> {
             let message = message + self.of_values();
             return Fault::new(at, message).near(self.name.unwrap_or_default(), known);
         }
-        let (name, value) = match &self.predicate {
-            Some(Predicate::Attribute(name, value)) => (name, value),
-            Some(Predicate::Part(name, value)) => {
-                let message = format!("no part here has {} as its part {}", quoted(value), quoted(name));
-                return Fault::new(at, message);
-            }
-            _ => {
-                return Fault::new(at, self.no_place(named));
-            }
+        let Some(Predicate::Value { of, value }) = self.predicate else {
+            return Fault::new(at, self.no_place(named));
         };
-        let values = named.iter().take(MOST_LOOKED_AT).filter_map(|one| attribute(*one, name)).take(50);
+        let Some(name) = of.strip_prefix('@') else {
+            return Fault::new(at, format!("no part here has {} as its part {}", quoted(value), quoted(of)));
+        };
+        let values = named.iter().take(MOST_MEANT).filter_map(|one| attribute(*one, name)).take(MOST_TOLD);
         let values: Vec<_> = values.map(|one| one.value()).collect();
         let known = match values.is_empty() {
             true => "none has it".to_owned(),
@@ -214,9 +251,7 @@ impl<'p> Test<'p> {
         let message = format!("no part here has {} as its {}: {known}", quoted(value), quoted(name));
         Fault::new(at, message).near(value, values.iter().map(|value| &**value))
     }
-}
 
-impl Test<'_> {
     /// The message for a path into `<value>` elements: a variable is the values, not the elements around them.
     pub(crate) fn of_values(&self) -> &'static str {
         if self.name == Some("value") {
@@ -255,59 +290,34 @@ fn predicate(text: &str) -> Option<Predicate<'_>> {
     };
     let Some((name, value)) = inside.split_once('=') else { return place(inside) };
     let (name, value) = (name.trim(), value.trim());
-    if name == "position()" {
+    if name == POSITION {
         return place(value);
     }
     let value = match value.chars().next().filter(|open| matches!(open, '\'' | '"')) {
         Some(open) => value[1..].strip_suffix(open).filter(|value| !value.contains(open))?,
         None => Some(value).filter(|value| value.parse::<f64>().is_ok())?,
     };
-    match name.strip_prefix('@') {
-        Some(name) => is_name(name).then_some(Predicate::Attribute(name, value)),
-        None => is_name(name).then_some(Predicate::Part(local(name), value)),
-    }
-}
-
-fn attributes<'a>(
-    around: &[Element<'a>],
-    name: &str,
-    instance: Option<&'a crate::check::unfolding::replica::Instance>,
-) -> Option<Raw<'a>> {
-    let found = around.iter().filter_map(|one| attribute(*one, name));
-    let found: Vec<Piece<'a>> = found.map(|one| Piece::text(one.trimmed(), instance)).collect();
-    (!found.is_empty()).then_some(Raw(found))
-}
-
-fn texts<'a>(
-    around: &[Element<'a>],
-    instance: Option<&'a crate::check::unfolding::replica::Instance>,
-) -> Option<Raw<'a>> {
-    let found = around.iter().filter_map(|one| one.trimmed_text());
-    let found: Vec<Piece<'a>> = found.map(|text| Piece::text(text, instance)).collect();
-    (!found.is_empty()).then_some(Raw(found))
+    let of = if name.starts_with('@') { name } else { local(name) };
+    is_name(name.strip_prefix('@').unwrap_or(name)).then_some(Predicate::Value { of, value })
 }
 
 pub(crate) fn attribute<'a>(element: Element<'a>, name: &str) -> Option<Attribute<'a>> {
     element.attributes().find(|one| one.local_name() == local(name))
 }
 
+/// The different names among some.
+fn different<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
+    let mut seen = HashSet::new();
+    names.take(MOST_MEANT).filter(|name| seen.insert(*name)).take(MOST_TOLD).collect()
+}
+
 fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> Fault {
-    let mut known: Vec<&str> = Vec::new();
-    for one in around.iter().flat_map(|one| one.attributes()).map(Attribute::local_name) {
-        if known.len() < 50 && !known.contains(&one) {
-            known.push(one);
-        }
-    }
+    let known = different(around.iter().flat_map(|one| one.attributes()).map(Attribute::local_name));
     let said = match known.is_empty() {
         true => "there are none here".to_owned(),
         false => format!("the attributes are {}", list(known.iter().copied())),
     };
     Fault::new(at, format!("there is no attribute {}; {said}", quoted(name))).near(local(name), known)
-}
-
-/// A name without its prefix.
-fn local(name: &str) -> &str {
-    name.rsplit(':').next().unwrap_or(name)
 }
 
 /// True if it can be the name of an element or an attribute, as far as that tells it from other steps.

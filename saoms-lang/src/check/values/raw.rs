@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 use std::rc::Rc;
+use std::slice;
 
+use super::type_name::local;
 use crate::check::report::Report;
 use crate::check::unfolding::replica::Instance;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -17,7 +19,6 @@ pub(crate) struct Raw<'a>(pub(crate) Vec<Piece<'a>>);
 /// One value.
 #[derive(Clone)]
 pub(crate) enum Piece<'a> {
-    /// A text.
     Text(Cow<'a, Text>),
     /// Elements: the named values of a complex property, and the replica whose numbers are in their texts.
     Elements(Rc<[Element<'a>]>, Option<&'a Instance>),
@@ -26,7 +27,6 @@ pub(crate) enum Piece<'a> {
 }
 
 impl<'a> Raw<'a> {
-    /// One text.
     pub(crate) fn one(text: &'a Text) -> Self {
         Self(vec![Piece::Text(Cow::Borrowed(text))])
     }
@@ -35,10 +35,37 @@ impl<'a> Raw<'a> {
     pub(crate) fn bytes(&self) -> usize {
         let length = |piece: &Piece<'_>| match piece {
             Piece::Text(text) => text.len(),
-            Piece::Elements(..) => 0,
             Piece::Whole(text, ..) => text.len(),
+            Piece::Elements(..) => 0,
         };
         self.0.iter().map(length).sum()
+    }
+
+    /// What components take of a property of this declaration: where an `element` is its type, what is inside of each
+    /// such element.
+    pub(crate) fn inside_elements_of(self, property: &Property) -> Self {
+        let Some(of) = property.element() else { return self };
+        let is_it = |one: &Element<'_>| one.local_name() == local(of);
+        let pieces = self.0.into_iter().flat_map(|piece| match piece {
+            Piece::Elements(elements, instance) if elements.iter().all(is_it) => {
+                Self::of_elements(&elements, instance).0
+            }
+            Piece::Whole(_, root, instance) if is_it(&root) => vec![Piece::inside(root, instance)],
+            other => vec![other],
+        });
+        Self(pieces.collect())
+    }
+
+    /// The values of a property that takes several of an element `of` a name, one each, where they are written beside
+    /// each other.
+    pub(crate) fn split_into_elements(self, of: &str) -> Self {
+        let pieces = self.0.into_iter().flat_map(|piece| match piece {
+            Piece::Elements(elements, instance) if elements.iter().all(|one| one.local_name() == local(of)) => {
+                elements.iter().map(|one| Piece::Elements([*one].into(), instance)).collect()
+            }
+            other => vec![other],
+        });
+        Self(pieces.collect())
     }
 
     /// The values inside these elements, one each.
@@ -66,7 +93,23 @@ impl<'a> Piece<'a> {
         })
     }
 
-    /// Its place.
+    /// The elements that it is.
+    pub(crate) fn elements(&self) -> Option<&[Element<'a>]> {
+        match self {
+            Self::Text(_) => None,
+            Self::Elements(elements, _) => Some(elements),
+            Self::Whole(_, root, _) => Some(slice::from_ref(root)),
+        }
+    }
+
+    /// The replica whose numbers are in its texts.
+    pub(crate) fn instance(&self) -> Option<&'a Instance> {
+        match self {
+            Self::Text(_) => None,
+            Self::Elements(_, instance) | Self::Whole(_, _, instance) => *instance,
+        }
+    }
+
     pub(crate) fn location(&self) -> Location {
         match self {
             Self::Text(text) => text.location,
@@ -85,40 +128,24 @@ pub(crate) fn raw<'a>(
     instance: Option<&'a Instance>,
     report: &mut Report<'_>,
 ) -> Result<Raw<'a>, ()> {
-    only_way(property, document, instance).map_err(|fault| match fault {
-        WaysFault::Two(first, second) => {
+    if let (Some(file), None, None) = (property.file(), property.document(), property.from_file()) {
+        // As a rule it was reported by who tried to read it.
+        if !report.has_errors() {
+            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
+        }
+        return Err(());
+    }
+    let mut ways = ways(property, document, instance).into_iter();
+    match (ways.next(), ways.next()) {
+        (Some((first, _)), Some((second, _))) => {
             let message = format!("the property {} is given a value in two ways", quoted(&property.name));
             report.push(
                 Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message)
                     .label(first, "the other one")
                     .help("write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`"),
             );
+            Err(())
         }
-        // As a rule it was reported by who tried to read it.
-        WaysFault::Unread(file) if !report.has_errors() => {
-            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file, "the file was not read"));
-        }
-        WaysFault::Unread(_) => {}
-    })
-}
-
-/// The fault of the ways in which a property gives its values.
-pub(crate) enum WaysFault {
-    /// The file that it names here was not read.
-    Unread(Location),
-    /// There are two, at these places.
-    Two(Location, Location),
-}
-
-/// The same, where faults are reported by whoever takes the values.
-pub(crate) fn only_way<'a>(
-    property: &'a Property,
-    document: &'a Document,
-    instance: Option<&'a Instance>,
-) -> Result<Raw<'a>, WaysFault> {
-    let mut ways = ways(property, document, instance)?.into_iter();
-    match (ways.next(), ways.next()) {
-        (Some((first, _)), Some((second, _))) => Err(WaysFault::Two(first, second)),
         (only, _) => Ok(only.map_or_else(|| Raw(Vec::new()), |(_, raw)| raw)),
     }
 }
@@ -128,7 +155,7 @@ fn ways<'a>(
     property: &'a Property,
     document: &'a Document,
     instance: Option<&'a Instance>,
-) -> Result<Vec<(Location, Raw<'a>)>, WaysFault> {
+) -> Vec<(Location, Raw<'a>)> {
     let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
     if let Some(value) = property.value() {
         ways.push((value.location, Raw::one(value)));
@@ -149,14 +176,12 @@ fn ways<'a>(
         let elements = property.content().iter().map(|id| document.element(*id)).collect();
         ways.push((document.element(*first).name_location(), Raw(vec![Piece::Elements(elements, instance)])));
     }
-    if let Some(file) = property.file()
-        && let Some(from) = property.document()
-    {
-        ways.push((file.location, document_value(from, property, instance)));
-    } else if let Some(file) = property.file() {
-        ways.push((file.location, Raw::one(property.from_file().ok_or(WaysFault::Unread(file.location))?)));
+    if let Some(file) = property.file() {
+        let of_document = property.document().map(|from| document_value(from, property, instance));
+        let found = of_document.or_else(|| property.from_file().map(Raw::one));
+        ways.extend(found.map(|found| (file.location, found)));
     }
-    Ok(ways)
+    ways
 }
 
 /// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's

@@ -1,41 +1,59 @@
-//! The values of a property as all who take them share them, with what paths led to in them: a fleet can give one long
-//! value on through many composites, and take each of its parts in one of these.
+//! The values of a property as all who take them share them, and the parts of these that paths lead to: a fleet can give
+//! one long value on through many composites, and take each of its parts in one of these.
 
-use std::cell::RefCell;
-use std::collections::HashMap;
+use std::cell::{Cell, RefCell};
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::rc::Rc;
 
-use super::path::{Fault, one_of, steps};
-use super::path_index::PathIndex;
+use super::path::{Fault, POSITION, Predicate, Test, attribute, ends, no_step, one_of, steps};
 use super::raw::{Piece, Raw};
 use crate::model::Property;
+use crate::syntax::Element;
+
+/// Elements that the steps of all paths of a fleet may look at.
+pub(crate) const MOST_LOOKED_AT: u64 = 200_000_000;
+
+/// Steps of which is kept what each value that they can ask for leads to.
+const MOST_TABLES: usize = 64;
 
 /// The values of a property.
 pub(crate) struct SharedValues<'a> {
-    raw: Raw<'a>,
-    /// The same with a value for each element, where it is a property that takes several of one.
-    split: Option<Raw<'a>>,
-    /// The content of all of them, or of the one at a place, once a path led into it.
-    levels: RefCell<HashMap<Option<usize>, Rc<PathIndex<'a>>>>,
+    pub(crate) raw: Raw<'a>,
+    /// The elements behind steps such as `robot[@id='r1']`, by the path up to the value: many paths ask for one each.
+    tables: RefCell<HashMap<String, ByValue<'a>>>,
+}
+
+/// The values of a property; `Err` with a fault, which is reported.
+pub(crate) type Answer<'a> = Result<Rc<SharedValues<'a>>, ()>;
+
+/// Elements by the value that a step asks for.
+type ByValue<'a> = HashMap<String, Vec<Element<'a>>>;
+
+/// The elements that a step starts from.
+#[derive(Default)]
+struct Level<'a> {
+    /// Those that it leads into.
+    around: Vec<Element<'a>>,
+    /// Those of the value itself, which are in none of these.
+    top: Vec<Element<'a>>,
+    /// True if they are in each other as well.
+    is_deep: bool,
 }
 
 impl<'a> SharedValues<'a> {
     /// Values that no property declares.
     pub(crate) fn new(raw: Raw<'a>) -> Rc<Self> {
-        Rc::new(Self { raw, split: None, levels: RefCell::default() })
-    }
-
-    /// Values of a property of this declaration.
-    pub(crate) fn of(raw: Raw<'a>, property: &Property) -> Rc<Self> {
-        let split = raw.is_split_by(property).then(|| raw.clone().split_into_elements_of(property));
-        Rc::new(Self { raw, split, levels: RefCell::default() })
+        Rc::new(Self { raw, tables: RefCell::default() })
     }
 
     /// These values as those of a property of this declaration.
     pub(crate) fn given_to(self: Rc<Self>, property: &Property) -> Rc<Self> {
-        match self.split.is_none() && !self.raw.is_split_by(property) {
-            true => self,
-            false => Self::of(self.raw.clone(), property),
+        match property.element() {
+            Some(of) if property.many().is_some_and(|many| many.value) => {
+                Self::new(self.into_raw().split_into_elements(of))
+            }
+            _ => self,
         }
     }
 
@@ -47,48 +65,178 @@ impl<'a> SharedValues<'a> {
         }
     }
 
-    pub(crate) fn raw(&self) -> &Raw<'a> {
-        &self.raw
-    }
-
-    /// The values as a path counts them.
-    fn split(&self) -> &Raw<'a> {
-        self.split.as_ref().unwrap_or(&self.raw)
-    }
-
     /// These values, for whoever takes them alone.
     pub(crate) fn into_raw(self: Rc<Self>) -> Raw<'a> {
         Rc::try_unwrap(self).map_or_else(|shared| shared.raw.clone(), |own| own.raw)
     }
 
-    /// The values that a path leads to from these, of a property of this declaration, as components take them.
-    pub(crate) fn led_to(self: Rc<Self>, path: &str, property: &Property) -> Result<Rc<Self>, Fault> {
-        if self.raw.0.is_empty() {
+    /// The values that a path leads to from these, of a property of this declaration, as components take them. `left` is
+    /// how many elements paths may still look at.
+    pub(crate) fn led_to(self: Rc<Self>, path: &str, property: &Property, left: &Cell<u64>) -> Result<Rc<Self>, Fault> {
+        let values = &self.raw.0;
+        if values.is_empty() {
             // What has no value has no parts either.
             return Ok(self);
         }
-        let part = Self::new(self.part(path)?);
-        // Without more steps it is the value itself.
-        Ok(if steps(path).nth(1).is_none() { part.inside_elements_of(property) } else { part })
+        let values = match one_of(values.len(), path)? {
+            Some(place) => &values[place..=place],
+            None => values,
+        };
+        let all: Vec<(Range<usize>, &str)> = steps(path).skip(1).collect();
+        let is_all = match all[..] {
+            [] => return Ok(Self::new(Raw(values.to_vec())).inside_elements_of(property)),
+            [(_, "text()")] => self.raw.0.iter().all(|piece| matches!(piece, Piece::Text(_))),
+            _ => false,
+        };
+        Ok(Self::new(if is_all { Raw(values.to_vec()) } else { self.walk(values, path, &all, left)? }))
     }
 
-    /// The values that a path leads to: the part of a `source` behind the name.
-    fn part(&self, path: &str) -> Result<Raw<'a>, Fault> {
-        let values = &self.split().0;
-        let place = one_of(values.len(), path)?;
-        let one = || place.map_or_else(|| self.split().clone(), |place| Raw(vec![values[place].clone()]));
-        let mut rest = steps(path).skip(1).map(|(_, step)| step);
-        let (first, second) = (rest.next(), rest.next());
-        let are_texts = || values.iter().all(|piece| matches!(piece, Piece::Text(_)));
-        if first.is_none() || (first, second) == (Some("text()"), None) && are_texts() {
-            return Ok(one());
+    /// The parts of some of the values that the steps of a path lead to.
+    fn walk(
+        &self,
+        values: &[Piece<'a>],
+        path: &str,
+        all: &[(Range<usize>, &str)],
+        left: &Cell<u64>,
+    ) -> Result<Raw<'a>, Fault> {
+        let instance = values.iter().find_map(Piece::instance);
+        let mut steps = all.iter();
+        // From the last step on of which it is known where it leads.
+        let known = (1..=all.len()).rev().find_map(|count| Some((count, self.known(path, &all[count - 1])?)));
+        let mut level = match known {
+            Some((count, found)) => {
+                steps = all[count..].iter();
+                Level { around: found, ..Level::default() }
+            }
+            None => Level::start(values, path, all[0].1)?,
+        };
+        while let Some((at, step)) = steps.next() {
+            let is_last = steps.len() == 0;
+            if step.is_empty() && !is_last && !level.is_deep {
+                level = level.deep();
+                look_at(level.around.len(), at, left)?;
+                continue;
+            }
+            if let Some(end) = ends(&level.around, (at.clone(), step), is_last, instance) {
+                return end;
+            }
+            let test = Test::of(step).ok_or_else(|| no_step(step, at.clone()))?;
+            let here: Vec<Element<'a>> = level.here().collect();
+            look_at(here.len(), at, left)?;
+            let named: Vec<Element<'a>> = here.iter().copied().filter(|one| test.is_of_name(*one)).collect();
+            let mut found = match test.predicate.as_ref().map(Predicate::asked) {
+                None => named.clone(),
+                Some(None) => siblings(&named).filter_map(|these| these.last().copied()).collect(),
+                Some(Some((of, value))) => {
+                    let table = by_value(&named, of);
+                    let found = table.get(&*value).cloned().unwrap_or_default();
+                    let mut tables = self.tables.borrow_mut();
+                    if tables.len() < MOST_TABLES {
+                        tables.insert(key(path, at, &test, of), table);
+                    }
+                    found
+                }
+            };
+            if found.is_empty() {
+                return Err(test.fault(at.clone(), &here, &named));
+            }
+            found.sort_unstable_by_key(|one| one.id());
+            level = Level { around: found, ..Level::default() };
         }
-        let known = self.levels.borrow().get(&place).map(Rc::clone);
-        let levels = known.unwrap_or_else(|| {
-            let levels = Rc::new(PathIndex::of(&one()));
-            self.levels.borrow_mut().insert(place, Rc::clone(&levels));
-            levels
-        });
-        levels.walk(path)
+        Ok(Raw::of_elements(&level.around, instance))
+    }
+
+    /// The elements behind a step, where another path came this way.
+    fn known(&self, path: &str, (at, step): &(Range<usize>, &str)) -> Option<Vec<Element<'a>>> {
+        let test = Test::of(step)?;
+        let (of, value) = test.predicate.as_ref()?.asked()?;
+        let mut found = self.tables.borrow().get(&key(path, at, &test, of))?.get(&*value)?.clone();
+        found.sort_unstable_by_key(|one| one.id());
+        Some(found)
+    }
+}
+
+/// A path up to the value that the step at some bytes asks for.
+fn key(path: &str, at: &Range<usize>, test: &Test<'_>, of: &str) -> String {
+    format!("{}{}[{of}", &path[..at.start], test.name.unwrap_or("*"))
+}
+
+/// Counts elements that the step at these bytes looks at.
+fn look_at(count: usize, at: &Range<usize>, left: &Cell<u64>) -> Result<(), Fault> {
+    left.set(left.get().saturating_sub(count as u64));
+    if left.get() == 0 { Err(Fault::too_many(at.clone())) } else { Ok(()) }
+}
+
+/// Elements by the values that they have of a part, of an attribute such as `@id`, or by their places.
+fn by_value<'a>(elements: &[Element<'a>], of: &str) -> ByValue<'a> {
+    let mut all = ByValue::new();
+    for (place, one) in siblings(elements).flat_map(|these| these.iter().enumerate()) {
+        let values: Vec<String> = match of.strip_prefix('@') {
+            Some(name) => attribute(*one, name).map(|found| found.value().into_owned()).into_iter().collect(),
+            None if of == POSITION => vec![(place + 1).to_string()],
+            None => {
+                let parts = one.children().filter(|part| part.local_name() == of);
+                parts.filter_map(|part| Some(part.trimmed_text()?.as_str().to_owned())).collect()
+            }
+        };
+        for value in values {
+            let these = all.entry(value).or_default();
+            if these.last().is_none_or(|last| last.id() != one.id()) {
+                these.push(*one);
+            }
+        }
+    }
+    all
+}
+
+/// Elements by what they are in: siblings stand beside each other.
+fn siblings<'e, 'a>(all: &'e [Element<'a>]) -> impl Iterator<Item = &'e [Element<'a>]> {
+    let parent = |one: &Element<'_>| one.parent().map(Element::id);
+    all.chunk_by(move |one, other| parent(one) == parent(other))
+}
+
+impl<'a> Level<'a> {
+    /// The elements that the first step of a path starts from. Where each value is one element, that may mean a part of
+    /// it: `$order/total` also means the `total` of a value that is written as one element.
+    fn start(values: &[Piece<'a>], path: &str, first: &str) -> Result<Self, Fault> {
+        let elements: Vec<&[Element<'a>]> = values.iter().filter_map(Piece::elements).collect();
+        let top = elements.concat();
+        if top.is_empty() {
+            let of_values = Test::of(first).map_or("", |test| test.of_values());
+            let message = format!("the property has a simple value: there are no parts in it{of_values}");
+            return Err(Fault::new(0..path.len(), message));
+        }
+        let is_inside = elements.iter().all(|value| value.len() == 1)
+            && match Test::of(first) {
+                Some(Test { name: None, .. }) => false,
+                Some(test) => {
+                    !top.iter().any(|one| test.is_of_name(*one))
+                        && top.iter().flat_map(|one| one.children()).any(|one| test.is_of_name(one))
+                }
+                None => first.starts_with('@') || first == "text()",
+            };
+        Ok(match is_inside {
+            true => Self { around: top, ..Self::default() },
+            false => Self { top, ..Self::default() },
+        })
+    }
+
+    /// The elements that a step chooses from.
+    fn here(&self) -> impl Iterator<Item = Element<'a>> {
+        self.top.iter().copied().chain(self.around.iter().flat_map(|one| one.children()))
+    }
+
+    /// All that is inside, to any depth: siblings beside each other.
+    fn deep(self) -> Self {
+        let mut waiting = [&self.around[..], &self.top].concat();
+        let (mut around, mut seen) = (Vec::new(), HashSet::new());
+        while let Some(one) = waiting.pop() {
+            if seen.insert(one.id()) {
+                around.push(one);
+                waiting.extend(one.children());
+            }
+        }
+        around.sort_unstable_by_key(|one| one.id());
+        Self { around, top: self.top, is_deep: true }
     }
 }

@@ -34,10 +34,7 @@ pub(crate) fn named(property: &Property, document: &Document, report: &mut Repor
     let namespace = namespace.as_deref();
     if namespace != Some(XML_SCHEMA) {
         let is_of_sca = namespace.is_none_or(|namespace| Version::from_namespace(namespace).is_some());
-        if prefix.is_empty()
-            && is_of_sca
-            && let Some(meant) = meant(local)
-        {
+        if let Some(meant) = meant(local).filter(|_| prefix.is_empty() && is_of_sca) {
             unprefixed(of, meant, element, document, report);
         }
         return;

@@ -1,24 +1,22 @@
 //! The properties of composites: what `source="$name"` and `source="$name/path"` stand for.
 
-mod missing;
-mod settings;
+mod outside;
 mod sources;
 
-use std::cell::OnceCell;
-use std::collections::{HashMap, HashSet};
+use std::cell::Cell;
+use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 
-use missing::{from_outside, is_asked_for};
+use outside::{from_outside, is_asked_for};
 
-use crate::check::fleet::{Fleet, Member, Unit};
+use crate::check::fleet::{Fleet, Member};
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::unfolding::replica::Instance;
 use crate::check::values::path::expression;
 use crate::check::values::raw::{Raw, beside_source, raw};
-use crate::check::values::shared_values::SharedValues;
-use crate::check::values::type_match::{self, Match};
-use crate::check::values::value_type::Typed;
+use crate::check::values::shared_values::{Answer, SharedValues};
+use crate::check::values::value_type::{Typed, check_match};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
@@ -29,28 +27,45 @@ pub(crate) struct Parameters<'a> {
     /// By the places of the fleet's units.
     units: Vec<Declared<'a>>,
     options: &'a Options,
-    /// The number of more values sources with several can lead to.
-    left: usize,
-    /// The number of more bytes of text sources can lead to.
-    bytes_left: usize,
+    values: Budget,
+    text: Budget,
+    /// How many more elements the paths of sources may look at.
+    elements_left: Rc<Cell<u64>>,
+    /// True if it is told that they look at too many.
+    is_told_of_elements: bool,
 }
 
-/// Values that sources with several can lead to: each component that takes all of a list has each of its values.
-const MOST_VALUES: usize = 4_000_000;
+/// What sources can lead to in all: each component that takes a value has it.
+struct Budget {
+    left: usize,
+    most: &'static str,
+    help: &'static str,
+}
+
+impl Budget {
+    /// Takes a part of it. That it is used up is reported once.
+    fn spend(&mut self, cost: usize, at: Location, report: &mut Report<'_>) -> Result<(), ()> {
+        let before = self.left;
+        self.left = before.saturating_sub(cost);
+        if self.left > 0 {
+            return Ok(());
+        }
+        if before > 0 {
+            let message = format!("sources come to more than {}", self.most);
+            report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message).help(self.help));
+        }
+        Err(())
+    }
+}
 
 /// Names that a composite does not have which are looked at for one that it has: where a component is full of them they
 /// mean nothing by each.
 const MOST_MISSPELT: usize = 100;
 
-/// Bytes of text that sources can lead to: each component that takes a text has it.
-const MOST_BYTES: usize = 64 << 20;
-
 /// The properties of one composite, those of what it includes among them.
 #[derive(Default)]
 struct Declared<'a> {
-    by_name: HashMap<&'a str, Parameter<'a>>,
-    /// Its names in order, once somebody asked.
-    names: OnceCell<Vec<&'a str>>,
+    by_name: BTreeMap<&'a str, Parameter<'a>>,
     /// True if a `source` leads to none of them: one of them is probably meant.
     has_wrong_source: bool,
     /// True if one of them has no name, which is reported.
@@ -63,15 +78,18 @@ struct Parameter<'a> {
     composite: &'a Composite,
     property: &'a Property,
     given: Option<Given<'a>>,
-    /// The variable of the environment that counts where nobody else gives a value.
-    variable: Option<&'a Text>,
     /// True if it has to be given a value, and what the component says that the composite implements comes to none.
     is_unset: bool,
     is_used: bool,
-    /// True if what a component gives was held to its type.
-    is_judged: bool,
     /// Its values, once somebody asked for them.
     whole: Option<Rc<SharedValues<'a>>>,
+}
+
+impl<'a> Parameter<'a> {
+    /// The variable of the environment that counts where nobody else gives a value.
+    fn variable(&self, options: &'a Options) -> Option<&'a Text> {
+        options.variable(self.property.env()?)
+    }
 }
 
 /// The value that counts in place of the value that a composite gives its property itself.
@@ -81,6 +99,8 @@ enum Given<'a> {
     Outside(&'a Text),
     /// The property of the component that the composite implements.
     Component(ValueSite<'a>, &'a Property),
+    /// Perhaps something that a fault of that component hides.
+    Unknown,
 }
 
 /// The surroundings of a property that has a value.
@@ -92,76 +112,112 @@ pub(crate) struct ValueSite<'a> {
     pub(crate) instance: Option<&'a Instance>,
 }
 
-/// The values of a property, and the `source` that leads to them.
-pub(crate) struct Found<'a> {
-    pub(crate) raw: Raw<'a>,
-    pub(crate) source: Option<Location>,
-}
-
-impl<'a> Declared<'a> {
-    /// The names of its properties, sorted.
-    fn names(&self) -> &[&'a str] {
-        self.names.get_or_init(|| {
-            let mut names: Vec<&str> = self.by_name.keys().copied().collect();
-            names.sort_unstable();
-            names
-        })
+impl<'a> ValueSite<'a> {
+    /// The surroundings of the properties of a component.
+    fn of(member: &Member<'a>) -> Self {
+        Self { unit: member.unit, composite: member.composite, instance: member.instance }
     }
 }
 
 impl<'a> Parameters<'a> {
     /// Collects the properties and gives them what counts in place of their own values.
     pub(crate) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
-        let owner = |unit: &Unit<'_>| Some(fleet.members[fleet.scopes[unit.scope].owner?].component);
-        let with_owner = |unit| Declared { owner: owner(unit), ..declared(unit, report) };
-        let units = fleet.units.iter().map(with_owner).collect();
-        let mut parameters = Self { units, options, left: MOST_VALUES, bytes_left: MOST_BYTES };
+        let mut parameters = Self::new(options, &fleet.elements_left);
         for (place, unit) in fleet.units.iter().enumerate() {
-            let Some(owner) = fleet.scopes[unit.scope].owner else { continue };
-            let owner = &fleet.members[owner];
-            let outside = ValueSite { unit: owner.unit, composite: owner.composite, instance: owner.instance };
-            for property in &owner.component.properties {
-                if let Some(parameter) = parameters.units[place].by_name.get_mut(property.name.as_str()) {
-                    // A second one is reported.
-                    parameter.given.get_or_insert(Given::Component(outside, property));
-                }
-            }
+            let owner = fleet.scopes[unit.scope].owner.map(|owner| &fleet.members[owner]);
+            parameters.declare(place, (&unit.composites, unit.is_absent), owner, report);
         }
-        parameters.set(fleet, options, report);
-        let declared = parameters.units.iter_mut().flat_map(|unit| unit.by_name.values_mut());
-        for parameter in declared {
-            parameter.variable = parameter.property.env().and_then(|named| options.variable(named));
-            parameter.given = parameter.given.or(parameter.variable.map(Given::Outside));
-        }
-        parameters.judge_outside(fleet, report);
+        parameters.set(fleet, report);
+        parameters.judge(fleet, false, report);
         parameters.take_for_expressions(fleet, report);
         parameters
     }
 
-    /// Holds what comes from the command line and the environment to the types of the properties.
-    fn judge_outside(&mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
-        for (place, unit) in fleet.units.iter().enumerate() {
-            for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
-                let parameter = self.units[place].by_name.get(property.name.as_str());
-                if parameter.is_some_and(|parameter| matches!(parameter.given, Some(Given::Outside(_)))) {
-                    let _ = self.whole(place, &property.name, report);
-                }
-            }
+    /// Those of no composite yet.
+    pub(crate) fn new(options: &'a Options, elements_left: &Rc<Cell<u64>>) -> Self {
+        Self {
+            units: Vec::new(),
+            options,
+            values: Budget {
+                left: 4_000_000,
+                most: "4000000 values",
+                help: "each component that takes all values of a property has each of them: is this what is meant?",
+            },
+            text: Budget {
+                left: 64 << 20,
+                most: "64 MB of text",
+                help: "each component that takes a long text has it: is this what is meant?",
+            },
+            elements_left: Rc::clone(elements_left),
+            is_told_of_elements: false,
         }
     }
 
-    /// The values of a component's property: those that its `source` leads to, or its own. Faults are reported.
-    pub(crate) fn values(
-        &mut self,
-        place: ValueSite<'a>,
-        property: &'a Property,
-        report: &mut Report<'_>,
-    ) -> Result<Found<'a>, ()> {
-        let (whole, source) = self.shared(place, property, report)?;
-        Ok(Found { raw: whole.into_raw(), source })
+    /// The same without bounds on the number and length of values, where whoever has bounds finds them as well.
+    pub(crate) fn unbounded(mut self) -> Self {
+        (self.values.left, self.text.left) = (usize::MAX, usize::MAX);
+        self
     }
 
-    /// The same, with the `source`, as all share them who take them.
+    /// Declares the properties of a unit of these composites, which may not be there, in place of others. `owner` is the
+    /// component that the first of them implements. Repeated ones are reported.
+    pub(crate) fn declare(
+        &mut self,
+        unit: usize,
+        (composites, is_absent): (&[&'a Composite], bool),
+        owner: Option<&Member<'a>>,
+        report: &mut Report<'_>,
+    ) {
+        let mut declared = declared(composites, is_absent, report);
+        if let Some(owner) = owner {
+            declared.owner = Some(owner.component);
+            for property in &owner.component.properties {
+                if let Some(parameter) = declared.by_name.get_mut(property.name.as_str()) {
+                    // A second one is reported.
+                    parameter.given.get_or_insert(Given::Component(ValueSite::of(owner), property));
+                }
+            }
+        }
+        for (name, parameter) in declared.by_name.iter_mut().filter(|(_, parameter)| parameter.given.is_none()) {
+            let given = match owner {
+                Some(owner) => owner.may_give_others().then_some(Given::Unknown),
+                None => {
+                    let mut settings = self.options.settings.iter();
+                    settings.find(|setting| *setting.name == **name).map(|setting| Given::Outside(&setting.value))
+                }
+            };
+            parameter.given = given.or_else(|| parameter.variable(self.options).map(Given::Outside));
+        }
+        if self.units.len() <= unit {
+            self.units.resize_with(unit + 1, Declared::default);
+        }
+        self.units[unit] = declared;
+    }
+
+    /// Holds what comes from the command line and the environment to the types of the properties, or else what
+    /// components give properties that nobody took: it has to be right all the same, and there where it has to be.
+    fn judge(&mut self, fleet: &Fleet<'a>, is_of_components: bool, report: &mut Report<'_>) {
+        for (place, unit) in fleet.units.iter().enumerate().filter(|(_, unit)| !(is_of_components && unit.is_absent)) {
+            if let Some(owner) = fleet.scopes[unit.scope].owner.filter(|_| is_of_components) {
+                report.about(&fleet.members[owner]);
+            }
+            for property in unit.composites.iter().flat_map(|composite| &composite.properties) {
+                let parameter = self.units[place].by_name.get(property.name.as_str());
+                let is_asked = parameter.is_some_and(|parameter| match parameter.given {
+                    Some(Given::Outside(_)) => !is_of_components,
+                    Some(Given::Component(..)) => is_of_components && parameter.whole.is_none(),
+                    Some(Given::Unknown) | None => false,
+                });
+                if is_asked {
+                    let _ = self.whole(place, &property.name, report);
+                }
+            }
+            report.about_all();
+        }
+    }
+
+    /// The values of a component's property, with the `source` that leads there: those behind that, or its own. Faults
+    /// are reported.
     fn shared(
         &mut self,
         place: ValueSite<'a>,
@@ -173,7 +229,7 @@ impl<'a> Parameters<'a> {
         }
         if let Some(source) = property.source() {
             let whole = self.resolve(place.unit, source, report)?;
-            if !whole.raw().0.is_empty() {
+            if !whole.raw.0.is_empty() {
                 let named = expression(source).and_then(|(name, _)| self.units[place.unit].by_name.get(name));
                 if named.is_some_and(|named| named.property.has_value()) {
                     beside_source(property, source, &place.composite.document, report);
@@ -185,16 +241,16 @@ impl<'a> Parameters<'a> {
         Ok((SharedValues::new(raw(property, &place.composite.document, place.instance, report)?), None))
     }
 
-    /// The values of a component's property as its class takes them: what is inside of an `element`. Faults are
-    /// reported.
+    /// The values of a component's property as its class takes them, what is inside of an `element`, with the `source`
+    /// that leads there. Faults are reported.
     pub(crate) fn taken(
         &mut self,
-        place: ValueSite<'a>,
+        member: &Member<'a>,
         property: &'a Property,
         report: &mut Report<'_>,
-    ) -> Result<Found<'a>, ()> {
-        let found = self.values(place, property, report)?;
-        Ok(Found { raw: found.raw.inside_elements_of(property), ..found })
+    ) -> Result<(Raw<'a>, Option<Location>), ()> {
+        let (values, source) = self.shared(ValueSite::of(member), property, report)?;
+        Ok((values.into_raw().inside_elements_of(property), source))
     }
 
     /// Checks that the properties of a component that say a type take their values from properties of types that fit.
@@ -204,7 +260,7 @@ impl<'a> Parameters<'a> {
                 && let Some(from) = self.declaration(member.unit, source)
             {
                 let own = Typed { property, document: &member.composite.document };
-                type_match::check(own, from, Match::Source(source.location), report);
+                check_match(own, from, Some(source.location), report);
             }
         }
     }
@@ -254,68 +310,34 @@ impl<'a> Parameters<'a> {
 
     /// Counts what composites of which not all is known take from those around them.
     fn pass_on(&mut self, fleet: &Fleet<'a>) {
-        let mut passed: HashSet<(usize, &str)> = HashSet::new();
         for unit in (0..self.units.len()).rev() {
             let is_open = self.units[unit].has_wrong_source || fleet.scopes[fleet.units[unit].scope].is_faulty;
-            if !is_open && passed.is_empty() {
-                continue;
-            }
-            let all = self.units[unit].by_name.iter();
-            let open = all.filter(|(name, _)| is_open || passed.contains(&(unit, **name)));
+            let open = self.units[unit].by_name.values().filter(|parameter| is_open || parameter.is_used);
             let from: Vec<(usize, &'a str)> = open
-                .filter_map(|(_, parameter)| match parameter.given {
+                .filter_map(|parameter| match parameter.given {
                     Some(Given::Component(place, given)) => Some((place.unit, expression(given.source()?)?.0)),
                     _ => None,
                 })
                 .collect();
             for (outer, name) in from {
-                if let Some(parameter) = self.units[outer].by_name.get_mut(name) {
-                    parameter.is_used = true;
-                    passed.insert((outer, name));
-                }
+                self.units[outer].by_name.get_mut(name).into_iter().for_each(|outside| outside.is_used = true);
             }
         }
     }
 
     /// The values that `source` leads to in this unit. Faults are reported.
-    pub(crate) fn resolve(
-        &mut self,
-        unit: usize,
-        source: &Text,
-        report: &mut Report<'_>,
-    ) -> Result<Rc<SharedValues<'a>>, ()> {
+    pub(crate) fn resolve(&mut self, unit: usize, source: &Text, report: &mut Report<'_>) -> Answer<'a> {
         let whole = self.follow(unit, source, report)?;
-        let raw = whole.raw();
-        let (left, count) = (self.left, raw.0.len());
-        if count > 1 {
-            self.left = left.saturating_sub(count);
-            if left <= count {
-                if left > 0 {
-                    let message = format!("sources come to more than {MOST_VALUES} values");
-                    let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message);
-                    report.push(one.help(
-                        "each component that takes all values of a property has each of them: is this what is meant?",
-                    ));
-                }
-                return Err(());
-            }
-        }
-        let left = self.bytes_left.saturating_sub(raw.bytes());
-        let before = std::mem::replace(&mut self.bytes_left, left);
-        if self.bytes_left == 0 {
-            if before > 0 {
-                let message = format!("sources come to more than {} MB of text", MOST_BYTES >> 20);
-                let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message);
-                report.push(one.help("each component that takes a long text has it: is this what is meant?"));
-            }
-            return Err(());
-        }
+        // One value is no list.
+        let count = Some(whole.raw.0.len()).filter(|count| *count > 1);
+        self.values.spend(count.unwrap_or_default(), source.location, report)?;
+        self.text.spend(whole.raw.bytes(), source.location, report)?;
         Ok(whole)
     }
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
     pub(crate) fn finish(mut self, fleet: &Fleet<'a>, report: &mut Report<'_>) {
-        self.follow_all(fleet, report);
+        self.judge(fleet, true, report);
         self.pass_on(fleet);
         // A composite may be there several times; what is used in one of them is used.
         let all = self.units.iter().flat_map(|declared| declared.by_name.values());
@@ -332,9 +354,7 @@ impl<'a> Parameters<'a> {
                 let name = &property.name;
                 let is_declared = |name: &str| declared.by_name.contains_key(name);
                 let is_given = parameter.given.is_some() && !parameter.is_unset
-                    || owner.is_some_and(|owner| {
-                        owner.may_give_others() || is_misspelt(name, owner.component, is_declared)
-                    });
+                    || owner.is_some_and(|owner| is_misspelt(name, owner.component, is_declared));
                 if is_asked_for(property) && !is_given {
                     owner.into_iter().for_each(|owner| report.about(owner));
                     report.push(self.missing(place, property, self.options.assume_classes));
@@ -355,47 +375,26 @@ impl<'a> Parameters<'a> {
 }
 
 /// The properties of a composite and of what it includes. Repeated ones are reported.
-fn declared<'a>(unit: &Unit<'a>, report: &mut Report<'_>) -> Declared<'a> {
+fn declared<'a>(composites: &[&'a Composite], is_absent: bool, report: &mut Report<'_>) -> Declared<'a> {
     let mut all = Declared::default();
-    let properties = unit
-        .composites
-        .iter()
-        .flat_map(|composite| composite.properties.iter().map(move |property| (*composite, property)));
+    let properties = composites.iter().flat_map(|one| one.properties.iter().map(move |property| (*one, property)));
     for (composite, property) in properties {
         if property.name.is_empty() {
             all.has_nameless = true;
             continue;
         }
-        // What is not there may say otherwise what another composite says that is there in place of it, or be the same
-        // composite.
-        let is_instead = |first: &Parameter<'_>| unit.is_absent && !std::ptr::eq(first.composite, composite);
-        let first = all.by_name.get(property.name.as_str());
-        if first.is_some_and(|first| std::ptr::eq(first.property, property)) {
-            continue;
+        let parameter = Parameter { composite, property, given: None, is_unset: false, is_used: false, whole: None };
+        match all.by_name.get(property.name.as_str()) {
+            Some(first) if std::ptr::eq(first.property, property) => {}
+            // What is not there may say otherwise what another composite says that is there in place of it.
+            Some(first) if !is_absent || std::ptr::eq(first.composite, composite) => {
+                let message = format!("the composite has two properties {}", quoted(&property.name));
+                let one = Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, property.name.location, message)
+                    .label(first.property.name.location, "the first");
+                report.push(one.rule("ASM60014").help("give each its own name"));
+            }
+            _ => _ = all.by_name.insert(&property.name, parameter),
         }
-        if let Some(first) = first.filter(|first| !is_instead(first)) {
-            let message = format!("the composite has two properties {}", quoted(&property.name));
-            report.push(
-                Diagnostic::new(&codes::COMPOSITE_PART_REPEATED, property.name.location, message)
-                    .rule("ASM60014")
-                    .label(first.property.name.location, "the first")
-                    .help("give each its own name"),
-            );
-            continue;
-        }
-        all.by_name.insert(
-            &property.name,
-            Parameter {
-                composite,
-                property,
-                given: None,
-                variable: None,
-                is_unset: false,
-                is_used: false,
-                is_judged: false,
-                whole: None,
-            },
-        );
     }
     all
 }

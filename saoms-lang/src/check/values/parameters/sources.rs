@@ -5,9 +5,9 @@ use std::rc::Rc;
 use super::{Given, Parameters};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
-use crate::check::values::path::{FORMS, Fault, expression};
+use crate::check::values::path::{FORMS, Fault, FaultKind, expression};
 use crate::check::values::raw::{Piece, Raw, raw};
-use crate::check::values::shared_values::SharedValues;
+use crate::check::values::shared_values::{Answer, SharedValues};
 use crate::check::values::value_type::Typed;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::source::Text;
@@ -19,7 +19,7 @@ impl<'a> Parameters<'a> {
         // From the inside out: what a name takes as a whole from a composite around is asked for there as well.
         for (unit, names) in fleet.names.iter().enumerate().rev() {
             for name in names.iter().flat_map(|names| names.used()) {
-                if let Some((around, source)) = self.source_of(unit, &name)
+                if let Some((around, source)) = self.source_of(unit, name)
                     && let Some((whole, None)) = expression(source)
                     && let Some(around) = &fleet.names[around]
                 {
@@ -31,15 +31,15 @@ impl<'a> Parameters<'a> {
             let Some(names) = names else { continue };
             let owner = fleet.scopes[fleet.units[unit].scope].owner;
             for name in names.used() {
-                let Some(parameter) = self.units[unit].by_name.get_mut(name.as_str()) else { continue };
+                let Some(parameter) = self.units[unit].by_name.get_mut(name) else { continue };
                 parameter.is_used = true;
-                let source = self.source_of(unit, &name);
+                let source = self.source_of(unit, name);
                 let is_simple = source.is_none_or(|(unit, source)| self.declaration(unit, source).is_some());
-                if !names.is_faulty(&name) && is_simple {
+                if !names.is_faulty(name) && is_simple {
                     continue;
                 }
                 owner.into_iter().for_each(|owner| report.about(&fleet.members[owner]));
-                let _ = self.whole(unit, &name, report);
+                let _ = self.whole(unit, name, report);
                 report.about_all();
             }
         }
@@ -54,12 +54,7 @@ impl<'a> Parameters<'a> {
     }
 
     /// The values that a `source` leads to. Faults are reported.
-    pub(super) fn follow(
-        &mut self,
-        place: usize,
-        source: &Text,
-        report: &mut Report<'_>,
-    ) -> Result<Rc<SharedValues<'a>>, ()> {
+    pub(super) fn follow(&mut self, place: usize, source: &Text, report: &mut Report<'_>) -> Answer<'a> {
         let known = &self.units[place].by_name;
         let simple = expression(source).filter(|(name, _)| known.contains_key(name) || is_name(name));
         let Some((name, path)) = simple else {
@@ -67,18 +62,11 @@ impl<'a> Parameters<'a> {
             return Err(());
         };
         self.named(place, source, name, report)?;
+        let Some(path) = path else { return self.taken_whole(place, name, report) };
         let whole = self.whole(place, name, report)?;
-        let parameter = &self.units[place].by_name[name];
-        let property = parameter.property;
-        let Some(path) = path else {
-            // Where the composite does not say it, the component that it implements may.
-            let typed = match parameter.given {
-                Some(Given::Component(_, outside)) if property.element().is_none() => outside,
-                _ => property,
-            };
-            return Ok(whole.inside_elements_of(typed));
-        };
-        whole.led_to(path, property).map_err(|fault| self.malformed(source, name.len() + 1, fault, report))
+        let property = self.units[place].by_name[name].property;
+        let found = whole.led_to(path, property, &self.elements_left);
+        found.map_err(|fault| self.malformed(source, name.len() + 1, fault, report))
     }
 
     /// Finds the property that a `source` names, and notes that it is used. One that is not there is reported.
@@ -93,61 +81,57 @@ impl<'a> Parameters<'a> {
         if unit.has_nameless || unit.owner.is_some_and(|owner| owner.property(name).is_some()) {
             return Err(());
         }
-        let names = unit.names();
+        let names = unit.by_name.keys().copied();
         let at = report.part(source, 1..1 + name.len());
         let message = format!("the composite has no property {}", quoted(name));
-        let known = ("its properties are", names.iter().copied());
+        let known = ("its properties are", names);
         let one = report.unknown(&codes::UNKNOWN_SOURCE, at, message, name, known);
-        report.push(match names.is_empty() {
+        report.push(match unit.by_name.is_empty() {
             true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
             false => one,
         });
         Err(())
     }
 
+    /// The values of a property of this name as a whole, as components take them.
+    pub(crate) fn taken_whole(&mut self, place: usize, name: &str, report: &mut Report<'_>) -> Answer<'a> {
+        let whole = self.whole(place, name, report)?;
+        let parameter = &self.units[place].by_name[name];
+        // Where the composite does not say it, the component that it implements may.
+        let typed = match parameter.given {
+            Some(Given::Component(_, outside)) if parameter.property.element().is_none() => outside,
+            _ => parameter.property,
+        };
+        Ok(whole.inside_elements_of(typed))
+    }
+
     /// The whole value of a property that is there.
-    pub(super) fn whole(
-        &mut self,
-        place: usize,
-        name: &str,
-        report: &mut Report<'_>,
-    ) -> Result<Rc<SharedValues<'a>>, ()> {
+    pub(super) fn whole(&mut self, place: usize, name: &str, report: &mut Report<'_>) -> Answer<'a> {
         let Some(parameter) = self.units[place].by_name.get_mut(name) else { return Err(()) };
         if let Some(known) = &parameter.whole {
             return Ok(Rc::clone(known));
         }
         let (composite, property, given) = (parameter.composite, parameter.property, parameter.given);
-        let variable = parameter.variable;
-        let is_judged = std::mem::replace(&mut parameter.is_judged, true);
-        let typed = Typed { property, document: &composite.document };
+        let variable = parameter.variable(self.options);
         let mut whole = match given {
-            Some(Given::Outside(value)) => {
-                typed.check(value, report)?;
-                SharedValues::new(Raw::one(value))
-            }
-            Some(Given::Component(outside, outer)) => {
-                let (whole, _) = self.shared(outside, outer, report)?;
-                for piece in whole.raw().0.iter().filter(|_| !is_judged) {
-                    if let Piece::Text(text) = piece
-                        && !report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, text.location)
-                    {
-                        let _ = typed.check(text, report);
-                    }
-                }
-                whole
-            }
+            Some(Given::Outside(value)) => SharedValues::new(Raw::one(value)),
+            Some(Given::Component(outside, outer)) => self.shared(outside, outer, report)?.0,
+            Some(Given::Unknown) => return Err(()),
             None => SharedValues::new(Raw(Vec::new())),
         };
-        if whole.raw().0.is_empty() {
-            whole = SharedValues::new(match variable {
-                Some(value) => {
-                    typed.check(value, report)?;
-                    Raw::one(value)
-                }
-                None => raw(property, &composite.document, None, report)?,
-            });
+        if let (true, Some(value)) = (whole.raw.0.is_empty(), variable) {
+            whole = SharedValues::new(Raw::one(value));
         }
-        if whole.raw().0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
+        let typed = Typed { property, document: &composite.document };
+        for piece in &whole.raw.0 {
+            if let Piece::Text(text) = piece {
+                typed.check(text, report);
+            }
+        }
+        if whole.raw.0.is_empty() {
+            whole = SharedValues::new(raw(property, &composite.document, None, report)?);
+        }
+        if whole.raw.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
             // Reported where it should have been supplied.
             if let Some(parameter) = self.units[place].by_name.get_mut(name) {
                 parameter.is_unset = true;
@@ -181,10 +165,16 @@ impl<'a> Parameters<'a> {
     }
 
     /// Reports a fault of a `source`, whose bytes count from a place in it. Another program may understand any XPath.
-    fn malformed(&self, source: &Text, start: usize, fault: Fault, report: &mut Report<'_>) {
-        let Fault { step, message, is_understood, instead } = fault;
+    fn malformed(&mut self, source: &Text, start: usize, fault: Fault, report: &mut Report<'_>) {
+        let Fault { step, message, kind, instead } = fault;
         let step = start + step.start..start + step.end;
         let at = report.part(source, step.clone());
+        if kind == FaultKind::TooMany {
+            if !std::mem::replace(&mut self.is_told_of_elements, true) {
+                report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message));
+            }
+            return;
+        }
         let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
         if let Some((name, meant)) = instead
             && let Some(place) = source[step.clone()].find(&name)
@@ -193,15 +183,15 @@ impl<'a> Parameters<'a> {
             let place = report.part(source, place..place + name.len());
             one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
         }
-        report.push(match (is_understood, self.options.assume_classes) {
-            (true, _) => one,
-            (false, true) => {
-                one.severity(Severity::Warning).help("another program may understand it: it is taken as given")
-            }
-            (false, false) => {
-                one.help(format!("a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"))
-            }
-        });
+        if kind == FaultKind::Unknown {
+            one = match self.options.assume_classes {
+                true => one.severity(Severity::Warning).help("another program may understand it: it is taken as given"),
+                false => one.help(format!(
+                    "a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"
+                )),
+            };
+        }
+        report.push(one);
     }
 }
 
