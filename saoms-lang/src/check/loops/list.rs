@@ -139,8 +139,7 @@ fn by_default<'a>(
     (loops, is_sound)
 }
 
-/// What one element says has to make sense: one that is removed cannot be anything else, and nothing stands at two
-/// places.
+/// True if what an element says makes sense: what is removed is nothing else, and nothing stands at two places.
 fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
     let code = &codes::LOOP_CONTRADICTION;
     if let Some(remove) = one.remove.filter(|remove| remove.value) {

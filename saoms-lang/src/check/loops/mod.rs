@@ -39,8 +39,7 @@ struct Changed<'a> {
 }
 
 impl Resolved<'_> {
-    /// Those that the composite says something about, for the judgement of their constructors: the others are as their
-    /// class has them.
+    /// Those that the composite says something about, whose constructors have to be judged.
     pub(crate) fn changed(&self) -> impl Iterator<Item = (&RegisteredLoop, Subject<'_>)> {
         self.changed.iter().map(|one| {
             let (spec, name) = (&self.specs[one.place], &one.element.name);

@@ -103,8 +103,7 @@ impl TeamDiagnostics<'_, '_> {
         }
     }
 
-    /// The fault is that of the loop which the composite brings: of two such loops, the one that stands later in the
-    /// file.
+    /// The fault is that of the loop which the composite brings: of two such loops, of the later one in the file.
     fn clash(&self, later: usize, entry: &str, earlier: usize) -> Diagnostic {
         let (at, with) = match (self.place(later), self.place(earlier)) {
             (Some(later_at), Some(earlier_at)) if later_at.span.start < earlier_at.span.start => (earlier, later),

@@ -168,8 +168,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         PropertyValues::of(self.table, given, self.unsure, is_sound)
     }
 
-    /// The places of the properties that an unknown name may stand for: those that are spelt most alike, or else any
-    /// number that is not given.
+    /// The places of the properties that an unknown name may stand for: those most alike, or else any number not given.
     fn meant(&self, name: &str) -> Vec<usize> {
         let near = nearest_equal(name, self.table.names());
         if !near.is_empty() {

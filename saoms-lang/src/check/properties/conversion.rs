@@ -156,8 +156,7 @@ fn complex_value(
     is_sound.then_some(PropertyValue::Complex(values.into()))
 }
 
-/// The elements of each part of a complex property. Those that are of none, and second ones of a single part, are
-/// reported and left out.
+/// The elements of each part of a complex property. Others are reported, as are second ones of a single part.
 fn given_parts<'e>(elements: &[Element<'e>], target: Target<'_>, report: &mut Report<'_>) -> Vec<Vec<Element<'e>>> {
     let parts = &target.declaration.properties;
     let mut given: Vec<Vec<Element<'e>>> = vec![Vec::new(); parts.len()];

@@ -14,14 +14,12 @@ use std::collections::{BTreeSet, HashSet};
 #[derive(Clone, Copy)]
 pub(crate) struct ForeignType<'a> {
     pub(crate) described: &'a ComponentType,
-    /// True if that is all there is to know. A script or a bundle has what its file says; a class has what it says
-    /// itself besides.
+    /// True if that is all there is to know, as of scripts and bundles: a class may have more than its file says.
     is_whole: bool,
 }
 
 impl<'a> Fleet<'a> {
-    /// The component type of a component that is taken as given; `None` where there is none, and for all other
-    /// components.
+    /// The component type of a component that is taken as given, where there is one.
     pub(crate) fn known(&self, member: usize) -> Option<ForeignType<'a>> {
         if self.members[member].kind != Kind::Given || !self.contribution.describes_any() {
             return None;
@@ -75,8 +73,7 @@ impl<'a> Fleet<'a> {
     }
 }
 
-/// True if a name that is like another one may be meant for it: not where only their numbers differ, or one adds a word
-/// to the other.
+/// True if a name may be meant for one like it: not where only numbers differ, or a word more.
 fn is_slip(name: &str, meant: &str) -> bool {
     let without = |name: &str| name.replace(|c: char| c.is_ascii_digit(), "");
     name.len().abs_diff(meant.len()) <= 2 && without(name) != without(meant)
@@ -158,8 +155,7 @@ pub(crate) fn properties<'a>(
     }
 }
 
-/// Makes warnings of files of values that are not there: those of components that are taken as given may come with the
-/// implementation.
+/// Makes warnings of missing files of components that are taken as given: they may come with the implementation.
 pub(crate) fn lower_missing_files(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let given = fleet.members.iter().filter(|member| member.kind == Kind::Given);
     let properties = given.flat_map(|member| &member.component.properties);

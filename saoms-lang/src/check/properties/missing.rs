@@ -39,8 +39,7 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
     });
 }
 
-/// The property that has to be given and is not, where it is the only one and one is given that there is not: that is
-/// probably meant for it.
+/// The only property that has to be given and is not, where the only unknown one is probably meant for it.
 fn stands_for<'s>(giver: &Giver<'_, '_>, table: &'s PropertyTable<'_>) -> Option<&'s str> {
     let mut unknown = giver.properties.iter().filter(|given| table.place(&given.name).is_none());
     let (given, None) = (unknown.next()?, unknown.next()) else { return None };

@@ -60,8 +60,7 @@ fn code(text: &str, declaration: &PropertyDeclaration, said: &str) -> &'static C
     }
 }
 
-/// The probable meaning of a wrong text: an allowed one that is spelt alike, another way to say yes or no, a decimal
-/// comma, a number with its unit.
+/// The probable meaning of a wrong text: of one spelt alike, of yes or no, of a decimal comma, of a unit.
 fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
     if text.is_empty() {
         return None;

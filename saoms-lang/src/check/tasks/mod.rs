@@ -39,7 +39,6 @@ impl Task<'_, '_> {
         self.get(name)?.text()
     }
 
-    /// The place of the value of a property.
     pub(crate) fn place(&self, name: &str) -> Option<Location> {
         Some(self.get(name)?.place)
     }
@@ -58,11 +57,9 @@ impl Task<'_, '_> {
             renames.add(member, &text, report);
         }
         self.use_jms(report);
-        if self.given.is_sound { self.properties(report) } else { None }
-    }
-
-    /// The properties, where they are sound.
-    fn properties(&self, report: &mut Report<'_>) -> Option<TaskProperties> {
+        if !self.given.is_sound {
+            return None;
+        }
         match TaskProperties::read(self.given.of_task(&self.class.table)) {
             Ok(properties) => {
                 self.deadline(&properties, report);
@@ -175,8 +172,7 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
     });
 }
 
-/// Checks the tasks and topics of all components, and says which components are sound; the values that components share
-/// and must not.
+/// Checks the tasks and topics of all components, and which are sound. The values that they share and must not.
 pub(crate) fn check_all<'a>(
     fleet: &Fleet<'a>,
     checks: &mut [ComponentCheck<'a>],

@@ -37,8 +37,8 @@ struct Name {
 }
 
 impl Names {
-    /// The names that the expressions in a composite and in what it includes can use, the first of each, with the values
-    /// of each. `owner` is the component that it implements.
+    /// The names that expressions in a composite and in what it includes can use, the first of each. `owner` is the
+    /// component that it implements.
     pub(crate) fn of<'a>(
         composites: &[&'a Composite],
         owner: Option<&ComponentElement>,
@@ -79,8 +79,7 @@ impl Names {
         self.all.get(name).map_or_else(|| Err(self.unknown(name)), |found| found.value.clone())
     }
 
-    /// True if an expression has no value because a name has none, or one that is not of its type: that is told, and
-    /// once.
+    /// True if it is told that a name has no value, or one that is not of its type. That is told once.
     pub(crate) fn report_value(&self, name: &str, report: &mut Report<'_>) -> bool {
         match self.all.get(name) {
             Some(Name { mistyped: Some(property), text: Some(text), .. }) => {

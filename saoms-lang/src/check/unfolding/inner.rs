@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 
 use super::{MOST_DEEP, MOST_MEMBERS, Unfolding};
-use crate::check::fleet::names;
-use crate::check::fleet::{Kind, Scope};
+use crate::check::fleet::{Kind, Scope, names};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{Composite, Contribution, Link, Naming};
 
@@ -76,7 +75,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         match link {
             Link::To(place) => {
                 let composite = &contribution.composites()[*place];
-                if !names::is_exact(naming, around, composite) && self.loose.insert(naming.name.location) {
+                if !names::is_exact(naming, around, composite) {
                     self.report.push(names::loose(naming, around, composite));
                 }
                 Some((*place, composite))

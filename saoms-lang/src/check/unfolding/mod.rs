@@ -15,8 +15,7 @@ use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
-use crate::check::fleet::names;
-use crate::check::fleet::{Fleet, Scope, Unit};
+use crate::check::fleet::{Fleet, Scope, Unit, names};
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::report::severities::Severities;
@@ -27,7 +26,6 @@ use crate::check::values::parameters::Parameters;
 use crate::check::values::shared_values::MOST_LOOKED_AT;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
-use crate::source::Location;
 
 /// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
 pub(crate) const MOST_MEMBERS: usize = 1_000_000;
@@ -66,7 +64,6 @@ pub(crate) fn unfold<'a>(
         report,
         lowers_attributes: severities.mentions(&codes::UNKNOWN_ATTRIBUTE),
         sizes: HashMap::new(),
-        loose: HashSet::new(),
         replicas: replicas.end(),
         replicas_left: MOST_REPLICAS,
         parameters: Parameters::new(options, &elements_left).unbounded(),
@@ -124,8 +121,6 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     pub(crate) lowers_attributes: bool,
     /// The number of components the composites come to that were asked about.
     sizes: HashMap<usize, usize>,
-    /// The names that were told to mean something else than what they lead to.
-    loose: HashSet<Location>,
     pub(crate) replicas: Appender<'a, Replica>,
     pub(crate) replicas_left: u64,
     /// The properties of units that have expressions.

@@ -67,8 +67,7 @@ impl Instance {
                 || complex_texts(property, document).any(|text| render(&text, &mut |name| self.value(name)).is_err()))
     }
 
-    /// A component with the numbers of this index in all its texts; and the faults in these, each with the text it is
-    /// in.
+    /// A component with the numbers of this index in all its texts, and the texts with faults.
     pub(crate) fn of(
         &self,
         template: &ComponentElement,

@@ -87,8 +87,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         self.partial(component, index, names, presence);
     }
 
-    /// A component with the numbers of a replica, whether it has faults, and whether it is there as far as its condition
-    /// says. The faults in its texts and in its condition are reported.
+    /// One of the replicas, whether it has faults, which are reported, and whether its condition keeps it away.
     fn made(
         &mut self,
         component: &ComponentElement,

@@ -38,8 +38,7 @@ pub(crate) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// The plan of the replicas of a component; `None` with a fault, which is reported. `left` is how many there may
-    /// be.
+    /// The plan of at most `left` replicas of a component; `None` with a fault, which is reported.
     pub(crate) fn of(
         component: &'a ComponentElement,
         replicas: &'a Replicas,

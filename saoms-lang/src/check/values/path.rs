@@ -131,8 +131,7 @@ pub(crate) fn no_step(step: &str, at: Range<usize>) -> Fault {
     Fault::unknown(at, NO_STEP)
 }
 
-/// The steps of what follows the name with their bytes, the first of which stands before the first `/`. One within
-/// quotation marks is none.
+/// The steps of what follows the name with their bytes, between each `/` that is not within quotation marks.
 pub(crate) fn steps(path: &str) -> impl Iterator<Item = (Range<usize>, &str)> {
     let mut start = Some(0);
     std::iter::from_fn(move || {

@@ -41,8 +41,7 @@ impl<'a> Raw<'a> {
         self.0.iter().map(length).sum()
     }
 
-    /// What components take of a property of this declaration: where an `element` is its type, what is inside of each
-    /// such element.
+    /// What components take of a property of this declaration: what is inside of each `element` that is its type.
     pub(crate) fn inside_elements_of(self, property: &Property) -> Self {
         let Some(of) = property.element() else { return self };
         let is_it = |one: &Element<'_>| one.local_name() == local(of);
@@ -56,8 +55,7 @@ impl<'a> Raw<'a> {
         Self(pieces.collect())
     }
 
-    /// The values of a property that takes several of an element `of` a name, one each, where they are written beside
-    /// each other.
+    /// Elements `of` a name that are written beside each other, as one value each.
     pub(crate) fn split_into_elements(self, of: &str) -> Self {
         let pieces = self.0.into_iter().flat_map(|piece| match piece {
             Piece::Elements(elements, instance) if elements.iter().all(|one| one.local_name() == local(of)) => {

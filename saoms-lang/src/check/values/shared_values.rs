@@ -70,8 +70,7 @@ impl<'a> SharedValues<'a> {
         Rc::try_unwrap(self).map_or_else(|shared| shared.raw.clone(), |own| own.raw)
     }
 
-    /// The values that a path leads to from these, of a property of this declaration, as components take them. `left` is
-    /// how many elements paths may still look at.
+    /// The values that a path leads to, as components take them. `left` is how many elements paths may still look at.
     pub(crate) fn led_to(self: Rc<Self>, path: &str, property: &Property, left: &Cell<u64>) -> Result<Rc<Self>, Fault> {
         let values = &self.raw.0;
         if values.is_empty() {

@@ -19,8 +19,7 @@ pub(crate) struct Typed<'a> {
 }
 
 impl<'a> Typed<'a> {
-    /// Its type as it is written, where that is a simple one of XML Schema. A type of the same name in a namespace of
-    /// users is another one.
+    /// Its type as it is written, where that is a simple one of XML Schema, and not of the same name elsewhere.
     pub(crate) fn simple_type(&self) -> Option<(&'a Text, &'static SimpleType)> {
         let of = self.property.r#type()?;
         let found = SimpleType::find(local(of))?;
@@ -39,8 +38,7 @@ impl<'a> Typed<'a> {
     }
 }
 
-/// True if a value is of the type of a property, where it is not known what the prefixes of types mean; where it is
-/// not, that is reported.
+/// True if a value is of the type of a property, whatever its prefix means. That it is not is reported.
 pub(crate) fn holds_by_name(property: &Property, value: &Text, report: &mut Report<'_>) -> bool {
     let of = property.r#type().and_then(|named| Some((named, SimpleType::find(local(named))?)));
     of.is_none_or(|of| holds(property, of, value, report))

@@ -58,8 +58,7 @@ impl Budget {
     }
 }
 
-/// Names that a composite does not have which are looked at for one that it has: where a component is full of them they
-/// mean nothing by each.
+/// Unknown names of a component that are looked at for one that is meant: each of very many means nothing.
 const MOST_MISSPELT: usize = 100;
 
 /// The properties of one composite, those of what it includes among them.
@@ -216,8 +215,7 @@ impl<'a> Parameters<'a> {
         }
     }
 
-    /// The values of a component's property, with the `source` that leads there: those behind that, or its own. Faults
-    /// are reported.
+    /// The values behind the `source` of a component's property with that, or its own. Faults are reported.
     fn shared(
         &mut self,
         place: ValueSite<'a>,
