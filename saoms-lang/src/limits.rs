@@ -34,8 +34,6 @@ pub(crate) const SIBLINGS_SEARCHED: usize = 1000;
 pub(crate) const OPEN_ELEMENTS_SEARCHED: usize = 64;
 /// Times that the end of one tag is looked for anew, behind quotes that do not fit.
 pub(crate) const TAG_END_SEARCHES: u32 = 16;
-/// Length of a reference that is looked at: no valid one is longer, leading zeros aside.
-pub(crate) const REFERENCE_BYTES: usize = 64;
 /// Words of an attribute that is a list: a fleet has no more components.
 pub(crate) const LIST_WORDS: usize = 1_000_000;
 

@@ -24,8 +24,7 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
     // Many components may share a file.
     let mut known: HashMap<PathBuf, FileValue> = HashMap::new();
     let properties = composite.components.iter_mut().flat_map(|component| {
-        let of_loops =
-            component.details.iter_mut().flat_map(|details| &mut details.loops).flat_map(|one| &mut one.properties);
+        let of_loops = component.loops.iter_mut().flat_map(|one| &mut one.properties);
         component.properties.iter_mut().chain(of_loops)
     });
     for property in properties {
@@ -55,7 +54,7 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
         }
     }
     let components = composite.components.iter_mut();
-    for replicas in components.filter_map(|component| component.details.as_mut()?.replicas.as_mut()) {
+    for replicas in components.filter_map(|component| component.replicas.as_mut()) {
         let Some(file) = &replicas.overrides else { continue };
         let path = folder.join(file.as_str());
         match read::value(&path, max_size, file.location, sources.open()) {

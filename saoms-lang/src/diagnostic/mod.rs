@@ -148,6 +148,13 @@ impl Diagnostic {
         self.suggest_edits(description, vec![Edit { location, replacement: replacement.into() }])
     }
 
+    /// Adds the suggestion to write something else at its own place.
+    #[must_use]
+    pub fn mend(self, description: impl Into<String>, replacement: impl Into<String>) -> Self {
+        let location = self.location;
+        self.suggest(description, location, replacement)
+    }
+
     /// Adds a suggestion of several edits that belong together.
     #[must_use]
     pub fn suggest_edits(mut self, description: impl Into<String>, edits: Vec<Edit>) -> Self {

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::Loader;
+use super::children::is_known;
 use super::vocabulary::{self, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
 use crate::limits::LIST_WORDS;
@@ -39,7 +40,7 @@ impl Loader<'_> {
             if is_own {
                 self.unknown(element, attribute, kind, free);
             } else {
-                self.prefixed(element, attribute, free);
+                self.prefixed(attribute, free);
             }
         }
     }
@@ -51,18 +52,16 @@ impl Loader<'_> {
             return;
         }
         self.newer.push(known.name);
-        let location = attribute.name_span().in_file(element.document().file());
         let (name, of) = (quoted(known.name), quoted(element.name()));
         let message = format!("{name} of {of} is an attribute of SCA 1.1, and this file is of SCA 1.0");
-        let one = Diagnostic::new(&codes::NEWER_ATTRIBUTE, location, message)
+        let one = Diagnostic::new(&codes::NEWER_ATTRIBUTE, attribute.name_location(), message)
             .help("it counts here, and other programs do not know it: let the file be one of SCA 1.1");
         let inside = "or write the value as text inside";
         self.report(if known.name == "value" { one.help(inside) } else { one });
     }
 
     fn unknown(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind, free: &[&'static str]) {
-        let name = attribute.name();
-        let location = attribute.name_span().in_file(element.document().file());
+        let (name, location) = (attribute.name(), attribute.name_location());
         if attribute.namespace() == SAOMS_NAMESPACE {
             return self.unknown_own(element, attribute, kind);
         }
@@ -94,7 +93,7 @@ impl Loader<'_> {
             ),
             Some(meant) if free.contains(&meant) => {
                 self.meant.push((element.id(), meant, name.to_owned()));
-                one.suggest(format!("replace {} with {}", quoted(name), quoted(meant)), location, meant)
+                one.replace(name, location, meant)
             }
             Some(meant) => one.help(given_already(meant)),
             None if vocabulary::own_names(kind).any(|known| known == name) => {
@@ -114,12 +113,8 @@ impl Loader<'_> {
     /// An attribute in the namespace of SAOMS that is none of SAOMS.
     fn unknown_own(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind) {
         let name = attribute.local_name();
-        let location = attribute.name_span().in_file(element.document().file());
-        if self.diagnostics.skip(&codes::UNKNOWN_ATTRIBUTE, Severity::Error, location) {
-            return;
-        }
         let message = format!("{} has no attribute {}", quoted(element.name()), quoted(attribute.name()));
-        let one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message);
+        let one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, attribute.name_location(), message);
         let prefix = attribute.prefix().unwrap_or_default();
         let names: Vec<String> =
             vocabulary::own_names(kind).map(|known| quoted(&format!("{prefix}:{known}"))).collect();
@@ -127,27 +122,20 @@ impl Loader<'_> {
         let meant = nearest(name, vocabulary::own_names(kind).filter(is_free));
         self.report(match meant.or_else(|| nearest(name, vocabulary::own_names(kind))) {
             Some(meant) if !is_free(&meant) => one.help(given_already(&format!("{prefix}:{meant}"))),
-            Some(meant) => {
-                let meant = format!("{prefix}:{meant}");
-                let description = format!("replace {} with {}", quoted(attribute.name()), quoted(&meant));
-                one.suggest(description, location, meant)
-            }
+            Some(meant) => one.replace(attribute.name(), attribute.name_location(), &format!("{prefix}:{meant}")),
             None if kind.has(name, self.version) && element.attribute(name).is_some() => one.help(given_already(name)),
-            None if kind.has(name, self.version) => one.suggest("remove the prefix", location, name),
+            None if kind.has(name, self.version) => one.mend("remove the prefix", name),
             None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
             None => one.help(format!("of SAOMS it has {}", names.join(", "))),
         });
     }
 
     /// An attribute of SCA with a prefix: SCA's attributes have none.
-    fn prefixed(&mut self, element: Element<'_>, attribute: Attribute<'_>, free: &[&str]) {
-        let location = attribute.name_span().in_file(element.document().file());
+    fn prefixed(&mut self, attribute: Attribute<'_>, free: &[&str]) {
         let message = format!("{} has a prefix; attributes of SCA have none", quoted(attribute.name()));
-        let mut one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, location, message);
-        if free.contains(&attribute.local_name()) {
-            one = one.suggest("remove the prefix", location, attribute.local_name());
-        }
-        self.report(one);
+        let one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, attribute.name_location(), message);
+        let local = attribute.local_name();
+        self.report(if free.contains(&local) { one.mend("remove the prefix", local) } else { one });
     }
 
     /// The value of an attribute, white space at its ends left out.
@@ -169,7 +157,7 @@ impl Loader<'_> {
         let attribute = element.attribute_in(SAOMS_NAMESPACE, name)?;
         let value = attribute.trimmed();
         if value.is_empty() {
-            self.value_fault(attribute, format!("the attribute {} is empty", quoted(attribute.name())), None);
+            self.empty(attribute, attribute.name());
             return None;
         }
         Some(value)
@@ -179,35 +167,28 @@ impl Loader<'_> {
     pub(super) fn required(&mut self, element: Element<'_>, name: &str) -> Option<Text> {
         let attribute = self.attribute(element, name);
         let value = attribute.map(Attribute::trimmed).filter(|value| !value.is_empty());
-        if value.is_none() {
-            self.empty_or_missing(element, attribute, name);
+        match attribute {
+            None => self.missing(element, name),
+            Some(attribute) if value.is_none() => self.empty(attribute, name),
+            Some(_) => {}
         }
         value
     }
 
-    fn empty_or_missing(&mut self, element: Element<'_>, attribute: Option<Attribute<'_>>, name: &str) {
-        match attribute {
-            None => self.missing(element, name),
-            Some(empty) => self.value_fault(empty, format!("the attribute {} is empty", quoted(name)), None),
-        }
+    fn empty(&mut self, attribute: Attribute<'_>, name: &str) {
+        self.value_fault(attribute, format!("the attribute {} is empty", quoted(name)), None);
     }
 
     fn missing(&mut self, element: Element<'_>, name: &str) {
-        let location = element.name_location();
         // A misspelt one is reported already, with the right name as suggestion; so is a class that is written inside.
         let is_child = |child: Element<'_>| is_attribute_as_element(child) && child.local_name() == name;
         let is_inside = name == "class" && element.has_text() || element.children().any(is_child);
-        if is_inside
-            || element.has_damaged_tag()
-            || has_near_miss(element, name)
-            || self.diagnostics.skip(&codes::MISSING_ATTRIBUTE, Severity::Error, location)
-        {
+        if is_inside || element.has_damaged_tag() || has_near_miss(element, name) {
             return;
         }
-        let shown = element.name();
-        let message = format!("{} needs the attribute {}", quoted(shown), quoted(name));
+        let message = format!("{} needs the attribute {}", quoted(element.name()), quoted(name));
         let help = format!("add {} to it", quoted(&format!("{name}=\"...\"")));
-        self.report(Diagnostic::new(&codes::MISSING_ATTRIBUTE, location, message).help(help));
+        self.report(Diagnostic::new(&codes::MISSING_ATTRIBUTE, element.name_location(), message).help(help));
     }
 
     /// The name of a part; empty, at the tag, when there is none.
@@ -232,9 +213,6 @@ impl Loader<'_> {
     /// Warns of a name that XML does not allow as one (NCName, Namespaces in XML 1.0, 3): it does here what any other
     /// does.
     fn no_name(&mut self, name: &Text) {
-        if self.diagnostics.skip(&codes::ATTRIBUTE_VALUE, Severity::Warning, name.location) {
-            return;
-        }
         let why = match name.starts_with(is_first) {
             true => "has a colon in it",
             false => "does not start with a letter or `_`",
@@ -247,10 +225,6 @@ impl Loader<'_> {
     /// The value of a boolean attribute.
     pub(super) fn boolean(&mut self, element: Element<'_>, name: &str) -> Option<Located<bool>> {
         let attribute = self.attribute(element, name)?;
-        self.truth(attribute, name)
-    }
-
-    fn truth(&mut self, attribute: Attribute<'_>, name: &str) -> Option<Located<bool>> {
         let text = attribute.trimmed();
         let value = match text.as_str() {
             "true" | "1" => true,
@@ -285,24 +259,13 @@ impl Loader<'_> {
 
     /// The words of an attribute that is a list.
     pub(super) fn list(&mut self, element: Element<'_>, name: &str) -> Vec<Text> {
-        match self.attribute(element, name) {
-            Some(attribute) => self.words(attribute, name),
-            None => Vec::new(),
-        }
-    }
-
-    fn words(&mut self, attribute: Attribute<'_>, name: &str) -> Vec<Text> {
-        let mut words = if self.is_replicated {
-            attribute.words_with_expressions().take(LIST_WORDS + 1).collect()
-        } else {
-            attribute.words().take(LIST_WORDS + 1).collect::<Vec<_>>()
-        };
+        let Some(attribute) = self.attribute(element, name) else { return Vec::new() };
+        let mut words: Vec<Text> = attribute.words().take(LIST_WORDS + 1).collect();
         if let Some(beyond) = words.get(LIST_WORDS) {
             let message = format!("{} has more than {LIST_WORDS} words", quoted(name));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, beyond.location, message);
             self.report(one.help("the others are not looked at"));
             words.truncate(LIST_WORDS);
-            words.shrink_to_fit();
         }
         words
     }
@@ -339,9 +302,8 @@ pub(super) fn own_prefix(element: Element<'_>) -> (&str, Option<Edit>) {
 fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Element<'_>) -> Diagnostic {
     let (prefix, declaration) = own_prefix(element);
     let whole = format!("{prefix}:{}", attribute.name());
-    let location = attribute.name_span().in_file(element.document().file());
-    let mut edits: Vec<Edit> = declaration.into_iter().collect();
-    edits.push(Edit { location, replacement: whole.clone() });
+    let edit = Edit { location: attribute.name_location(), replacement: whole.clone() };
+    let edits = declaration.into_iter().chain([edit]).collect();
     one.help(format!("it is an attribute of SAOMS, of the namespace `{SAOMS_NAMESPACE}`"))
         .suggest_edits(format!("replace {} with {}", quoted(attribute.name()), quoted(&whole)), edits)
 }
@@ -401,7 +363,7 @@ pub(super) fn is_attribute_as_element(element: Element<'_>) -> bool {
         && element.attributes().next().is_none()
         && element.children().next().is_none()
         && element.trimmed_text().is_some_and(|text| !text.value.is_empty())
-        && !vocabulary::is_known(element.local_name())
+        && !is_known(element.local_name())
         && around.attribute(element.local_name()).is_none()
 }
 

@@ -4,9 +4,7 @@ use smol_str::SmolStr;
 
 use super::Loader;
 use super::attributes::{is_attribute_as_element, own_prefix};
-use super::vocabulary::{
-    self, EXTENSIONS, INTENTS, Kind, OPERATION, OWN_ELEMENTS, POLICY_SET, SEVERITY, SEVERITY_PARENTS,
-};
+use super::vocabulary::{self, Kind, OPERATION, OWN_ELEMENTS, POLICIES, SEVERITY, SEVERITY_PARENTS};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
@@ -56,20 +54,11 @@ impl Loader<'_> {
                 None => return Family::Foreign,
             },
         };
-        let location = element.name_location();
-        if self.diagnostics.skip(&codes::OTHER_VERSION, Severity::Error, location) {
-            return Family::Sca;
-        }
-        let message = format!(
-            "{} is of {}, and the {} is of {}",
-            quoted(element.name()),
-            version.label(),
-            root.local_name(),
-            self.version.label()
-        );
-        let one = Diagnostic::new(&codes::OTHER_VERSION, location, message);
+        let (name, around) = (quoted(element.name()), root.local_name());
+        let message = format!("{name} is of {}, and the {around} is of {}", version.label(), self.version.label());
+        let one = Diagnostic::new(&codes::OTHER_VERSION, element.name_location(), message);
         let help = "a composite and all of SCA inside it are of one namespace";
-        self.report(one.label(root.name_location(), format!("the {}", root.local_name())).help(help));
+        self.report(one.label(root.name_location(), format!("the {around}")).help(help));
         Family::Sca
     }
 
@@ -128,7 +117,7 @@ impl Loader<'_> {
         if is_own && name == SEVERITY.name {
             self.meant_severity(element);
         }
-        let is_of_sca = vocabulary::is_known(name) || vocabulary::is_of_definitions(name);
+        let is_of_sca = is_known(name) || vocabulary::is_of_definitions(name);
         let is_misplaced = is_own || (family == Family::Sca && is_of_sca);
         let code = if is_misplaced { &codes::MISPLACED_ELEMENT } else { &codes::UNKNOWN_ELEMENT };
         let location = element.name_location();
@@ -152,8 +141,7 @@ impl Loader<'_> {
             let message = format!("{} cannot stand in {place}", quoted(element.name()));
             let one = Diagnostic::new(code, location, message);
             if name == "implementation.composite" && vocabulary::children(parent).any(|one| one == "include") {
-                let edits = renaming(element, element.prefix(), "include");
-                self.report(one.suggest_edits(format!("replace {} with `include`", quoted(name)), edits));
+                self.report(renamed(one, element, "include"));
                 return Some("include");
             }
             self.report(match is_own {
@@ -179,10 +167,7 @@ impl Loader<'_> {
         let word = word(name).filter(|meant| known.contains(meant));
         self.report(match word.or(slip) {
             None if parent.has(name, self.version) && is_attribute_as_element(element) => as_attribute(one, element),
-            Some(meant) => {
-                let description = format!("replace {} with {}", quoted(name), quoted(meant));
-                one.suggest_edits(description, renaming(element, element.prefix(), meant))
-            }
+            Some(meant) => renamed(one, element, meant),
             None if name.contains('.') => {
                 one.help("an extension is written in the namespace of the one who defined it").help(holds())
             }
@@ -194,11 +179,11 @@ impl Loader<'_> {
     /// Checks an element of SCA that the model does not keep: its version, and the names in it.
     pub(super) fn check_not_kept(&mut self, element: Element<'_>) {
         self.of_version(element);
-        let kinds = [&INTENTS, &POLICY_SET, &EXTENSIONS];
-        if let Some(kind) = kinds.into_iter().find(|kind| kind.name == element.local_name()) {
-            self.parts_of(element, kind);
-        } else if element.local_name() == OPERATION.name {
-            self.leaf(element, &OPERATION);
+        match POLICIES.into_iter().find(|kind| kind.name == element.local_name()) {
+            // Its attributes are its owner's.
+            Some(kind) if std::ptr::eq(kind, &OPERATION) => self.leaf(element, kind),
+            Some(kind) => self.parts_of(element, kind),
+            None => {}
         }
     }
 
@@ -225,15 +210,15 @@ impl Loader<'_> {
 
     /// Tells of an element that another version of SCA alone has, once for all of its name. It changes nothing here.
     pub(super) fn of_version(&mut self, element: Element<'_>) {
-        let all = [ONLY_1_0, ONLY_1_1];
-        let (own, others) = if self.version.is_1_1() { (all[1], all[0]) } else { (all[0], all[1]) };
+        let is_1_1 = self.version.is_1_1();
+        let others = if is_1_1 { ONLY_1_0 } else { ONLY_1_1 };
         let Some(name) = others.iter().copied().find(|known| *known == element.local_name()) else { return };
         // Behind a wrong namespace nobody knows which version is meant.
         if self.newer.contains(&name) || Version::from_namespace(&self.namespace).is_none() {
             return;
         }
         self.newer.push(name);
-        let (version, other) = if own == ONLY_1_1 { ("SCA 1.1", "SCA 1.0") } else { ("SCA 1.0", "SCA 1.1") };
+        let (version, other) = if is_1_1 { ("SCA 1.1", "SCA 1.0") } else { ("SCA 1.0", "SCA 1.1") };
         let message = format!("{} is an element of {other}, and this file is of {version}", quoted(name));
         let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
         let one = one.severity(Severity::Warning).help("other programs refuse it");
@@ -252,21 +237,18 @@ impl Loader<'_> {
 
     /// Reports text in an element that holds elements alone.
     pub(super) fn no_text(&mut self, element: Element<'_>) {
-        let Some(span) = element.text_span() else { return };
+        let Some(span) = element.text_span().filter(|_| !element.has_damaged_content()) else { return };
         let location = span.in_file(element.document().file());
-        if element.has_damaged_content() || self.diagnostics.skip(&codes::MISPLACED_TEXT, Severity::Error, location) {
-            return;
-        }
         let message = format!("text in {}, which holds no text", quoted(element.name()));
-        let mut one = Diagnostic::new(&codes::MISPLACED_TEXT, location, message);
-        if element.local_name().starts_with("implementation.") && element.attribute("class").is_none() {
-            one = one.help("the class is named by the attribute `class`");
-        } else if element.local_name() == "reference" && element.attribute("target").is_none() {
-            one = one.help("the component that it calls is named by the attribute `target`");
+        let one = Diagnostic::new(&codes::MISPLACED_TEXT, location, message);
+        let is_of = |kind: &str| element.local_name().starts_with(kind);
+        self.report(if is_of("implementation.") && element.attribute("class").is_none() {
+            one.help("the class is named by the attribute `class`")
+        } else if is_of("reference") && element.attribute("target").is_none() {
+            one.help("the component that it calls is named by the attribute `target`")
         } else {
-            one = as_comment(one, element, span);
-        }
-        self.report(one);
+            as_comment(one, element, span)
+        });
     }
 
     /// Reports an element of SAOMS that is not in its namespace, with what puts it there.
@@ -275,41 +257,39 @@ impl Loader<'_> {
         if name == SEVERITY.name {
             self.meant_severity(element);
         }
-        let message = format!(
-            "{} is an element of SAOMS: it has to be in the namespace `{SAOMS_NAMESPACE}`",
-            quoted(element.name())
-        );
+        let shown = quoted(element.name());
+        let message = format!("{shown} is an element of SAOMS: it has to be in the namespace `{SAOMS_NAMESPACE}`");
         let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
         let (prefix, declaration) = own_prefix(element);
         let edits = declaration.into_iter().chain(renaming(element, Some(prefix), name)).collect();
         let help = format!(
             "write `<{prefix}:{name} .../>`, and `xmlns:{prefix}=\"{SAOMS_NAMESPACE}\"` in the composite's start tag"
         );
-        let description = format!("replace {} with {}", quoted(element.name()), quoted(&format!("{prefix}:{name}")));
+        let description = format!("replace {shown} with {}", quoted(&format!("{prefix}:{name}")));
         self.report(one.help(help).suggest_edits(description, edits));
     }
 
     fn without_namespace(&mut self, element: Element<'_>, root: Element<'_>) {
-        let (name, location) = (element.local_name(), element.name_location());
-        if self.diagnostics.skip(&codes::UNKNOWN_ELEMENT, Severity::Error, location) {
-            return;
-        }
+        let name = element.local_name();
         if is_own_alone(name) {
             return self.own_without_namespace(element);
         }
         let message = format!("{} is in no namespace", quoted(name));
-        let mut one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, location, message);
-        if vocabulary::is_known(name)
-            && let Some(prefix) = root.prefix()
-        {
-            let whole = format!("{prefix}:{name}");
-            let description = format!("replace {} with {}", quoted(name), quoted(&whole));
-            one = one.suggest_edits(description, renaming(element, Some(prefix), name));
-        } else {
-            one = one.help("elements of SCA are in the namespace of the composite, extensions in one of their own");
-        }
-        self.report(one);
+        let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
+        self.report(match root.prefix().filter(|_| is_known(name)) {
+            Some(prefix) => {
+                let description = format!("replace {} with {}", quoted(name), quoted(&format!("{prefix}:{name}")));
+                one.suggest_edits(description, renaming(element, Some(prefix), name))
+            }
+            None => one.help("elements of SCA are in the namespace of the composite, extensions in one of their own"),
+        });
     }
+}
+
+/// The suggestion to give an element another name, with the prefix that it has.
+pub(super) fn renamed(one: Diagnostic, element: Element<'_>, meant: &str) -> Diagnostic {
+    let description = format!("replace {} with {}", quoted(element.local_name()), quoted(meant));
+    one.suggest_edits(description, renaming(element, element.prefix(), meant))
 }
 
 /// An element that is to be an attribute of the one around it, with what makes it one.
@@ -331,10 +311,7 @@ fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
     let text = &element.document().text()[span.start as usize..span.end as usize];
     let remark = ["#", "//", ";"].iter().find_map(|mark| text.strip_prefix(mark)).map(str::trim);
     match remark.filter(|remark| !remark.contains(['<', '\n']) && !remark.contains("--")) {
-        Some(remark) => {
-            let place = span.in_file(element.document().file());
-            one.suggest("write it as a comment", place, format!("<!-- {remark} -->"))
-        }
+        Some(remark) => one.mend("write it as a comment", format!("<!-- {remark} -->")),
         None => one.help("remove it; comments stand between `<!--` and `-->`"),
     }
 }
@@ -356,6 +333,11 @@ fn word(name: &str) -> Option<&'static str> {
 /// True if an element of this name is of SAOMS, and none of SCA could be meant.
 fn is_own_alone(name: &str) -> bool {
     OWN_ELEMENTS.contains(&name) && !name.contains('.')
+}
+
+/// True if SCA has an element of this name somewhere in a composite.
+pub(super) fn is_known(name: &str) -> bool {
+    vocabulary::names().any(|known| known == name)
 }
 
 /// The edits that give an element another name, in its end tag too.
@@ -395,8 +377,7 @@ fn by_type(element: Element<'_>) -> Option<&'static str> {
     let given = element.attribute_in("http://www.w3.org/2001/XMLSchema-instance", "type")?.trimmed();
     let given = given.rsplit(':').next()?;
     let of_schema = TYPES.iter().find(|(known, _)| *known == given).map(|(_, meant)| *meant);
-    let mut all = vocabulary::VARIANTS.iter().flat_map(|(_, variants)| *variants);
-    let meant = of_schema.or_else(|| all.find(|known| **known == given).copied())?;
+    let meant = of_schema.or_else(|| vocabulary::names().find(|known| *known == given))?;
     (meant.split('.').next() == Some(element.local_name())).then_some(meant)
 }
 
@@ -408,7 +389,7 @@ pub(super) fn variant(element: Element<'_>, prefix: &str) -> SmolStr {
 /// True if SCA defines this variant of an implementation, an interface or a binding.
 pub(super) fn is_defined(element: Element<'_>) -> bool {
     let name = meant_name(element);
-    vocabulary::VARIANTS.iter().any(|(_, variants)| variants.contains(&name))
+    name.contains('.') && is_known(name)
 }
 
 /// Names in a sentence: `a`, `b` and `c`.

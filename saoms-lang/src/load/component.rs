@@ -1,15 +1,15 @@
-//! Components and their implementations.
+//! Components with their implementations and loops.
 
-use super::children::{Family, is_defined, variant};
+use super::Loader;
+use super::children::{Family, is_defined, renaming, variant};
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
-    IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind,
+    IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind, LOOP,
 };
-use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
-    ComponentDetails, ComponentElement, Implementation, ImplementationKind, Origin, Replicas, SAOMS_NAMESPACE,
+    ComponentElement, Implementation, ImplementationKind, LoopElement, Origin, Replicas, SAOMS_NAMESPACE,
 };
 use crate::source::Text;
 use crate::syntax::Element;
@@ -22,24 +22,20 @@ impl Loader<'_> {
         let replicas = self.replicas(element);
         // A name with an expression is one of replicas, also where nothing says how many there are.
         let replicas = replicas.or_else(|| is_of_replicas(&name, element).then(Replicas::default));
-        self.is_replicated = replicas.is_some();
-        let details = ComponentDetails {
-            path: self.path(element),
-            condition: self.own(element, "if"),
-            replicas,
-            autowire: self.boolean(element, "autowire"),
-            loops: Vec::new(),
-        };
-        // Without a list that grows: there may be very many components.
+        // Without lists that grow: there may be very many components, of which most have one reference.
         let number_of = |name: &str| element.children().filter(|one| one.local_name() == name).count();
         let mut component = ComponentElement {
             origin: Origin::of(element),
             name,
             implementation: None,
             properties: Vec::with_capacity(number_of("property")),
-            services: Vec::new(),
+            services: Vec::with_capacity(number_of("service")),
             references: Vec::with_capacity(number_of("reference")),
-            details: boxed(details),
+            path: self.path(element),
+            condition: self.own(element, "if"),
+            replicas: replicas.map(Box::new),
+            autowire: self.boolean(element, "autowire"),
+            loops: Vec::new(),
         };
         let mut has_faulty = false;
         self.children(element, &COMPONENT, |loader, child, family, name| {
@@ -62,9 +58,7 @@ impl Loader<'_> {
                         component.implementation = made;
                     }
                 }
-                (Family::Own, "loop") => {
-                    component.details.get_or_insert_default().loops.push(loader.looping(child));
-                }
+                (Family::Own, "loop") => component.loops.push(loader.looping(child)),
                 _ => {
                     has_faulty |= family != Family::Foreign && name.starts_with("impl");
                     return false;
@@ -72,7 +66,6 @@ impl Loader<'_> {
             }
             true
         });
-        self.is_replicated = false;
         if component.implementation.is_none() && !has_faulty && !element.has_damaged_content() {
             self.missing_implementation(element, &component.name);
         }
@@ -119,7 +112,7 @@ impl Loader<'_> {
             (Family::Sca | Family::Own, "implementation.rust") => {
                 self.parts_of(element, &IMPLEMENTATION_RUST);
                 let class = self.required(element, "class");
-                ImplementationKind::Rust { class, library: self.optional(element, "library").map(Box::new) }
+                ImplementationKind::Rust { class, library: self.optional(element, "library") }
             }
             (Family::Own, _) => {
                 _ = self.unexpected(element, &COMPONENT, family);
@@ -143,18 +136,48 @@ impl Loader<'_> {
         self.leaf(element, kind);
     }
 
+    fn looping(&mut self, element: Element<'_>) -> LoopElement {
+        self.check_attributes(element, &LOOP);
+        self.no_text(element);
+        let mut properties = Vec::new();
+        self.children(element, &LOOP, |loader, child, family, name| {
+            match (family, name) {
+                (Family::Sca, "property") => properties.push(loader.property(child, &COMPONENT_PROPERTY)),
+                (Family::Own, "property") => loader.property_of_sca(child),
+                _ => return false,
+            }
+            true
+        });
+        LoopElement {
+            origin: Origin::of(element),
+            name: self.name(element),
+            class: self.optional(element, "class"),
+            before: self.optional(element, "before"),
+            after: self.optional(element, "after"),
+            remove: self.boolean(element, "remove"),
+            properties,
+        }
+    }
+
+    /// Properties are of SCA, also in a loop.
+    fn property_of_sca(&mut self, element: Element<'_>) {
+        let prefix = element.document().root().prefix();
+        let whole = prefix.map_or_else(|| "property".to_owned(), |prefix| format!("{prefix}:property"));
+        let message = format!("{} is in the namespace of SAOMS", quoted(element.name()));
+        let description = format!("replace {} with {}", quoted(element.name()), quoted(&whole));
+        let one = Diagnostic::new(&codes::MISPLACED_ELEMENT, element.name_location(), message);
+        let one = one.help("the properties of a loop are written as those of a component, as SCA has them");
+        self.report(one.suggest_edits(description, renaming(element, prefix, "property")));
+    }
+
     fn missing_implementation(&mut self, element: Element<'_>, name: &Text) {
         let severity = if self.version.is_1_1() { Severity::Error } else { Severity::Warning };
-        let location = element.name_location();
-        if self.diagnostics.skip(&codes::MISSING_IMPLEMENTATION, severity, location) {
-            return;
-        }
         let message = match name.as_str() {
             "" => "a component has no implementation".to_owned(),
             name => format!("the component {} has no implementation", quoted(name)),
         };
         let help = "write `<implementation.java class=\"...\"/>` or `<implementation.rust class=\"...\"/>` in it";
-        let one = Diagnostic::new(&codes::MISSING_IMPLEMENTATION, location, message);
+        let one = Diagnostic::new(&codes::MISSING_IMPLEMENTATION, element.name_location(), message);
         self.report(one.severity(severity).help(help));
     }
 }

@@ -1,14 +1,13 @@
 //! Services and references, their interfaces, callbacks and bindings.
 
+use super::Loader;
 use super::children::{Family, is_defined, meant_name, variant};
 use super::vocabulary::{
     BINDING_SCA, CALLBACK, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, Kind,
 };
-use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{
-    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Origin, ReferenceDetails, ReferenceElement,
-    ServiceElement,
+    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Origin, ReferenceElement, ServiceElement,
 };
 use crate::source::Text;
 use crate::syntax::Element;
@@ -20,7 +19,7 @@ impl Loader<'_> {
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_SERVICE);
         let promote = if is_promoting { self.required(element, "promote") } else { None };
         let contract = self.contract(element, kind);
-        ServiceElement { origin: Origin::of(element), name, promote: promote.map(Box::new), contract }
+        ServiceElement { origin: Origin::of(element), name, promote, contract }
     }
 
     pub(super) fn reference(&mut self, element: Element<'_>, kind: &'static Kind) -> ReferenceElement {
@@ -38,18 +37,17 @@ impl Loader<'_> {
             self.report(Diagnostic { rule: None, ..one });
         }
         let contract = self.contract(element, kind);
-        let details = self.reference_details(element, promote);
-        ReferenceElement { origin: Origin::of(element), name, targets, details, contract }
-    }
-
-    fn reference_details(&mut self, element: Element<'_>, promote: Vec<Text>) -> Option<Box<ReferenceDetails>> {
-        boxed(ReferenceDetails {
+        ReferenceElement {
+            origin: Origin::of(element),
+            name,
+            targets,
             promote,
             multiplicity: self.multiplicity(element),
             autowire: self.boolean(element, "autowire"),
             wired_by_impl: self.boolean(element, "wiredByImpl"),
             non_overridable: self.boolean(element, "nonOverridable"),
-        })
+            contract,
+        }
     }
 
     /// The references that a composite's reference promotes. The schema lets the list be empty.
@@ -90,8 +88,7 @@ impl Loader<'_> {
             }
             true
         });
-        contract.bindings.shrink_to_fit();
-        boxed(contract)
+        (contract != Contract::default()).then(|| Box::new(contract))
     }
 
     fn interface(&mut self, element: Element<'_>, family: Family, parent: &'static Kind, contract: &mut Contract) {
@@ -120,12 +117,11 @@ impl Loader<'_> {
         if family == Family::Sca && meant_name(element) == BINDING_SCA.name {
             self.parts_of(element, &BINDING_SCA);
         }
-        let name = self.optional(element, "name");
         Binding {
             origin: Origin::of(element),
             kind: variant(element, "binding."),
             is_sca: family == Family::Sca,
-            name: name.map(Box::new),
+            name: self.optional(element, "name"),
             uri: self.optional(element, "uri"),
         }
     }

@@ -260,6 +260,6 @@ impl Description {
 /// nobody's composites are, any may be meant, and so with a prefix that is bound to none.
 fn namespace(name: &str, at: Element<'_>) -> Option<String> {
     let prefix = name.split_once(':').map_or("", |(prefix, _)| prefix);
-    let namespace = at.resolve_prefix(prefix)?.into_owned();
-    (Version::from_namespace(&namespace).is_none() && !namespace.is_empty()).then_some(namespace)
+    let namespace = at.resolve_prefix(prefix)?;
+    (Version::from_namespace(namespace).is_none() && !namespace.is_empty()).then(|| namespace.to_owned())
 }

@@ -14,13 +14,9 @@ mod damage;
 pub(crate) mod definitions;
 pub(crate) mod description;
 mod encoding;
-mod looping;
-mod missing;
 mod property;
 pub(crate) mod read;
 mod root;
-mod severity;
-mod similar_namespaces;
 #[cfg(test)]
 mod tests;
 pub mod vocabulary;
@@ -103,8 +99,6 @@ struct Loader<'d> {
     /// The namespace that counts as that of SCA: that of the version, but for a root in an unknown one.
     namespace: String,
     diagnostics: &'d mut Diagnostics,
-    /// True if the component at hand is replicated, so that its texts can hold expressions.
-    is_replicated: bool,
     /// The attributes of SCA 1.1 in a file of 1.0 that were told.
     newer: Vec<&'static str>,
     /// The misspelt attributes that were told: their elements, the names that are meant, and those that are written.
@@ -120,7 +114,6 @@ impl<'d> Loader<'d> {
             version,
             namespace: namespace.to_owned(),
             diagnostics,
-            is_replicated: false,
             newer: Vec::new(),
             meant: Vec::new(),
             severities: Vec::new(),
@@ -130,9 +123,4 @@ impl<'d> Loader<'d> {
     fn report(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
     }
-}
-
-/// Rarely needed fields in a box; `None` where all have their defaults.
-fn boxed<T: Default + PartialEq>(fields: T) -> Option<Box<T>> {
-    (fields != T::default()).then(|| Box::new(fields))
 }

@@ -1,8 +1,8 @@
 //! Properties.
 
+use super::Loader;
 use super::children::Family;
 use super::vocabulary::{COMPONENT, COMPOSITE, Kind, OWN_ELEMENTS};
-use super::{Loader, boxed};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::model::{ComponentProperty, Origin, Part, Property, PropertyDetails, SAOMS_NAMESPACE};
 use crate::source::{Located, Span, Text};
@@ -41,22 +41,15 @@ impl Loader<'_> {
             self.report(one.label(first.tag(), "the other one").help("keep one of them"));
         }
         let value = self.optional(element, "value");
-        let is_attribute = value.is_some();
-        let (simple, inside) = match text {
-            Some(text) if is_attribute => (value, Some(text)),
-            text => (value.or(text), None),
-        };
-        // Most properties have a name, and a text inside, alone.
-        let is_plain = element.written_attributes().count() <= 1 && values.is_empty() && content.is_empty();
-        let details = if is_plain { None } else { boxed(self.details(element, kind, inside, values, content)) };
-        Property { origin: Origin::of(element), name, simple, is_attribute, details }
+        let details = self.details(element, kind, values, content);
+        let details = (details != PropertyDetails::default()).then(|| Box::new(details));
+        Property { origin: Origin::of(element), name, value, text, details }
     }
 
     fn details(
         &mut self,
         element: Element<'_>,
         kind: &'static Kind,
-        inside: Option<Text>,
         values: Vec<ComponentProperty>,
         content: Vec<ElementId>,
     ) -> PropertyDetails {
@@ -64,7 +57,6 @@ impl Loader<'_> {
         let has_file = kind.attributes.iter().any(|known| known.name == "file");
         let (r#type, of) = (self.optional(element, "type"), self.optional(element, "element"));
         PropertyDetails {
-            inside,
             r#type,
             element: of,
             many: self.boolean(element, "many"),

@@ -4,10 +4,10 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-use super::{encoding, missing};
-use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
-use crate::limits::ADDRESSABLE_BYTES;
+use super::encoding;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes, nearest_few, quoted};
 pub use crate::limits::MAX_SIZE;
+use crate::limits::{ADDRESSABLE_BYTES, FOLDER_ENTRIES, OFFERED_NAMES};
 use crate::source::{FileId, Location, OpenTexts, Sources, Span};
 
 /// The name of a text from standard input. Its folder is the current one.
@@ -76,8 +76,9 @@ fn add(
             Some(file)
         }
         Err(wrong) => {
+            let len = wrong.shown[wrong.at as usize..].chars().next().map_or(0, char::len_utf8);
             let file = sources.add(name, wrong.shown);
-            let location = Span::new(wrong.at, wrong.at + wrong.len).in_file(file);
+            let location = Span::new(wrong.at, wrong.at + len as u32).in_file(file);
             let one = Diagnostic::new(wrong.code, location, wrong.message);
             diagnostics.push(one.help(wrong.help));
             None
@@ -152,53 +153,44 @@ enum Failure {
 
 impl Failure {
     fn diagnostic(self, path: &Path, max_size: u64, location: Location, expected: &Expected) -> Diagnostic {
-        match self {
+        let not_there = "there is no such file".to_owned();
+        let (code, message, help) = match self {
             Self::Directory => {
-                let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, location, "a directory, where a file is expected");
-                with_help(one, missing::inside(path, expected.ending))
+                let message = "a directory, where a file is expected".to_owned();
+                (&codes::FILE_IS_DIRECTORY, message, inside(path, expected.ending))
             }
             Self::Irregular => {
-                let message = "the file cannot be read: it is no regular file";
-                let one = Diagnostic::new(&codes::FILE_UNREADABLE, location, message);
-                one.help("a pipe or a device may have no end: name a file that holds the text")
+                let message = "the file cannot be read: it is no regular file".to_owned();
+                let help = "a pipe or a device may have no end: name a file that holds the text";
+                (&codes::FILE_UNREADABLE, message, Some(help.to_owned()))
             }
             Self::TooLarge(size) => {
                 let message = match size {
                     Some(size) => format!("the file has {size} bytes, and the limit is {max_size} bytes"),
                     None => format!("the file has more than the limit of {max_size} bytes"),
                 };
-                Diagnostic::new(&codes::FILE_TOO_LARGE, location, message).help("the limit is set with `--max-size`")
-            }
-            Self::Io(error) if error.kind() == io::ErrorKind::NotFound && fs::read_link(path).is_ok() => {
-                let target = fs::read_link(path).unwrap_or_default();
-                let message = "this link leads to no file";
-                let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, message);
-                one.help(format!("it leads to {}", quoted(&target.display().to_string())))
+                (&codes::FILE_TOO_LARGE, message, Some("the limit is set with `--max-size`".to_owned()))
             }
             Self::Io(error) if error.raw_os_error() == Some(libc::ELOOP) => {
-                let message = "this link leads back to itself";
-                Diagnostic::new(&codes::FILE_NOT_FOUND, location, message).help("let it lead to a file, or remove it")
+                let help = "let it lead to a file, or remove it".to_owned();
+                (&codes::FILE_NOT_FOUND, "this link leads back to itself".to_owned(), Some(help))
             }
-            Self::Io(error) if error.kind() == io::ErrorKind::NotFound => {
-                let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
-                with_help(one, missing::help(path, expected.ending))
-            }
+            Self::Io(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
+                Ok(target) => {
+                    let help = format!("it leads to {}", quoted(&target.display().to_string()));
+                    (&codes::FILE_NOT_FOUND, "this link leads to no file".to_owned(), Some(help))
+                }
+                Err(_) => (&codes::FILE_NOT_FOUND, not_there, near(path, expected.ending)),
+            },
             Self::Io(error) if error.kind() == io::ErrorKind::NotADirectory => {
-                let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location, "there is no such file");
-                one.help("a part of its path is a file and no directory")
+                let help = "a part of its path is a file and no directory".to_owned();
+                (&codes::FILE_NOT_FOUND, not_there, Some(help))
             }
-            Self::Io(error) => {
-                let message = format!("the file cannot be read: {error}");
-                Diagnostic::new(&codes::FILE_UNREADABLE, location, message)
-            }
-        }
-    }
-}
-
-fn with_help(diagnostic: Diagnostic, help: Option<String>) -> Diagnostic {
-    match help {
-        Some(help) => diagnostic.help(help),
-        None => diagnostic,
+            Self::Io(error) => (&codes::FILE_UNREADABLE, format!("the file cannot be read: {error}"), None),
+        };
+        let mut one = Diagnostic::new(code, location, message);
+        one.help.extend(help);
+        one
     }
 }
 
@@ -239,20 +231,18 @@ fn limited(input: impl Read, mut bytes: Vec<u8>, max_size: u64) -> Result<Vec<u8
 
 /// Bytes that are no text.
 struct Wrong {
-    code: &'static crate::diagnostic::Code,
+    code: &'static Code,
     /// The part of the file that can be shown.
     shown: String,
-    /// The place of the fault in it.
+    /// The place of the fault in it: a character that stands for bytes which are none.
     at: u32,
-    len: u32,
     message: String,
     help: String,
 }
 
 fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<Wrong>> {
-    let whole = |code, message: String, help: String| {
-        Box::new(Wrong { code, shown: String::new(), at: 0, len: 0, message, help })
-    };
+    let whole =
+        |code, message: String, help: String| Box::new(Wrong { code, shown: String::new(), at: 0, message, help });
     let convert = |name: &str| format!("convert it: `iconv -f {name} -t UTF-8 {}`", path.display());
     if let Some(name) = encoding::by_its_bytes(&bytes) {
         let message = format!("the file is in {name}, and UTF-8 is expected");
@@ -281,7 +271,58 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
             ),
         };
         let shown = String::from_utf8_lossy(&bytes).into_owned();
-        let len = '\u{fffd}'.len_utf8() as u32;
-        Box::new(Wrong { code: &codes::FILE_ENCODING, shown, at: at as u32, len, message, help })
+        Box::new(Wrong { code: &codes::FILE_ENCODING, shown, at: at as u32, message, help })
     })
+}
+
+/// Help for a path that does not exist; files with the ending are shown where no name is alike.
+fn near(path: &Path, ending: Option<&str>) -> Option<String> {
+    let parent = path.parent()?;
+    let folder = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
+    if !folder.is_dir() {
+        let shown = quoted(&folder.display().to_string());
+        return Some(match folder.exists() {
+            true => format!("{shown} is no directory"),
+            false => format!("there is no directory {shown} either"),
+        });
+    }
+    let wanted = path.file_name()?.to_string_lossy();
+    let names = names(folder);
+    let all = names.iter().map(String::as_str);
+    let mut near = nearest_few(&wanted, all.clone(), OFFERED_NAMES);
+    if near.is_empty() {
+        // Many forget the ending.
+        let is_stem = |name: &&str| Path::new(name).file_stem().is_some_and(|stem| stem == &*wanted);
+        near = all.filter(is_stem).take(OFFERED_NAMES).collect();
+    }
+    match near.is_empty() {
+        false => Some(format!("there is {}", listed(&near, parent))),
+        true => likely(&names, ending, parent).map(|likely| format!("the folder has {likely}")),
+    }
+}
+
+/// Files with the ending in a directory that was given in place of one.
+fn inside(directory: &Path, ending: Option<&str>) -> Option<String> {
+    likely(&names(directory), ending, directory).map(|likely| format!("it has {likely}"))
+}
+
+fn likely(names: &[String], ending: Option<&str>, shown_as: &Path) -> Option<String> {
+    let ending = ending?;
+    let likely: Vec<&str> =
+        names.iter().map(String::as_str).filter(|name| name.ends_with(ending)).take(OFFERED_NAMES).collect();
+    (!likely.is_empty()).then(|| listed(&likely, shown_as))
+}
+
+fn listed(names: &[&str], shown_as: &Path) -> String {
+    let paths: Vec<String> = names.iter().map(|name| quoted(&shown_as.join(name).display().to_string())).collect();
+    paths.join(", ")
+}
+
+/// The names in a folder, in order; empty when it cannot be read.
+fn names(folder: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let mut names: Vec<String> =
+        entries.take(FOLDER_ENTRIES).flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort_unstable();
+    names
 }

@@ -1,11 +1,14 @@
-//! The root element: is it a composite, and of which version of SCA?
+//! The root element: is it a composite, and of which version of SCA? Namespaces that are nearly those of SCA or SAOMS,
+//! so that what is in them would be passed over in silence.
+
+use std::collections::{HashMap, HashSet};
 
 use super::Loader;
-use super::children::renaming;
+use super::children::renamed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
-use crate::model::Version;
+use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
-use crate::syntax::Element;
+use crate::syntax::{Attribute, Document, Element};
 
 impl Loader<'_> {
     /// True if the root is a composite, or written as nearly one; finds out of which version of SCA.
@@ -30,6 +33,32 @@ impl Loader<'_> {
         }
         true
     }
+
+    /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged
+    /// with it.
+    pub(super) fn similar_namespaces(&mut self, document: &Document) {
+        let near = document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
+        let near: Vec<(&str, &str)> = near.filter_map(|one| Some((one, nearly(one)?))).collect();
+        if near.is_empty() {
+            return;
+        }
+        let (mut used, mut declared) = (HashSet::new(), HashMap::new());
+        for element in document.elements() {
+            used.insert(element.namespace());
+            used.extend(element.attributes().map(Attribute::namespace));
+            for one in element.namespace_declarations() {
+                declared.entry(one.value()).or_insert(one);
+            }
+        }
+        for (written, meant) in near {
+            let Some(first) = declared.get(written).filter(|_| used.contains(written)) else { continue };
+            let at = first.value_span().in_file(document.file());
+            let message =
+                format!("what is in the namespace {} is passed over: it is nearly {}", quoted(written), quoted(meant));
+            let one = Diagnostic::new(&codes::NAMESPACE_NEAR, at, message);
+            self.report(one.mend(format!("replace it with {}", quoted(meant)), meant));
+        }
+    }
 }
 
 fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
@@ -38,8 +67,7 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
     let mut one = Diagnostic::new(&codes::ROOT, location, message);
     let local = root.local_name();
     if let Some(meant) = meant_root(root) {
-        let edits = renaming(root, root.prefix(), meant);
-        return one.suggest_edits(format!("replace {} with {}", quoted(local), quoted(meant)), edits);
+        return renamed(one, root, meant);
     }
     if version.is_none() {
         one = one.help(format!("of the namespace {}", namespaces()));
@@ -77,8 +105,7 @@ fn wrong_namespace(root: Element<'_>) -> Diagnostic {
         .help(format!("the namespace of a composite is {}", namespaces()));
     match meant(namespace) {
         Some(version) if location != root.name_location() => {
-            let description = format!("replace it with {}", quoted(version.namespace()));
-            one.suggest(description, location, version.namespace())
+            one.mend(format!("replace it with {}", quoted(version.namespace())), version.namespace())
         }
         _ => one,
     }
@@ -130,4 +157,29 @@ pub(super) fn of_another_kind(
         true => one.help(format!("that is {}", namespaces())),
         false => one,
     });
+}
+
+/// The namespace that is meant by one that differs in a slip of the pen.
+fn nearly(written: &str) -> Option<&'static str> {
+    if written == SAOMS_NAMESPACE || Version::from_namespace(written).is_some() {
+        return None;
+    }
+    let of_sca = Version::ALL.map(Version::namespace).into_iter().find(|known| {
+        // Drafts and other versions have numbers of their own.
+        let is_other_version = known.len() == written.len()
+            && known.bytes().zip(written.bytes()).all(|(a, b)| a == b || a.is_ascii_digit() && b.is_ascii_digit());
+        is_slip(written, known) && !is_other_version
+    });
+    of_sca.or_else(|| is_slip(written, SAOMS_NAMESPACE).then_some(SAOMS_NAMESPACE))
+}
+
+/// True if two texts differ in their case, in one character, or in two that stand together.
+fn is_slip(written: &str, meant: &str) -> bool {
+    let (written, meant) = (written.trim().trim_end_matches('/').to_lowercase(), meant.to_lowercase());
+    let (one, other) = (written.as_bytes(), meant.as_bytes());
+    let longest = one.len().max(other.len());
+    let same = one.iter().zip(other).take_while(|(a, b)| a == b).count();
+    let room = one.len().min(other.len()) - same;
+    let behind = one.iter().rev().zip(other.iter().rev()).take(room).take_while(|(a, b)| a == b).count();
+    longest - same - behind <= 2
 }

@@ -1,11 +1,9 @@
-//! Components and their implementations.
+//! Components, with their implementations, loops and replicas.
 
 use smol_str::SmolStr;
 
-use super::details::details;
-use super::origin::parts;
-use super::{LoopElement, Origin, Property, ReferenceElement, Replicas, ServiceElement};
-use crate::source::{Located, Text};
+use super::{Origin, Property, ReferenceElement, ServiceElement};
+use crate::source::{FileId, Located, Text};
 
 /// A component: a configured use of an implementation.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,24 +20,16 @@ pub struct ComponentElement {
     pub services: Vec<ServiceElement>,
     /// Its references in order.
     pub references: Vec<ReferenceElement>,
-    /// Rarely needed fields, which the methods give.
-    pub details: Option<Box<ComponentDetails>>,
-}
-
-details! {
-    /// Rarely needed fields, boxed.
-    ComponentDetails of ComponentElement {
-        /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
-        optional path: Text,
-        /// `if`, in the namespace of SAOMS: it is there only where this is true.
-        optional condition: Text,
-        /// Its replicas, in the namespace of SAOMS; `None` for a single component.
-        optional replicas: Replicas,
-        /// `autowire`.
-        copied autowire: Located<bool>,
-        /// Its changes of the loops of its class, in order.
-        list loops: LoopElement,
-    }
+    /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
+    pub path: Option<Text>,
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub condition: Option<Text>,
+    /// Its replicas, in the namespace of SAOMS; `None` for a single component.
+    pub replicas: Option<Box<Replicas>>,
+    /// `autowire`.
+    pub autowire: Option<Located<bool>>,
+    /// Its changes of the loops of its class, in order.
+    pub loops: Vec<LoopElement>,
 }
 
 impl ComponentElement {
@@ -94,7 +84,7 @@ pub enum ImplementationKind {
         /// `class`: a name in the registry.
         class: Option<Text>,
         /// `library`: the plugin that has the class.
-        library: Option<Box<Text>>,
+        library: Option<Text>,
     },
     /// Any other, of SCA or foreign; its element has the attributes.
     Other {
@@ -105,4 +95,67 @@ pub enum ImplementationKind {
     },
 }
 
-parts!(ComponentElement, Implementation);
+/// A `loop` of a component: it adds, replaces, removes, moves or parametrises one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopElement {
+    /// The origin in its file.
+    pub origin: Origin,
+    /// `name`: what the loop is called within the component; empty, at the tag, when the file has none.
+    pub name: Text,
+    /// `class`: a name in the registry.
+    pub class: Option<Text>,
+    /// `before`: the loop that it stands directly before.
+    pub before: Option<Text>,
+    /// `after`: the loop that it stands directly after.
+    pub after: Option<Text>,
+    /// `remove`.
+    pub remove: Option<Located<bool>>,
+    /// Its properties in order.
+    pub properties: Vec<Property>,
+}
+
+impl LoopElement {
+    /// True if it takes the loop of its name away.
+    pub fn is_removal(&self) -> bool {
+        self.remove.is_some_and(|remove| remove.value)
+    }
+}
+
+/// Replicas of a component.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Replicas {
+    /// `count`: an expression; how many there are. `None` when only the others are given, or a name that uses the
+    /// index.
+    pub count: Option<Text>,
+    /// `from`: an expression; the index of the first.
+    pub from: Option<Text>,
+    /// `overrides`: the file of the table.
+    pub overrides: Option<Text>,
+    /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
+    /// read.
+    pub table: Option<Table>,
+}
+
+/// A table of what differs from one replica to another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// The file.
+    pub file: FileId,
+    /// The heading of the first column: `index` or `name`.
+    pub key: Text,
+    /// The properties of the other columns.
+    pub properties: Vec<Text>,
+    /// The lines below the first.
+    pub rows: Vec<Row>,
+}
+
+/// A line of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The replica that it is about.
+    pub key: Text,
+    /// A value for each property; `None` for a replica that has its own.
+    pub values: Vec<Option<Text>>,
+}
+
+parts!(ComponentElement, Implementation, LoopElement);

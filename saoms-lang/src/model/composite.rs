@@ -1,11 +1,10 @@
-//! Composites, includes and wires.
+//! Composites with their includes, wires and severities, and component types.
 
 use std::sync::Arc;
 
-use super::details::details;
-use super::origin::parts;
-use super::{ComponentElement, Origin, Property, ReferenceElement, ServiceElement, SeverityRule, Version};
-use crate::source::{FileId, Located, Text};
+use super::{ComponentElement, Origin, Property, ReferenceElement, ServiceElement, Version};
+use crate::diagnostic::SeverityLevel;
+use crate::source::{FileId, Located, Location, Text};
 use crate::syntax::Document;
 
 /// A composite: components, what they are wired to, and what of them is promoted.
@@ -63,21 +62,47 @@ pub struct WireElement {
     pub source: Option<Text>,
     /// `target`: `component`, `component/service` or `component/service/binding`; `None` when the file has none.
     pub target: Option<Text>,
-    /// Rarely needed fields, boxed.
-    pub details: Option<Box<WireDetails>>,
+    /// `replace` (1.1)
+    pub replace: Option<Located<bool>>,
+    /// `if`, in the namespace of SAOMS: it is there only where this is true.
+    pub condition: Option<Text>,
 }
 
-details! {
-    /// Rarely needed fields, boxed.
-    WireDetails of WireElement {
-        /// `replace` (1.1)
-        copied replace: Located<bool>,
-        /// `if`, in the namespace of SAOMS: it is there only where this is true.
-        optional condition: Text,
-    }
+/// A `severity`: it sets that of the diagnostics of one code in the element that it stands in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeverityRule {
+    /// The origin in its file.
+    pub origin: Origin,
+    /// `code`, as `S4001`.
+    pub code: Text,
+    /// `level`.
+    pub level: Located<SeverityLevel>,
+    /// `reason`.
+    pub reason: Text,
+    /// True if it is wrong, which is reported: what it is about is not told beside that.
+    pub is_wrong: bool,
+    /// The element that it stands in; `None` for the composite itself.
+    pub within: Option<Location>,
 }
 
-parts!(Composite, Include, WireElement);
+/// Component types: services, references and properties of an implementation, as a `.componentType` file states them.
+#[derive(Clone, Debug)]
+pub struct ComponentType {
+    /// The origin in its file.
+    pub origin: Origin,
+    /// The whole document.
+    pub document: Arc<Document>,
+    /// The version of SCA that its namespace stands for.
+    pub version: Version,
+    /// Its services in order.
+    pub services: Vec<ServiceElement>,
+    /// Its references in order.
+    pub references: Vec<ReferenceElement>,
+    /// Its properties in order; a value is the default of components.
+    pub properties: Vec<Property>,
+}
+
+parts!(Composite, Include, WireElement, SeverityRule, ComponentType);
 
 impl Composite {
     /// The file it was read from.

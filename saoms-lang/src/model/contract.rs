@@ -3,8 +3,6 @@
 use smol_str::SmolStr;
 
 use super::Origin;
-use super::details::details;
-use super::origin::parts;
 use crate::source::{Located, Text};
 
 /// A service: of a component, or of a composite, which promotes one of a component.
@@ -15,8 +13,8 @@ pub struct ServiceElement {
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
     /// `promote`, of a composite's service: `component` or `component/service`.
-    pub promote: Option<Box<Text>>,
-    /// The contract, which the methods give.
+    pub promote: Option<Text>,
+    /// Its interface, bindings and callback, in a box: most have none. [`Self::contract`] gives it.
     pub contract: Option<Box<Contract>>,
 }
 
@@ -29,13 +27,21 @@ pub struct ReferenceElement {
     pub name: Text,
     /// `target`: each URI, `component`, `component/service` or `component/service/binding`, with its own place.
     pub targets: Vec<Text>,
-    /// Rarely needed fields, which the methods give.
-    pub details: Option<Box<ReferenceDetails>>,
-    /// The contract, which the methods give.
+    /// `promote`, of a composite's reference: each URI with its own place.
+    pub promote: Vec<Text>,
+    /// `multiplicity`.
+    pub multiplicity: Option<Located<Multiplicity>>,
+    /// `autowire`.
+    pub autowire: Option<Located<bool>>,
+    /// `wiredByImpl`.
+    pub wired_by_impl: Option<Located<bool>>,
+    /// `nonOverridable` (1.1).
+    pub non_overridable: Option<Located<bool>>,
+    /// Its interface, bindings and callback, in a box: most have none. [`Self::contract`] gives it.
     pub contract: Option<Box<Contract>>,
 }
 
-/// Interface, bindings and callback of a service or a reference: rarely given, boxed.
+/// Interface, bindings and callback of a service or a reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contract {
     /// Its interface.
@@ -46,41 +52,19 @@ pub struct Contract {
     pub callback: Option<Callback>,
 }
 
-macro_rules! contract {
-    ($($part:ty),*) => {
-        $(impl $part {
-            /// Its interface.
-            pub fn interface(&self) -> Option<&InterfaceElement> {
-                self.contract.as_ref()?.interface.as_ref()
-            }
+static NO_CONTRACT: Contract = Contract { interface: None, bindings: Vec::new(), callback: None };
 
-            /// Its bindings in order.
-            pub fn bindings(&self) -> &[Binding] {
-                self.contract.as_ref().map_or(&[], |contract| &contract.bindings)
-            }
-
-            /// Its callback.
-            pub fn callback(&self) -> Option<&Callback> {
-                self.contract.as_ref()?.callback.as_ref()
-            }
-        })*
-    };
+impl ServiceElement {
+    /// Its interface, bindings and callback.
+    pub fn contract(&self) -> &Contract {
+        self.contract.as_deref().unwrap_or(&NO_CONTRACT)
+    }
 }
-contract!(ServiceElement, ReferenceElement);
 
-details! {
-    /// Rarely needed fields, boxed.
-    ReferenceDetails of ReferenceElement {
-        /// `promote`, of a composite's reference: each URI with its own place.
-        list promote: Text,
-        /// `multiplicity`.
-        optional multiplicity: Located<Multiplicity>,
-        /// `autowire`.
-        copied autowire: Located<bool>,
-        /// `wiredByImpl`.
-        copied wired_by_impl: Located<bool>,
-        /// `nonOverridable` (1.1).
-        copied non_overridable: Located<bool>,
+impl ReferenceElement {
+    /// Its interface, bindings and callback.
+    pub fn contract(&self) -> &Contract {
+        self.contract.as_deref().unwrap_or(&NO_CONTRACT)
     }
 }
 
@@ -166,7 +150,7 @@ pub struct Binding {
     /// True if its element is of an SCA namespace.
     pub is_sca: bool,
     /// `name`.
-    pub name: Option<Box<Text>>,
+    pub name: Option<Text>,
     /// `uri`.
     pub uri: Option<Text>,
 }

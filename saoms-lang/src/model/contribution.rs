@@ -108,13 +108,13 @@ impl Composite {
         let element = naming.origin.element(&self.document);
         match naming.name.as_str().split_once(':') {
             Some((prefix, local)) => {
-                (element.resolve_prefix(prefix).map(|namespace| vec![namespace.into_owned()]), local)
+                (element.resolve_prefix(prefix).map(|namespace| vec![namespace.to_owned()]), local)
             }
             None => {
-                let default = element.resolve_prefix("").unwrap_or_default().into_owned();
+                let default = element.resolve_prefix("").unwrap_or_default();
                 let mut all = Vec::with_capacity(2);
-                if !default.is_empty() && Version::from_namespace(&default).is_none() {
-                    all.push(default);
+                if !default.is_empty() && Version::from_namespace(default).is_none() {
+                    all.push(default.to_owned());
                 }
                 for namespace in [self.namespace(), ""] {
                     if !all.iter().any(|known| known == namespace) {

@@ -5,30 +5,115 @@
 //! for the checker to apply. Foreign elements and attributes are not copied: they are in the composite's
 //! [`Document`](crate::syntax::Document), reached through each part's [`Origin`].
 
+/// Parts of the model by their types.
+macro_rules! parts {
+    ($($part:ty),*) => {
+        $(impl crate::model::Part for $part {
+            fn origin(&self) -> crate::model::Origin {
+                self.origin
+            }
+        })*
+    };
+}
+
 mod component;
-mod component_type;
 mod composite;
 mod contract;
 mod contribution;
-mod details;
-mod looping;
-mod origin;
 mod property;
-mod replicas;
-mod severity;
-mod version;
 
-pub use component::{ComponentDetails, ComponentElement, Implementation, ImplementationKind};
-pub use component_type::ComponentType;
-pub use composite::{Composite, Include, WireDetails, WireElement};
+pub use component::{ComponentElement, Implementation, ImplementationKind, LoopElement, Replicas, Row, Table};
+pub use composite::{ComponentType, Composite, Include, SeverityRule, WireElement};
 pub use contract::{
-    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceDetails, ReferenceElement,
-    ServiceElement,
+    Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceElement, ServiceElement,
 };
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
-pub use looping::LoopElement;
-pub use origin::{Origin, Part};
 pub use property::{ComponentProperty, Property, PropertyDetails, ValueDocument};
-pub use replicas::{Replicas, Row, Table};
-pub use severity::SeverityRule;
-pub use version::{SAOMS_NAMESPACE, Version};
+
+use crate::source::{FileId, Location};
+use crate::syntax::{Document, Element, ElementId};
+
+/// The element that a part of the model was made from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// The name in its start tag: where a diagnostic about the whole part points.
+    pub tag: Location,
+    /// The element in the document of the file.
+    pub element: ElementId,
+}
+
+impl Origin {
+    /// The origin of what is made from `element`.
+    pub fn of(element: Element<'_>) -> Self {
+        Self { tag: element.name_location(), element: element.id() }
+    }
+
+    /// The file.
+    pub const fn file(self) -> FileId {
+        self.tag.file
+    }
+
+    /// The element itself, in the document of the composite of the same file.
+    pub fn element(self, document: &Document) -> Element<'_> {
+        debug_assert_eq!(document.file(), self.file());
+        document.element(self.element)
+    }
+}
+
+/// A part of the model, which has an origin.
+pub trait Part {
+    /// The origin in its file.
+    fn origin(&self) -> Origin;
+
+    /// The name in its start tag.
+    fn tag(&self) -> Location {
+        self.origin().tag
+    }
+}
+
+/// The namespace of what SAOMS adds to SCA.
+pub const SAOMS_NAMESPACE: &str = "urn:saoms:1";
+
+/// A version of SCA.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Version {
+    /// SCA 1.0, by OSOA.
+    Osoa10,
+    /// The committee draft of SCA 1.1, by OASIS.
+    Oasis200903,
+    /// SCA 1.1, by OASIS.
+    Oasis200912,
+}
+
+impl Version {
+    /// All, the newest first.
+    pub const ALL: [Self; 3] = [Self::Oasis200912, Self::Oasis200903, Self::Osoa10];
+
+    /// The namespace of its vocabulary.
+    pub const fn namespace(self) -> &'static str {
+        match self {
+            Self::Osoa10 => "http://www.osoa.org/xmlns/sca/1.0",
+            Self::Oasis200903 => "http://docs.oasis-open.org/ns/opencsa/sca/200903",
+            Self::Oasis200912 => "http://docs.oasis-open.org/ns/opencsa/sca/200912",
+        }
+    }
+
+    /// The version that a namespace stands for.
+    pub fn from_namespace(namespace: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|version| version.namespace() == namespace)
+    }
+
+    /// True if it is 1.1, as a draft or as published.
+    pub const fn is_1_1(self) -> bool {
+        !matches!(self, Self::Osoa10)
+    }
+
+    /// The name that users know.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Osoa10 => "SCA 1.0",
+            Self::Oasis200903 => "SCA 1.1 (draft)",
+            Self::Oasis200912 => "SCA 1.1",
+        }
+    }
+}

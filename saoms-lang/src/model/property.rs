@@ -3,10 +3,46 @@
 use std::sync::Arc;
 
 use super::Origin;
-use super::details::details;
-use super::origin::parts;
 use crate::source::{Located, Text};
 use crate::syntax::{Document, ElementId};
+
+/// Makes the struct of the fields that few elements have, and the methods that give them: `optional` ones by reference,
+/// `copied` ones by value, and a `list` as a slice.
+macro_rules! details {
+    ($(#[$meta:meta])* $Details:ident of $Owner:ident {
+        $($(#[$doc:meta])* $how:ident $field:ident: $Type:ty,)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct $Details {
+            $($(#[$doc])* pub $field: details!(@type $how $Type),)*
+        }
+
+        impl $Owner {
+            $(details!(@get $how $(#[$doc])* $field: $Type);)*
+        }
+    };
+    (@type list $Type:ty) => { Vec<$Type> };
+    (@type $how:ident $Type:ty) => { Option<$Type> };
+    (@get optional $(#[$doc:meta])* $field:ident: $Type:ty) => {
+        $(#[$doc])*
+        pub fn $field(&self) -> Option<&$Type> {
+            self.details.as_ref()?.$field.as_ref()
+        }
+    };
+    (@get copied $(#[$doc:meta])* $field:ident: $Type:ty) => {
+        $(#[$doc])*
+        pub fn $field(&self) -> Option<$Type> {
+            self.details.as_ref()?.$field
+        }
+    };
+    (@get list $(#[$doc:meta])* $field:ident: $Type:ty) => {
+        $(#[$doc])*
+        pub fn $field(&self) -> &[$Type] {
+            self.details.as_ref().map_or(&[], |details| &details.$field)
+        }
+    };
+}
 
 /// A property: of a component, where it gives a value, or of a composite, where it is declared.
 ///
@@ -17,19 +53,17 @@ pub struct Property {
     pub origin: Origin,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
-    /// The value as an attribute; where there is none, the text inside.
-    pub(crate) simple: Option<Text>,
-    /// True if that is the attribute.
-    pub(crate) is_attribute: bool,
-    /// Rarely needed fields, boxed; the methods give them.
+    /// `value`: the value as an attribute.
+    pub value: Option<Text>,
+    /// The text inside, trimmed; `None` when there is none but white space.
+    pub text: Option<Text>,
+    /// What few properties have, in a box: a composite may have very many. The methods give it.
     pub details: Option<Box<PropertyDetails>>,
 }
 
 details! {
     /// Rarely needed fields of properties.
     PropertyDetails of Property {
-        /// The text inside, where there is an attribute `value`, too.
-        hidden inside: Text,
         /// `type`: the QName of an XML Schema type.
         optional r#type: Text,
         /// `element`: the QName of a global XML Schema element.
@@ -85,20 +119,10 @@ pub struct ComponentProperty {
 parts!(Property, ComponentProperty);
 
 impl Property {
-    /// `value`: the value as an attribute.
-    pub fn value(&self) -> Option<&Text> {
-        self.simple.as_ref().filter(|_| self.is_attribute)
-    }
-
-    /// The text inside, trimmed; `None` when there is none but white space.
-    pub fn text(&self) -> Option<&Text> {
-        if self.is_attribute { self.details.as_ref()?.inside.as_ref() } else { self.simple.as_ref() }
-    }
-
     /// Every simple value that is given, in the order attribute, text, `<value>` elements.
     pub fn simple_values(&self) -> impl Iterator<Item = &Text> {
         let listed = self.values().iter().filter(|value| value.content.is_empty()).map(|value| &value.text);
-        self.value().into_iter().chain(self.text()).chain(listed)
+        self.value.iter().chain(&self.text).chain(listed)
     }
 
     /// The one simple value, when exactly one is given and it stands in the property itself.
@@ -110,12 +134,16 @@ impl Property {
 
     /// The one text that it gives directly, where it gives nothing else and leads nowhere: what most properties are.
     pub(crate) fn only_text(&self) -> Option<&Text> {
-        if self.details.is_none() { self.simple.as_ref() } else { None }
+        match (&self.value, &self.text, &self.details) {
+            (Some(one), None, None) | (None, Some(one), None) => Some(one),
+            _ => None,
+        }
     }
 
     /// True if the property gives a value in any way: directly, by `source`, or by `file`.
     pub fn has_value(&self) -> bool {
-        self.simple.is_some()
+        self.value.is_some()
+            || self.text.is_some()
             || !self.values().is_empty()
             || !self.content().is_empty()
             || self.source().is_some()

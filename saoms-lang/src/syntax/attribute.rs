@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::document::Document;
-use super::element::{offset, slice, split};
-use super::value;
+use super::element::{part_span, slice, split};
+use super::value::{self, Place};
 use crate::source::{Located, Location, Span, Text};
 
 /// An attribute as written, declarations of namespaces included.
@@ -28,9 +28,6 @@ pub(super) const UNSURE: u8 = 4;
 pub(super) const DUPLICATE: u8 = 8;
 /// The name is none, or its prefix is bound to no namespace.
 pub(super) const BAD_NAME: u8 = 16;
-
-/// The namespace of an attribute with a prefix, until all declarations of its tag are known.
-pub(super) const UNRESOLVED: u32 = u32::MAX;
 
 impl RawAttribute {
     pub(super) fn name_span(&self) -> Span {
@@ -74,7 +71,7 @@ impl<'a> Attribute<'a> {
 
     /// The value: references resolved, each white space character a blank.
     pub fn value(self) -> Cow<'a, str> {
-        value::attribute_value(self.raw_value())
+        value::meant(self.raw_value(), Place::Attribute)
     }
 
     /// The value as written.
@@ -119,6 +116,11 @@ impl<'a> Attribute<'a> {
         self.raw.flags & (NO_VALUE | UNSURE | DUPLICATE | BAD_NAME) == 0
     }
 
+    /// The place of the name.
+    pub fn name_location(self) -> Location {
+        self.name_span().in_file(self.document.file)
+    }
+
     /// The place of the whole attribute.
     pub fn location(self) -> Location {
         self.span().in_file(self.document.file)
@@ -129,13 +131,8 @@ impl<'a> Attribute<'a> {
         self.located(value::trim(self.raw_value()))
     }
 
-    /// The words of a value that is a list, each with its own place.
+    /// The words of a value that is a list, each with its own place. Blanks between `${` and `}` do not separate.
     pub fn words(self) -> impl Iterator<Item = Text> + use<'a> {
-        self.raw_value().split(value::is_space).filter(|word| !word.is_empty()).map(move |word| self.located(word))
-    }
-
-    /// The same, where blanks between `${` and `}` do not separate.
-    pub fn words_with_expressions(self) -> impl Iterator<Item = Text> + use<'a> {
         let mut rest = self.raw_value();
         std::iter::from_fn(move || {
             rest = rest.trim_start_matches(value::is_space);
@@ -153,9 +150,7 @@ impl<'a> Attribute<'a> {
 
     /// A part of the value as written, resolved.
     fn located(self, part: &str) -> Text {
-        let whole = self.raw_value();
-        let start = self.raw.value.start + offset(whole, part);
-        let span = Span::new(start, start + part.len() as u32);
-        Located::new(value::attribute_value(part).into(), span.in_file(self.document.file))
+        let span = part_span(self.raw.value.start, self.raw_value(), part);
+        Located::new(value::meant(part, Place::Attribute).into(), span.in_file(self.document.file))
     }
 }

@@ -1,60 +1,27 @@
-//! Characters: those that XML forbids, white space, and how much room a text needs.
+//! Names, and characters that XML forbids.
 
 use super::attribute::UNSURE;
+use super::document::{DAMAGED_TAG, TokenKind, UNSURE_TEXT};
 use super::lexer::Lexer;
-use super::token::{DAMAGED_TAG, TokenKind, UNSURE_TEXT};
+use super::value::is_char;
 use crate::diagnostic::codes;
-use crate::source::Span;
 
-/// Bytes that are looked at together.
-const ROW: usize = 64;
-
-/// Upper bounds of what a text holds, and whether it holds what XML forbids.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Survey {
-    /// The place of the first character that XML 1.0 does not allow: controls but tab, line feed and carriage return,
-    /// and U+FFFE and U+FFFF. Surrogates cannot be in a Rust text.
-    pub(super) forbidden: Option<usize>,
-    pub(super) starts: usize,
-    pub(super) tokens: usize,
-    pub(super) equals: usize,
-}
-
-pub(super) fn survey(text: &[u8]) -> Survey {
-    let starts = memchr::memchr_iter(b'<', text).count();
-    let equals = memchr::memchr_iter(b'=', text).count();
-    Survey { forbidden: next_forbidden(text, 0), starts, tokens: 2 * starts, equals }
-}
-
-/// The first forbidden character at or behind `from`.
-fn next_forbidden(text: &[u8], from: usize) -> Option<usize> {
-    let is_forbidden = |at: &usize| is_control(text[*at]) || matches!(text[*at..], [0xef, 0xbf, 0xbe | 0xbf, ..]);
-    // Without a branch for each byte, the compiler makes vector instructions of it.
-    let rows = (from..text.len()).step_by(ROW).map(|start| start..text.len().min(start + ROW));
-    let is_suspect = |byte: &u8| is_control(*byte) | (*byte == 0xef);
-    let suspects = rows.filter(|row| text[row.clone()].iter().fold(false, |all, byte| all | is_suspect(byte)));
-    suspects.flatten().find(is_forbidden)
-}
-
-fn is_control(byte: u8) -> bool {
-    (byte < b' ') & (byte != b'\t') & (byte != b'\n') & (byte != b'\r')
-}
-
-/// Reports the forbidden characters from the first one on, and marks what they stand in.
-pub(super) fn report(lexer: &mut Lexer<'_>, first: usize) {
+/// Reports the characters that XML does not allow, and marks what they stand in.
+pub(super) fn report_forbidden(lexer: &mut Lexer<'_>) {
     let input = lexer.input;
-    let mut next = Some(first);
-    while let Some(at) = next {
-        let end = input.character_end(at as u32);
+    // Nearly all texts have none; without a branch, the compiler makes vector instructions of this.
+    let is_suspect = |byte: u8| (byte < b' ') & !matches!(byte, b'\t' | b'\n' | b'\r') | (byte == 0xef);
+    if !input.text.bytes().fold(false, |found, byte| found | is_suspect(byte)) {
+        return;
+    }
+    for (at, character) in input.text.char_indices().filter(|(_, character)| !is_char(*character)) {
+        let (start, end) = (at as u32, (at + character.len_utf8()) as u32);
         lexer.faults.add(|| {
-            let number = input.text[at..].chars().next().map_or(0, u32::from);
-            let message = format!("the character U+{number:04X} is not allowed in XML");
-            let place = Span::new(at as u32, end).in_file(input.file);
-            let one = input.fault(&codes::XML_CHARACTER, at as u32, end, message);
-            one.suggest("remove it", place, "")
+            let message = format!("the character U+{:04X} is not allowed in XML", u32::from(character));
+            let one = input.fault(&codes::XML_CHARACTER, start, end, message);
+            one.mend("remove it", "")
         });
-        mark(lexer, at as u32);
-        next = next_forbidden(input.bytes(), end as usize);
+        mark(lexer, start);
     }
 }
 
@@ -76,7 +43,43 @@ fn mark(lexer: &mut Lexer<'_>, at: u32) {
     }
 }
 
-/// True if there is nothing but white space.
-pub(super) fn is_blank(bytes: &[u8]) -> bool {
-    bytes.iter().all(|byte| matches!(byte, b' ' | b'\t' | b'\r' | b'\n'))
+/// The number of bytes at the start of `bytes` that look like a name: all bytes of a character beyond ASCII do, until
+/// [`is_qualified_name`] has looked.
+pub(super) fn name_length(bytes: &[u8]) -> usize {
+    let is_part = |byte: &&u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-' | b'.' | b':' | 0x80..);
+    bytes.iter().take_while(is_part).count()
+}
+
+/// True if it is a Name without a colon (NCName of Namespaces in XML 1.0).
+pub(crate) fn is_local_name(name: &str) -> bool {
+    let mut characters = name.chars();
+    characters.next().is_some_and(starts_name) && characters.all(continues_name)
+}
+
+/// True if it is a Name with at most one colon, both sides a name of their own (QName).
+pub(crate) fn is_qualified_name(name: &str) -> bool {
+    match name.split_once(':') {
+        Some((prefix, local)) => is_local_name(prefix) && is_local_name(local),
+        None => is_local_name(name),
+    }
+}
+
+/// NameStartChar of XML 1.0, 5th edition, without the colon.
+fn starts_name(character: char) -> bool {
+    match character {
+        'a'..='z' | 'A'..='Z' | '_' => true,
+        _ if character.is_ascii() => false,
+        _ => matches!(character,
+            '\u{c0}'..='\u{d6}' | '\u{d8}'..='\u{f6}' | '\u{f8}'..='\u{2ff}' | '\u{370}'..='\u{37d}'
+            | '\u{37f}'..='\u{1fff}' | '\u{200c}'..='\u{200d}' | '\u{2070}'..='\u{218f}'
+            | '\u{2c00}'..='\u{2fef}' | '\u{3001}'..='\u{d7ff}' | '\u{f900}'..='\u{fdcf}'
+            | '\u{fdf0}'..='\u{fffd}' | '\u{10000}'..='\u{effff}'),
+    }
+}
+
+/// NameChar of XML 1.0, 5th edition, without the colon.
+fn continues_name(character: char) -> bool {
+    starts_name(character)
+        || matches!(character,
+            '0'..='9' | '-' | '.' | '\u{b7}' | '\u{300}'..='\u{36f}' | '\u{203f}'..='\u{2040}')
 }

@@ -1,11 +1,9 @@
-//! The tree of a text.
+//! The tree of a text, and the tokens that the text is cut into.
 
-use std::collections::HashMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::Element;
 use super::attribute::RawAttribute;
-use super::token::{Token, TokenKind};
 use crate::source::{FileId, Span};
 
 /// An element of a [`Document`]; the numbers rise in document order, the root is 0.
@@ -24,6 +22,59 @@ pub(super) const NO_NAMESPACE: u32 = 0;
 /// The number of the namespace of declarations.
 pub(super) const XMLNS: u32 = 2;
 
+/// The kind of a token.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TokenKind {
+    /// A byte order mark at the start of the text.
+    Mark,
+    /// `<a ...>`
+    StartTag,
+    /// `<a .../>`
+    EmptyTag,
+    /// `</a>`
+    EndTag,
+    /// White space alone.
+    Space,
+    /// Character data that is more than white space.
+    Text,
+    /// `<![CDATA[...]]>`
+    Section,
+    /// `<!-- ... -->`
+    Comment,
+    /// `<?...?>`, the XML declaration included.
+    Instruction,
+    /// `<!DOCTYPE ...>`
+    Doctype,
+    /// Markup that is none: a `<` by itself, or an end tag that ends nothing.
+    Error,
+    /// Nothing, behind the last byte.
+    End,
+}
+
+/// A token; it ends where the next one starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Token {
+    pub(super) start: u32,
+    pub(super) kind: TokenKind,
+    /// Of a start tag, the flags of its element.
+    pub(super) flags: u8,
+}
+
+/// Text other than white space is directly inside.
+pub(super) const HAS_TEXT: u8 = 1;
+/// The end tag was found, or none is needed.
+pub(super) const CLOSED: u8 = 2;
+/// Attributes may be missing, or may be meant otherwise.
+pub(super) const DAMAGED_TAG: u8 = 4;
+/// Elements or texts directly inside may be missing, or may belong elsewhere.
+pub(super) const DAMAGED_CONTENT: u8 = 8;
+/// Nobody knows what the text means: that of a token, or that directly inside an element.
+pub(super) const UNSURE_TEXT: u8 = 16;
+/// The start tag has no `>`.
+pub(super) const BROKEN_OFF: u8 = 32;
+/// The prefix of the element's name is bound to no namespace, or its name is none.
+pub(super) const UNNAMED: u8 = 64;
+
 /// An element, as it is stored.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
@@ -41,6 +92,12 @@ pub(super) struct Node {
     pub(super) namespace: u32,
 }
 
+impl Node {
+    pub(super) fn name_span(&self) -> Span {
+        Span::new(self.name, self.name + self.name_len)
+    }
+}
+
 /// The tree of a text, whatever the text is. Of a text without any element, the root has no name.
 #[derive(Debug)]
 pub struct Document {
@@ -50,16 +107,24 @@ pub struct Document {
     pub(super) elements: Vec<Node>,
     pub(super) attributes: Vec<RawAttribute>,
     pub(super) namespaces: Vec<Box<str>>,
-    pub(super) declared: Declared,
+    /// By element and prefix.
+    pub(super) declared: Vec<Declaration>,
 }
 
-/// Attributes beyond which the declarations among them are found by their prefixes.
-pub(super) const MANY_ATTRIBUTES: usize = 32;
+/// A declaration of a namespace.
+#[derive(Debug)]
+pub(super) struct Declaration {
+    pub(super) element: ElementId,
+    /// Empty for the default namespace.
+    pub(super) prefix: Box<str>,
+    pub(super) namespace: u32,
+}
 
-/// The places of declarations of namespaces among the attributes, by element and prefix: of elements with many
-/// attributes, once somebody asks.
-#[derive(Debug, Default)]
-pub(super) struct Declared(OnceLock<HashMap<ElementId, HashMap<Box<str>, usize>>>);
+impl Declaration {
+    pub(super) fn key(&self) -> (ElementId, &str) {
+        (self.element, &self.prefix)
+    }
+}
 
 impl Document {
     /// The file it was read from.
@@ -124,17 +189,6 @@ impl Document {
         (0..self.elements.len() as u32).map(|id| Element { document: self, id: ElementId(id) })
     }
 
-    /// The place of the declaration of a prefix among the attributes of an element with many of them.
-    pub(super) fn declaration(&self, element: ElementId, prefix: &str) -> Option<usize> {
-        let all = self.declared.0.get_or_init(|| {
-            let many = self.elements().filter(|element| element.count_of_attributes() > MANY_ATTRIBUTES);
-            let declared =
-                |element: Element<'_>| element.declared_prefixes().map(|(prefix, at)| (prefix.into(), at)).collect();
-            many.map(|element| (element.id(), declared(element))).collect()
-        });
-        all.get(&element)?.get(prefix).copied()
-    }
-
     /// The innermost element that byte `at` is in, its tags included; right behind an element without an end is in it,
     /// too.
     pub fn innermost(&self, at: u32) -> Option<Element<'_>> {
@@ -148,10 +202,5 @@ impl Document {
             here = element.parent();
         }
         here
-    }
-
-    /// The same, or the root for a place outside.
-    pub fn element_at(&self, at: u32) -> Element<'_> {
-        self.innermost(at).unwrap_or_else(|| self.root())
     }
 }

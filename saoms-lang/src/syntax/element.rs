@@ -1,10 +1,10 @@
 //! Views of elements.
 
-use std::borrow::Cow;
-
 use super::Attribute;
-use super::document::{Document, ElementId, MANY_ATTRIBUTES, NO_NAMESPACE, NONE, Node, XMLNS};
-use super::token::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, Token, TokenKind, UNNAMED, UNSURE_TEXT};
+use super::document::{
+    BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, Declaration, Document, ElementId, NO_NAMESPACE, NONE, Node,
+    Token, TokenKind, UNNAMED, UNSURE_TEXT, XMLNS,
+};
 use super::value;
 use crate::source::{Location, Span};
 
@@ -93,8 +93,7 @@ impl<'a> Element<'a> {
     /// The name in the start tag.
     #[inline]
     pub fn name_span(self) -> Span {
-        let Node { name, name_len, .. } = *self.node();
-        Span::new(name, name + name_len)
+        self.node().name_span()
     }
 
     /// The place of the name in the start tag.
@@ -169,19 +168,12 @@ impl<'a> Element<'a> {
         (self.id.0..self.node().after).map(move |id| self.with_id(id))
     }
 
-    fn raw_attributes(self) -> &'a [super::attribute::RawAttribute] {
-        let Document { elements, attributes, .. } = self.document;
-        let end = elements.get(self.id.0 as usize + 1).map_or(attributes.len(), |next| next.attributes as usize);
-        &attributes[self.node().attributes as usize..end]
-    }
-
-    pub(super) fn count_of_attributes(self) -> usize {
-        self.raw_attributes().len()
-    }
-
     /// All that is written in its start tag: attributes, declarations of namespaces, and what may be one of them.
     pub fn written_attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
-        self.raw_attributes().iter().map(move |raw| Attribute { document: self.document, raw })
+        let Document { elements, attributes, .. } = self.document;
+        let end = elements.get(self.id.0 as usize + 1).map_or(attributes.len(), |next| next.attributes as usize);
+        let own = &attributes[self.node().attributes as usize..end];
+        own.iter().map(move |raw| Attribute { document: self.document, raw })
     }
 
     /// Its attributes in order, without declarations of namespaces and without those of which name or value are
@@ -214,33 +206,14 @@ impl<'a> Element<'a> {
     }
 
     /// The namespace that `prefix` is bound to here; "" asks for the default namespace. `None` when it is unbound.
-    pub fn resolve_prefix(self, prefix: &str) -> Option<Cow<'a, str>> {
+    pub fn resolve_prefix(self, prefix: &str) -> Option<&'a str> {
         if prefix == "xml" {
-            return Some(Cow::Borrowed(super::XML_NAMESPACE));
+            return Some(super::XML_NAMESPACE);
         }
-        let mut here = Some(self);
-        while let Some(element) = here {
-            let found = match element.count_of_attributes() > MANY_ATTRIBUTES {
-                true => self.document.declaration(element.id, prefix),
-                false => element.declared_prefixes().find(|(known, _)| **known == *prefix).map(|(_, at)| at),
-            };
-            if let Some(at) = found {
-                let found = Attribute { document: self.document, raw: &element.raw_attributes()[at] };
-                return Some(found.value()).filter(|uri| !uri.is_empty());
-            }
-            here = element.parent();
-        }
-        None
-    }
-
-    /// The prefixes that it declares, "" for the default namespace, each with the place of its declaration among the
-    /// attributes.
-    pub(super) fn declared_prefixes(self) -> impl Iterator<Item = (&'a str, usize)> {
-        let all = self.written_attributes().enumerate().filter(|(_, one)| one.raw.namespace == XMLNS && one.is_sure());
-        all.map(move |(at, one)| {
-            let (before, local) = split(one.name());
-            (before.map_or("", |_| local), at)
-        })
+        let Document { declared, namespaces, .. } = self.document;
+        let found = std::iter::successors(Some(self), |element| element.parent())
+            .find_map(|element| declared.binary_search_by_key(&(element.id, prefix), Declaration::key).ok())?;
+        Some(&*namespaces[declared[found].namespace as usize]).filter(|uri| !uri.is_empty())
     }
 
     /// The name in the end tag; `None` where there is no end tag, as for `<a/>`.
@@ -263,12 +236,16 @@ pub(super) fn slice(document: &Document, span: Span) -> &str {
     &document.text[span.start as usize..span.end as usize]
 }
 
-/// The start of `part` in `whole`.
-pub(super) fn offset(whole: &str, part: &str) -> u32 {
-    (part.as_ptr() as usize - whole.as_ptr() as usize) as u32
+/// The place of `part` in `whole`, which starts at byte `start`.
+pub(super) fn part_span(start: u32, whole: &str, part: &str) -> Span {
+    let start = start + (part.as_ptr() as usize - whole.as_ptr() as usize) as u32;
+    Span::new(start, start + part.len() as u32)
 }
 
 /// A name into its prefix and its local part.
 pub(super) fn split(name: &str) -> (Option<&str>, &str) {
-    name.split_once(':').map_or((None, name), |(prefix, local)| (Some(prefix), local))
+    match name.bytes().position(|byte| byte == b':') {
+        Some(colon) => (Some(&name[..colon]), &name[colon + 1..]),
+        None => (None, name),
+    }
 }

@@ -3,10 +3,9 @@
 use std::borrow::Cow;
 
 use super::Element;
-use super::document::Node;
-use super::element::{offset, slice};
-use super::token::{HAS_TEXT, TokenKind, UNSURE_TEXT};
-use super::value;
+use super::document::{HAS_TEXT, Node, TokenKind, UNSURE_TEXT};
+use super::element::{part_span, slice};
+use super::value::{self, Place};
 use crate::source::{Located, Span, Text};
 
 impl<'a> Element<'a> {
@@ -44,12 +43,10 @@ impl<'a> Element<'a> {
         self.own_tokens().filter_map(move |(kind, span)| {
             let written = slice(self.document, span);
             Some(match kind {
-                TokenKind::Space | TokenKind::Text => (span, value::character_data(written)),
+                TokenKind::Space | TokenKind::Text => (span, value::meant(written, Place::Content)),
                 TokenKind::Section => {
-                    let inside = written.get(9..).unwrap_or(&written[written.len()..]);
-                    let inside = inside.strip_suffix("]]>").unwrap_or(inside);
-                    let start = span.start + offset(written, inside);
-                    (Span::new(start, start + inside.len() as u32), value::line_ends(inside))
+                    let inside = value::section(written);
+                    (part_span(span.start, written, inside), value::meant(inside, Place::Section))
                 }
                 TokenKind::Error if written == "<" => (span, Cow::Borrowed(written)),
                 _ => return None,
@@ -80,8 +77,7 @@ impl<'a> Element<'a> {
         let trimmed = |span: Span| {
             let written = slice(self.document, span);
             let text = value::trim(written);
-            let start = span.start + offset(written, text);
-            (!text.is_empty()).then(|| Span::new(start, start + text.len() as u32))
+            (!text.is_empty()).then(|| part_span(span.start, written, text))
         };
         let mut pieces = self.pieces().filter_map(|(span, _)| trimmed(span));
         let first = pieces.next()?;
@@ -95,16 +91,7 @@ impl<'a> Element<'a> {
         if !self.has_text() || self.has(UNSURE_TEXT) {
             return None;
         }
-        let Node { token, end, .. } = *self.node();
-        let span = self.document.token_span(token + 1);
-        let written = slice(self.document, span);
-        let (text, span) = if end == token + 2 && value::is_literal(written) {
-            let text = value::trim(written);
-            let start = span.start + offset(written, text);
-            (text.into(), Span::new(start, start + text.len() as u32))
-        } else {
-            (value::trim(&self.text()).into(), self.text_span()?)
-        };
-        Some(Located::new(text, span.in_file(self.document.file)))
+        let location = self.text_span()?.in_file(self.document.file);
+        Some(Located::new(value::trim(&self.text()).into(), location))
     }
 }

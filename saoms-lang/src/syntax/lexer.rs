@@ -4,11 +4,10 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::attribute::RawAttribute;
-use super::characters::{Survey, is_blank};
-use super::document::{NONE, Node};
+use super::characters::name_length;
+use super::document::{DAMAGED_TAG, NONE, Node, Token, TokenKind, UNNAMED, UNSURE_TEXT};
 use super::fault::{Faults, Input};
-use super::token::{DAMAGED_TAG, Token, TokenKind, UNNAMED, UNSURE_TEXT};
-use super::{prolog, reference};
+use super::{prolog, value};
 use crate::diagnostic::codes;
 use crate::source::Span;
 
@@ -26,14 +25,12 @@ pub(super) struct Lexer<'a> {
 }
 
 impl<'a> Lexer<'a> {
-    pub(super) fn new(input: Input<'a>, survey: &Survey) -> Self {
-        // Lists that grow have room for twice as much. The shortest are `<a>` and ` a=""`.
-        let length = input.text.len();
+    pub(super) fn new(input: Input<'a>) -> Self {
         Self {
             input,
-            tokens: Vec::with_capacity(survey.tokens.min(length / 2) + 4),
-            elements: Vec::with_capacity(survey.starts.min(length / 3) + 1),
-            attributes: Vec::with_capacity(survey.equals.min(length / 5)),
+            tokens: Vec::new(),
+            elements: Vec::new(),
+            attributes: Vec::new(),
             faults: Faults::default(),
             is_cut_short: false,
             has_open_doctype: false,
@@ -184,8 +181,7 @@ impl<'a> Lexer<'a> {
     fn text(&mut self, start: u32) -> u32 {
         let input = self.input;
         let end = input.find(b'<', start).unwrap_or(input.len());
-        let bytes = &input.bytes()[start as usize..end as usize];
-        if is_blank(bytes) {
+        if value::trim(input.slice(start, end)).is_empty() {
             self.push(start, TokenKind::Space, 0);
             return end;
         }
@@ -194,22 +190,16 @@ impl<'a> Lexer<'a> {
         while let Some(length) = memchr::memchr2(b'&', b']', &input.bytes()[at as usize..end as usize]) {
             at += length as u32;
             if input.byte(at) == Some(b'&') {
-                match reference::check(input, at) {
-                    Ok(behind) => at = behind,
-                    Err(fault) => {
-                        flags |= if fault.is_unknown() { UNSURE_TEXT } else { 0 };
-                        self.faults.add(|| fault.diagnostic(input));
-                        at += 1;
-                    }
-                }
+                let (behind, is_sure) = self.reference(at);
+                flags |= if is_sure { 0 } else { UNSURE_TEXT };
+                at = behind;
                 continue;
             }
             if input.text[at as usize..].starts_with("]]>") {
                 self.faults.add(|| {
                     let message = "`]]>` in text, which XML allows only to end a CDATA section";
-                    let place = Span::new(at, at + 3).in_file(input.file);
                     let one = input.fault(&codes::XML_SYNTAX, at, at + 3, message);
-                    one.suggest("replace it with `]]&gt;`", place, "]]&gt;")
+                    one.mend("replace it with `]]&gt;`", "]]&gt;")
                 });
             }
             at += 1;
@@ -222,11 +212,11 @@ impl<'a> Lexer<'a> {
 /// The name in an end tag, and the first byte behind it that is no white space.
 pub(super) fn end_name(input: Input<'_>, start: u32) -> (Span, u32) {
     let mut from = start + 2;
-    let mut end = from + super::names::name_length(&input.bytes()[from as usize..]) as u32;
+    let mut end = from + name_length(&input.bytes()[from as usize..]) as u32;
     if end == from {
         // `</ a>`
         let behind = input.skip_space(from);
-        let length = super::names::name_length(&input.bytes()[behind as usize..]) as u32;
+        let length = name_length(&input.bytes()[behind as usize..]) as u32;
         if length > 0 && input.byte(input.skip_space(behind + length)) == Some(b'>') {
             (from, end) = (behind, behind + length);
         }

@@ -1,12 +1,11 @@
 //! Checks of declarations, instructions, comments and of what else starts with `<?` or `<!`.
 
+use super::characters::{is_local_name, name_length};
+use super::document::TokenKind;
 use super::fault::Input;
-use super::names::{is_local_name, name_length};
-use super::token::TokenKind;
 use super::value::is_space;
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::limits::SUGGESTED_EDITS;
-use crate::source::Span;
 
 /// The fault of the processing instruction from `start` to `end`, or of the XML declaration.
 pub(super) fn instruction(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
@@ -24,7 +23,7 @@ pub(super) fn instruction(input: Input<'_>, start: u32, end: u32) -> Option<Diag
         if !input.slice(first, start).trim().is_empty() {
             return Some(one);
         }
-        let gap = Span::new(first, start).in_file(input.file);
+        let gap = input.at(first, start);
         return Some(one.suggest("remove what is before it", gap, ""));
     }
     if name.eq_ignore_ascii_case("xml") {
@@ -46,7 +45,7 @@ pub(super) fn comment(input: Input<'_>, start: u32, end: u32) -> Option<Diagnost
     let edits = single_dashes(inside, start + 4, input);
     let one = input
         .fault(&codes::XML_SYNTAX, at, at + 2, "`--` inside a comment")
-        .label(Span::new(start, start + 4).in_file(input.file), "the comment starts here")
+        .label(input.at(start, start + 4), "the comment starts here")
         .help("XML allows `--` only in the `-->` that ends the comment");
     Some(if edits.is_empty() { one } else { one.suggest_edits("write single dashes", edits) })
 }
@@ -60,7 +59,7 @@ fn single_dashes(inside: &str, start: u32, input: Input<'_>) -> Vec<Edit> {
         at = from + inside[from..].bytes().take_while(|byte| *byte == b'-').count();
         let replacement = if at == inside.len() { "" } else { "-" };
         if at - from > 1 || replacement.is_empty() {
-            let place = Span::new(start + from as u32, start + at as u32).in_file(input.file);
+            let place = input.at(start + from as u32, start + at as u32);
             edits.push(Edit { location: place, replacement: replacement.to_owned() });
             if edits.len() > SUGGESTED_EDITS {
                 return Vec::new();
@@ -70,37 +69,36 @@ fn single_dashes(inside: &str, start: u32, input: Input<'_>) -> Vec<Edit> {
     edits
 }
 
-/// The kind of markup that starts with `<!` or `<?`; that of its start alone is known at the end of a text, too.
+/// Markup that starts with `<!` or `<?`, by its start, with its name in messages.
+const MARKUP: [(&str, TokenKind, &str); 3] = [
+    ("<!--", TokenKind::Comment, "comment"),
+    ("<![CDATA[", TokenKind::Section, "CDATA section"),
+    ("<?", TokenKind::Instruction, "processing instruction"),
+];
+
+/// The kind of such markup; that of its start alone is known at the end of a text, too.
 pub(super) fn kind(rest: &str) -> Option<TokenKind> {
-    let kinds = [("<!--", TokenKind::Comment), ("<![CDATA[", TokenKind::Section), ("<?", TokenKind::Instruction)];
     if starts_doctype(rest) {
         return Some(TokenKind::Doctype);
     }
-    let found = kinds.into_iter().find(|(start, _)| rest.starts_with(start) || start.starts_with(rest));
-    found.map(|(_, kind)| kind)
+    let found = MARKUP.into_iter().find(|(start, ..)| rest.starts_with(start) || start.starts_with(rest));
+    found.map(|(_, kind, _)| kind)
 }
 
 /// The fault of markup at `start` that quick-xml cannot read to its end.
 pub(super) fn broken(input: Input<'_>, start: u32) -> Diagnostic {
     let rest = &input.text[start as usize..];
-    let unclosed = |len: u32, what: &str| {
-        input.ended(&codes::XML_UNCLOSED, start, start + len, format!("this {what} is never closed"))
+    let unclosed = |len: usize, what: &str| {
+        input.ended(&codes::XML_UNCLOSED, start, start + len as u32, format!("this {what} is never closed"))
     };
     if starts_doctype(rest) {
         return doctype(input, start, start + 9);
     }
-    if rest.starts_with("<!--") {
-        return unclosed(4, "comment");
+    if let Some((start, _, what)) = MARKUP.into_iter().find(|(start, ..)| rest.starts_with(start)) {
+        return unclosed(start.len(), what);
     }
-    if rest.starts_with("<![CDATA[") {
-        return unclosed(9, "CDATA section");
-    }
-    if rest.starts_with("<?") {
-        return unclosed(2, "processing instruction");
-    }
-    let whole = ["<!--", "<![CDATA[", "<!DOCTYPE"];
-    if whole.iter().any(|markup| markup.starts_with(rest)) {
-        return unclosed(rest.len() as u32, "markup");
+    if kind(rest).is_some() || "<!DOCTYPE".starts_with(rest) {
+        return unclosed(rest.len(), "markup");
     }
     let message = "`<!` starts a comment (`<!--`) or a CDATA section (`<![CDATA[`), and nothing else here";
     input.fault(&codes::XML_SYNTAX, start, start + 2, message)

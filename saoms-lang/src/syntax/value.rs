@@ -3,25 +3,38 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// The value of an attribute (XML 1.0, 3.3.3): each white space character a blank, references resolved.
-pub(super) fn attribute_value(raw: &str) -> Cow<'_, str> {
-    if raw.bytes().fold(true, |literal, byte| literal & (byte != b'&') & (byte >= b' ')) {
-        return Cow::Borrowed(raw);
-    }
-    let mut value = String::with_capacity(raw.len());
-    attribute_characters(raw, |character, _| value.push(character));
-    Cow::Owned(value)
+/// Where a text stands, which decides what its characters mean.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// In an attribute, where each white space character is a blank (XML 1.0, 3.3.3).
+    Attribute,
+    /// Between tags.
+    Content,
+    /// In a CDATA section, where only line ends mean something else.
+    Section,
 }
 
-/// Each character that an attribute's value stands for, with the bytes that it is written with.
-fn attribute_characters(raw: &str, mut each: impl FnMut(char, Range<usize>)) {
+/// The text that is meant: references and line ends resolved.
+pub(super) fn meant(written: &str, place: Place) -> Cow<'_, str> {
+    if !written.bytes().any(|byte| matches!(byte, b'&' | b'\t' | b'\n' | b'\r')) {
+        return Cow::Borrowed(written);
+    }
+    let mut text = String::with_capacity(written.len());
+    characters(written, place, |character, _| text.push(character));
+    Cow::Owned(text)
+}
+
+/// Each character that is meant, with the bytes that it is written with.
+fn characters(written: &str, place: Place, mut each: impl FnMut(char, Range<usize>)) {
+    let line_end = if place == Place::Attribute { ' ' } else { '\n' };
     let mut at = 0;
-    while let Some(character) = raw[at..].chars().next() {
-        let rest = &raw[at..];
+    while let Some(character) = written[at..].chars().next() {
+        let rest = &written[at..];
         let (character, length) = match character {
-            '&' => reference(rest),
-            '\r' if rest.starts_with("\r\n") => (' ', 2),
-            '\t' | '\n' | '\r' => (' ', 1),
+            '&' if place != Place::Section => reference(rest),
+            '\r' if rest.starts_with("\r\n") => (line_end, 2),
+            '\r' | '\n' => (line_end, 1),
+            '\t' if place == Place::Attribute => (' ', 1),
             _ => (character, character.len_utf8()),
         };
         each(character, at..at + length);
@@ -29,45 +42,17 @@ fn attribute_characters(raw: &str, mut each: impl FnMut(char, Range<usize>)) {
     }
 }
 
-/// True if character data means itself: no markup, references or line ends to resolve.
-pub(super) fn is_literal(text: &str) -> bool {
-    // Without a branch, so that the compiler makes vector instructions of it; texts are short.
-    text.bytes().fold(true, |literal, byte| literal & (byte != b'<') & (byte != b'&') & (byte != b'\r'))
+/// The inside of a CDATA section, which may lack its end.
+pub(super) fn section(written: &str) -> &str {
+    let inside = written.get("<![CDATA[".len()..).unwrap_or(&written[written.len()..]);
+    inside.strip_suffix("]]>").unwrap_or(inside)
 }
 
-/// The text that character data means.
-pub(super) fn character_data(data: &str) -> Cow<'_, str> {
-    if is_literal(data) {
-        return Cow::Borrowed(data);
-    }
-    let mut text = String::with_capacity(data.len());
-    data_characters(data, |character, _| text.push(character));
-    Cow::Owned(text)
-}
-
-/// The text of a CDATA section, where only line ends mean something else.
-pub(super) fn line_ends(data: &str) -> Cow<'_, str> {
-    match data.contains('\r') {
-        true => Cow::Owned(data.replace("\r\n", "\n").replace('\r', "\n")),
-        false => Cow::Borrowed(data),
-    }
-}
-
-/// Each character that a stretch without elements stands for, with the bytes that it is written with.
-fn data_characters(stretch: &str, mut each: impl FnMut(char, Range<usize>)) {
-    for (piece, literal) in pieces(stretch) {
-        let mut at = piece.start;
-        while let Some(character) = stretch[at..piece.end].chars().next() {
-            let rest = &stretch[at..piece.end];
-            let (character, length) = match character {
-                '&' if !literal => reference(rest),
-                '\r' if rest.starts_with("\r\n") => ('\n', 2),
-                '\r' => ('\n', 1),
-                _ => (character, character.len_utf8()),
-            };
-            each(character, at..at + length);
-            at += length;
-        }
+/// Each character that a stretch without elements means, with the bytes that it is written with.
+fn content_characters(stretch: &str, mut each: impl FnMut(char, Range<usize>)) {
+    for (piece, place) in pieces(stretch) {
+        let start = piece.start;
+        characters(&stretch[piece], place, |character, bytes| each(character, bytes.start + start..bytes.end + start));
     }
 }
 
@@ -81,8 +66,8 @@ impl SourceMap {
         if written == value {
             return Some(Self(None));
         }
-        let data = Characters::of(value, |each| data_characters(written, each));
-        let found = data.or_else(|| Characters::of(value, |each| attribute_characters(written, each)));
+        let content = Characters::of(value, |each| content_characters(written, each));
+        let found = content.or_else(|| Characters::of(value, |each| characters(written, Place::Attribute, each)));
         found.map(|characters| Self(Some(characters)))
     }
 
@@ -148,8 +133,8 @@ pub(super) fn trim(text: &str) -> &str {
     text.trim_matches(is_space)
 }
 
-/// The pieces of text between comments and instructions; the flag says that a piece is a CDATA section's inside.
-fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, bool)> {
+/// The pieces of text between comments and instructions.
+fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, Place)> {
     const MARKUP: [(&str, &str, bool); 3] = [("<![CDATA[", "]]>", true), ("<!--", "-->", false), ("<?", "?>", false)];
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -159,13 +144,13 @@ fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, bool)> {
                 let next = rest.bytes().skip(1).position(|byte| byte == b'<');
                 let length = next.map_or(rest.len(), |length| length + 1);
                 at += length;
-                return Some((at - length..at, false));
+                return Some((at - length..at, Place::Content));
             };
             let start = at + open.len();
             let end = stretch[start..].find(close).map_or(stretch.len(), |length| start + length);
             at = (end + close.len()).min(stretch.len());
             if keep {
-                return Some((start..end, true));
+                return Some((start..end, Place::Section));
             }
         }
         None

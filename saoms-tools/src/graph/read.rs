@@ -136,7 +136,7 @@ impl Reader<'_> {
             name,
             namespace,
             properties: view.composites().flat_map(|one| &one.properties).map(setting).collect(),
-            services: view.services().map(|one| port(&one.name, one.interface())).collect(),
+            services: view.services().map(|one| port(&one.name, one.contract().interface.as_ref())).collect(),
             references: view.references().map(reference).collect(),
             components: view.components().map(|(_, one)| self.component(one)).collect(),
             links: Vec::new(),
@@ -151,7 +151,7 @@ impl Reader<'_> {
 
     fn component(&mut self, one: &model::ComponentElement) -> DiagramComponent {
         let mut component = component(one, self.registry);
-        if one.replicas().is_some() {
+        if one.replicas.as_ref().is_some() {
             component.replicas = self.census.range(&self.around, one.origin);
         }
         let named = one.implementation.as_ref().and_then(|one| self.contribution.link(one.origin));
@@ -194,7 +194,8 @@ pub(super) fn class_of<'r>(component: &model::ComponentElement, registry: &'r Re
 
 fn component(component: &model::ComponentElement, registry: &Registry) -> DiagramComponent {
     let class = class_of(component, registry);
-    let mut services: Vec<Port> = component.services.iter().map(|one| port(&one.name, one.interface())).collect();
+    let mut services: Vec<Port> =
+        component.services.iter().map(|one| port(&one.name, one.contract().interface.as_ref())).collect();
     let mut references: Vec<Port> = component.references.iter().map(reference).collect();
     if let Some(class) = class {
         // What the host serves for every component is drawn where it is named.
@@ -212,7 +213,7 @@ fn component(component: &model::ComponentElement, registry: &Registry) -> Diagra
     }
     let is_unknown = class.is_none() && component.class().is_some();
     DiagramComponent {
-        name: match component.replicas() {
+        name: match component.replicas.as_ref() {
             Some(_) => pattern(&component.name),
             None => component.name.to_string(),
         },
@@ -266,8 +267,8 @@ fn port(name: &str, interface: Option<&InterfaceElement>) -> Port {
 }
 
 fn reference(one: &ReferenceElement) -> Port {
-    let many = one.multiplicity().map(|one| one.value.is_many());
-    Port { many, ..port(&one.name, one.interface()) }
+    let many = one.multiplicity.map(|one| one.value.is_many());
+    Port { many, ..port(&one.name, one.contract().interface.as_ref()) }
 }
 
 fn setting(property: &model::Property) -> DiagramSetting {

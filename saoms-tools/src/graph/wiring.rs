@@ -30,7 +30,7 @@ pub(super) fn link(view: &View<'_>, diagram: &mut Diagram, is_inside: bool) {
         left: MOST_MISSING,
         is_inside,
     };
-    let is_replacing = |wire: &WireElement| wire.replace().is_some_and(|replace| replace.value);
+    let is_replacing = |wire: &WireElement| wire.replace.is_some_and(|replace| replace.value);
     let replaced = view.wires().filter(|wire| is_replacing(wire)).filter_map(|wire| wire.source.as_ref());
     let replaced: HashSet<DiagramEnd> = replaced.filter_map(|source| linker.reference(source)).collect();
     linker.targets(view, &replaced);
@@ -94,7 +94,7 @@ impl Linker<'_> {
             self.add(LinkKind::Promotion, DiagramEnd::Composite(place), to);
         }
         for (place, reference) in view.references().enumerate() {
-            for promote in reference.promote() {
+            for promote in &reference.promote {
                 let Some(from) = self.reference(promote) else {
                     self.diagram.left_out += 1;
                     continue;
@@ -114,11 +114,11 @@ impl Linker<'_> {
         let mut offers: Option<HashMap<String, Vec<(usize, usize)>>> = None;
         let mut left = MOST_AUTOWIRED;
         for (component, (is_default, model)) in view.components().enumerate() {
-            let is_default = model.autowire().map_or(is_default, |one| one.value);
+            let is_default = model.autowire.map_or(is_default, |one| one.value);
             for port in 0..self.diagram.components[component].references.len() {
                 let from = DiagramEnd::Component { component, port };
                 let written = model.references.get(port);
-                let is_asked = written.and_then(|one| one.autowire()).map_or(is_default, |one| one.value);
+                let is_asked = written.and_then(|one| one.autowire).map_or(is_default, |one| one.value);
                 if !is_asked || self.linked.contains(&from) {
                     continue;
                 }

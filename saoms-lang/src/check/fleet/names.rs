@@ -11,12 +11,12 @@ use crate::syntax::{Element, escaped};
 
 /// Checks that no two components have one path. Where nobody gives one, names alone see to that.
 pub(crate) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    if fleet.members.iter().all(|member| member.component.path().is_none()) {
+    if fleet.members.iter().all(|member| member.component.path.as_ref().is_none()) {
         return;
     }
     let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());
     for member in fleet.members.iter().filter(|one| !one.is_partial && !one.component.name.is_empty()) {
-        let given = member.component.path();
+        let given = member.component.path.as_ref();
         let place = given.unwrap_or(&member.component.name).location;
         let earlier = first.entry(member.path()).or_insert(place);
         if *earlier != place && given.is_some() {
@@ -70,10 +70,10 @@ pub(crate) fn loose(naming: Naming<'_>, around: &Composite, found: &Composite) -
     let default = element.resolve_prefix("").unwrap_or_default();
     let why = match prefix {
         "" if default.is_empty() => format!("{} without a prefix is in no namespace", quoted(local)),
-        "" if Version::from_namespace(&default).is_some() => {
+        "" if Version::from_namespace(default).is_some() => {
             format!("{} without a prefix is in the default namespace, which is that of SCA", quoted(local))
         }
-        "" => format!("{} without a prefix is in the namespace {}", quoted(local), quoted(&default)),
+        "" => format!("{} without a prefix is in the namespace {}", quoted(local), quoted(default)),
         prefix => format!("the prefix {} is bound to no namespace", quoted(prefix)),
     };
     let namespace = found.namespace();

@@ -26,7 +26,7 @@ pub(super) fn plan<'a>(
     report: &mut Report<'_>,
 ) -> (Vec<Planned<'a>>, bool) {
     let (mut loops, mut is_sound) = by_default(member, class, checked, registry, report);
-    let elements = member.component.loops();
+    let elements = &member.component.loops;
     let Some(first) = elements.first() else { return (loops, is_sound) };
     if class.class.declaration().knowledge.is_none() {
         let message = format!("class {} has no loops", quoted(class.class.name()));

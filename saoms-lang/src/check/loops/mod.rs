@@ -79,7 +79,7 @@ pub(crate) fn resolve<'a>(
             continue;
         };
         let class = &fleet.classes[index];
-        let says_nothing = member.component.loops().is_empty();
+        let says_nothing = member.component.loops.is_empty();
         let choice = says_nothing.then(|| (index, list::choice(class, &check.given).map(SmolStr::new)));
         if let Some((with, specs)) = choice.as_ref().and_then(|choice| usual.get(choice)) {
             fleet.members[place].kind = Kind::Class(*with);
@@ -148,7 +148,7 @@ fn sources<'a>(one: &LoopElement, member: &Member<'a>, parameters: &mut Paramete
 
 /// Checks the loops of a component that has no class, as far as that is possible.
 fn without_class<'a>(member: &Member<'a>, parameters: &mut Parameters<'a>, report: &mut Report<'_>) {
-    let loops = member.component.loops();
+    let loops = &member.component.loops;
     loops.iter().for_each(|one| sources(one, member, parameters, report));
     if let (Kind::Composite(_), Some(first)) = (member.kind, loops.first()) {
         let message = format!("component {} is a composite, which has no loops", quoted(&member.component.name));

@@ -16,7 +16,7 @@ pub(super) fn check(
     report: &mut Report<'_>,
 ) -> bool {
     // What the class declares has been checked when it was registered.
-    if member.component.loops().is_empty() {
+    if member.component.loops.is_empty() {
         return true;
     }
     let declarations: Vec<&LoopDeclaration> = loops.iter().filter_map(|one| Some(one.class?.declaration())).collect();

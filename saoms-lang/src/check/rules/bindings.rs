@@ -9,18 +9,18 @@ use crate::source::{Location, Text};
 
 /// Checks the bindings of a service.
 pub(crate) fn of_service(service: &ServiceElement, report: &mut Report<'_>) {
-    names("service", &service.name, service.bindings(), report);
-    of_callback(service.callback(), &service.name, report);
+    names("service", &service.name, &service.contract().bindings, report);
+    of_callback(service.contract().callback.as_ref(), &service.name, report);
 }
 
 /// Checks the bindings of a reference.
 pub(crate) fn of_reference(reference: &ReferenceElement, version: Version, report: &mut Report<'_>) {
-    let bindings = reference.bindings();
+    let bindings = &reference.contract().bindings;
     if bindings.is_empty() {
         return;
     }
     names("reference", &reference.name, bindings, report);
-    of_callback(reference.callback(), &reference.name, report);
+    of_callback(reference.contract().callback.as_ref(), &reference.name, report);
     let mut uris = bindings.iter().filter_map(|one| one.uri.as_ref()).filter(|uri| !uri.is_empty());
     if let (true, Some(target), Some(uri)) = (version.is_1_1(), reference.targets.first(), uris.next()) {
         let message =
@@ -32,7 +32,7 @@ pub(crate) fn of_reference(reference: &ReferenceElement, version: Version, repor
 
 /// Reports a `uri` of `binding.sca`. In SCA 1.0 it is where the service can be reached from outside.
 pub(crate) fn uris(service: &ServiceElement, version: Version, report: &mut Report<'_>) {
-    let of_sca = service.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+    let of_sca = service.contract().bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
     for binding in of_sca.filter(|_| version.is_1_1()) {
         if let Some(uri) = &binding.uri {
             let message = format!("`binding.sca` of service {} has a `uri`", quoted(&service.name));
@@ -59,7 +59,7 @@ fn names(what: &str, of: &Text, bindings: &[Binding], report: &mut Report<'_>) {
     }
     let mut first: HashMap<&str, (&Binding, Location)> = HashMap::new();
     for binding in bindings {
-        let said = binding.name.as_deref();
+        let said = binding.name.as_ref();
         let name = said.map_or(of.as_str(), |name| name.as_str());
         let place = said.filter(|name| !name.is_empty()).map_or(binding.tag(), |name| name.location);
         let Some((other, earlier)) = first.insert(name, (binding, place)) else { continue };

@@ -44,7 +44,7 @@ fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
         match fleet.offer(member, name) {
             Offer::Service(provider) => {
                 if let Some(declared) = fleet.interface_of(provider) {
-                    interface::check(service.interface(), declared, name, "ASM50004", report);
+                    interface::check(service.contract().interface.as_ref(), declared, name, "ASM50004", report);
                 }
             }
             Offer::Open => {}
@@ -59,7 +59,7 @@ fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
             }
         }
         if fleet.class_of(member).is_some() {
-            bindings(service.bindings(), "the service can be called within the program alone", report);
+            bindings(&service.contract().bindings, "the service can be called within the program alone", report);
         }
     }
 }
@@ -70,17 +70,17 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
         let name = &reference.name;
         let declared = class.and_then(|class| class.references.iter().find(|known| known.name == name.as_str()));
         // Of most nothing is said but where they lead.
-        if declared.is_some() && reference.contract.is_none() && reference.details.is_none() {
+        if declared.is_some() && reference.contract.is_none() && reference.multiplicity.is_none() {
             continue;
         }
         let Some(whose) = whose(member, fleet) else { return };
         let inner = fleet.inner(member).and_then(|inner| inner.references().find(|known| known.name == *name.value));
         if let Some(declared) = declared {
-            interface::check(reference.interface(), &declared.interface, name, "ASM50011", report);
+            interface::check(reference.contract().interface.as_ref(), &declared.interface, name, "ASM50011", report);
             multiplicity::check(reference, multiplicity::of_class(declared), &whose, report);
-            bindings(reference.bindings(), "calls through it fail", report);
+            bindings(&reference.contract().bindings, "calls through it fail", report);
         } else if let Some(inner) = inner {
-            let own = inner.multiplicity().map_or(Multiplicity::One, |own| own.value);
+            let own = inner.multiplicity.map_or(Multiplicity::One, |own| own.value);
             multiplicity::check(reference, own, &whose, report);
         } else {
             let names = fleet.reference_names(member).unwrap_or_default();

@@ -17,7 +17,7 @@ pub(crate) fn of_class(declared: &ReferenceDeclaration) -> Multiplicity {
 
 /// Checks that the multiplicity that a component gives narrows that of what implements it.
 pub(crate) fn check(reference: &ReferenceElement, own: Multiplicity, whose: &str, report: &mut Report<'_>) {
-    let Some(given) = reference.multiplicity() else { return };
+    let Some(given) = reference.multiplicity else { return };
     if given.value.narrows(own) {
         return;
     }

@@ -29,8 +29,8 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for member in &fleet.members {
         report.about(member);
         let component = member.component;
-        // Types and elements are among the details of a property, and few have any.
-        for property in component.properties.iter().filter(|property| property.details.is_some()) {
+        // Most are a text alone, of no type.
+        for property in component.properties.iter().filter(|property| property.only_text().is_none()) {
             type_and_element(property, "ASM50035", report);
             type_name::named(property, &member.composite.document, report);
         }

@@ -136,7 +136,7 @@ impl<'a> Unfolding<'a, '_, '_> {
     /// Finds the wires of a composite that conditions keep away.
     pub(crate) fn wires(&mut self, composite: &'a Composite, unit: usize) {
         for wire in &composite.wires {
-            if !self.is_there(wire.condition(), wire.origin, unit) {
+            if !self.is_there(wire.condition.as_ref(), wire.origin, unit) {
                 self.fleet.absent_wires.insert((unit, wire.origin.file(), wire.origin.element));
             }
         }

@@ -32,10 +32,10 @@ impl<'a> Unfolding<'a, '_, '_> {
             || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
         let is_partial = member.is_partial;
         member.is_copy = instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy);
-        let own = component.path().unwrap_or(&component.name);
+        let own = component.path.as_ref().unwrap_or(&component.name);
         match owner {
             Some(owner) => member.set_path(format!("{}/{own}", self.fleet.members[owner].path())),
-            None if component.path().is_some() => member.set_path(own.to_string()),
+            None if component.path.as_ref().is_some() => member.set_path(own.to_string()),
             None => {}
         }
         self.fleet.members.push(member);
@@ -47,7 +47,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         match first {
             _ if name.is_empty() => {}
             _ if !is_seen => {
-                let condition = written.condition().map_or(component.name.location, |text| text.location);
+                let condition = written.condition.as_ref().map_or(component.name.location, |text| text.location);
                 self.fleet.absent.insert((scope, name), condition);
             }
             Some(first) if is_partial || !self.fleet.members[first].is_partial => {

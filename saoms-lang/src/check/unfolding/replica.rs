@@ -74,9 +74,7 @@ impl Instance {
         table: Option<(&Table, usize)>,
     ) -> (ComponentElement, Vec<(Text, Vec<ExpressionFault>)>) {
         let mut component = template.clone();
-        if let Some(details) = &mut component.details {
-            (details.replicas, details.condition) = (None, None);
-        }
+        (component.replicas, component.condition) = (None, None);
         let mut faults = Vec::new();
         each_text(&mut component, &mut |text| {
             if !has_expression(text) {
@@ -92,10 +90,10 @@ impl Instance {
             component.services.retain(|service| !has_expression(&service.name));
             component.references.retain(|reference| !has_expression(&reference.name));
             let is_known = |one: &LoopElement| {
-                let texts = [Some(&one.name), one.class.as_deref(), one.before.as_deref(), one.after.as_deref()];
+                let texts = [Some(&one.name), one.class.as_ref(), one.before.as_ref(), one.after.as_ref()];
                 !texts.into_iter().flatten().any(|text| has_expression(text))
             };
-            component.details.iter_mut().for_each(|details| details.loops.retain(is_known));
+            component.loops.retain(is_known);
         }
         if let Some((table, row)) = table {
             replace(&mut component, table, row);
@@ -112,8 +110,8 @@ fn replace(component: &mut ComponentElement, table: &Table, row: usize) {
         component.properties.push(Property {
             origin: component.origin,
             name: name.clone(),
-            simple: Some(value.clone()),
-            is_attribute: true,
+            value: Some(value.clone()),
+            text: None,
             details: None,
         });
     }
@@ -122,7 +120,7 @@ fn replace(component: &mut ComponentElement, table: &Table, row: usize) {
 /// Every text of a component but those that lead to other files.
 fn each_text(component: &mut ComponentElement, each: &mut dyn FnMut(&mut Text)) {
     each(&mut component.name);
-    component.details.iter_mut().filter_map(|details| details.path.as_mut()).for_each(&mut *each);
+    component.path.iter_mut().for_each(&mut *each);
     if let Some(implementation) = &mut component.implementation {
         use crate::model::ImplementationKind::{Java, Rust};
         if let Java { class } | Rust { class, .. } = &mut implementation.kind {
@@ -139,25 +137,25 @@ fn each_text(component: &mut ComponentElement, each: &mut dyn FnMut(&mut Text)) 
         let bindings = reference.contract.iter_mut().flat_map(|contract| &mut contract.bindings);
         bindings.filter_map(|binding| binding.uri.as_mut()).for_each(&mut *each);
     }
-    for one in component.details.iter_mut().flat_map(|details| &mut details.loops) {
+    for one in &mut component.loops {
         each(&mut one.name);
-        [&mut one.class, &mut one.before, &mut one.after].into_iter().flatten().for_each(|text| each(text));
+        [&mut one.class, &mut one.before, &mut one.after].into_iter().flatten().for_each(&mut *each);
         one.properties.iter_mut().for_each(|property| of_property(property, each));
     }
 }
 
 fn of_property(property: &mut Property, each: &mut dyn FnMut(&mut Text)) {
     each(&mut property.name);
-    property.simple.iter_mut().for_each(&mut *each);
+    property.value.iter_mut().chain(&mut property.text).for_each(&mut *each);
     if let Some(details) = &mut property.details {
-        [&mut details.inside, &mut details.source, &mut details.from_file].into_iter().flatten().for_each(&mut *each);
+        [&mut details.source, &mut details.from_file].into_iter().flatten().for_each(&mut *each);
         details.values.iter_mut().for_each(|value| each(&mut value.text));
     }
 }
 
 /// The texts of a property that are not inside complex values.
 fn texts(property: &Property) -> impl Iterator<Item = &Text> {
-    let own = [Some(&property.name), property.value(), property.text()];
+    let own = [Some(&property.name), property.value.as_ref(), property.text.as_ref()];
     let others = [property.source(), property.from_file()];
     let listed = property.values().iter().map(|value| &value.text);
     own.into_iter().chain(others).flatten().chain(listed)
@@ -172,7 +170,7 @@ fn complex_texts<'d>(property: &'d Property, document: &'d Document) -> impl Ite
 
 /// Those of a component and its loops.
 pub(crate) fn all_complex_texts(component: &ComponentElement, document: &Document) -> Vec<Text> {
-    let of_loops = component.loops().iter().flat_map(|one| &one.properties);
+    let of_loops = component.loops.iter().flat_map(|one| &one.properties);
     let properties = component.properties.iter().chain(of_loops);
     properties.flat_map(|property| complex_texts(property, document)).collect()
 }

@@ -16,8 +16,8 @@ impl<'a> Unfolding<'a, '_, '_> {
     pub(crate) fn component(&mut self, component: &'a ComponentElement) {
         let Some(open) = self.open.last() else { return };
         let (unit, document) = (open.unit, &open.composite.document);
-        let Some(replicas) = component.replicas() else {
-            let condition = component.condition();
+        let Some(replicas) = component.replicas.as_ref() else {
+            let condition = component.condition.as_ref();
             let holds = condition.map_or(Some(true), |condition| self.holds(condition, unit));
             let presence = holds.map_or(Presence::Unknown, Presence::of);
             return self.member(component, component, None, presence);
@@ -39,7 +39,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             let instance = plan.instance(index);
             let (made, faults) = instance.of(component, None);
             self.faults(&names, &faults);
-            if let Some(asked) = component.condition() {
+            if let Some(asked) = component.condition.as_ref() {
                 _ = condition(asked, &names, &mut |name| instance.value(name), self.report);
             }
             let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });
@@ -97,7 +97,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         let (made, faults) = instance.of(component, row);
         self.report.about_replica(&made.name, instance.index);
         self.faults(&instance.names, &faults);
-        let asked = component.condition();
+        let asked = component.condition.as_ref();
         let value = &mut |name: &str| instance.value(name);
         let holds = asked.map(|text| condition(text, &instance.names, value, self.report));
         self.report.about_all();
@@ -109,7 +109,7 @@ impl<'a> Unfolding<'a, '_, '_> {
     fn partial(&mut self, component: &'a ComponentElement, index: i64, names: &Rc<Names>, presence: Presence) {
         let Some(open) = self.open.last() else { return };
         let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
-        let has_table = component.replicas().is_some_and(|replicas| replicas.overrides.is_some());
+        let has_table = component.replicas.as_ref().is_some_and(|replicas| replicas.overrides.is_some());
         let instance = Instance { index, names: Rc::clone(names), partial: Some(Partial { has_table }) };
         let (made, _) = instance.of(component, None);
         let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });

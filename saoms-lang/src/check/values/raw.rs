@@ -155,10 +155,10 @@ fn ways<'a>(
     instance: Option<&'a Instance>,
 ) -> Vec<(Location, Raw<'a>)> {
     let mut ways: Vec<(Location, Raw<'a>)> = Vec::new();
-    if let Some(value) = property.value() {
+    if let Some(value) = property.value.as_ref() {
         ways.push((value.location, Raw::one(value)));
     }
-    if let Some(text) = property.text() {
+    if let Some(text) = property.text.as_ref() {
         ways.push((text.location, Raw::one(text)));
     }
     if let Some(first) = property.values().first() {
@@ -185,7 +185,7 @@ fn ways<'a>(
 /// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's
 /// property has no value of its own, it is what counts until somebody gives one from outside.
 pub(crate) fn beside_source(property: &Property, source: &Text, document: &Document, report: &mut Report<'_>) {
-    let texts = [property.value(), property.text(), property.file()];
+    let texts = [property.value.as_ref(), property.text.as_ref(), property.file()];
     let listed = property.values().first().map(Part::tag);
     let content = property.content().first().map(|id| document.element(*id).name_location());
     let mut ways = texts.into_iter().flatten().map(|text| text.location).chain(listed).chain(content);

@@ -31,7 +31,6 @@ pub(crate) fn named(property: &Property, document: &Document, report: &mut Repor
     if namespace.is_none() && !prefix.is_empty() {
         return unbound(of, (prefix, local), document, report);
     }
-    let namespace = namespace.as_deref();
     if namespace != Some(XML_SCHEMA) {
         let is_of_sca = namespace.is_none_or(|namespace| Version::from_namespace(namespace).is_some());
         if let Some(meant) = meant(local).filter(|_| prefix.is_empty() && is_of_sca) {

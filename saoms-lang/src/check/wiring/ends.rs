@@ -85,7 +85,8 @@ impl<'f> Wires<'f, '_> {
         let mut ends = Ends::default();
         let mut is_said = !wires.is_empty();
         if let Some(reference) = fleet.members[member].component.reference(name) {
-            let by_binding = reference.bindings().iter().filter(|binding| binding.is_sca && binding.kind == "sca");
+            let by_binding =
+                reference.contract().bindings.iter().filter(|binding| binding.is_sca && binding.kind == "sca");
             for text in reference.targets.iter().chain(by_binding.filter_map(|binding| binding.uri.as_ref())) {
                 is_said = true;
                 self.add(text, (scope, own), !is_replaced, interface, &mut ends, report);
@@ -147,8 +148,8 @@ impl<'f> Wires<'f, '_> {
     /// True if targets are to be found by interface: said by the reference, its component, or the composite.
     pub(super) fn is_autowired(&self, (member, _): ReferenceId<'_>, reference: Option<&ReferenceElement>) -> bool {
         let member = &self.fleet.members[member];
-        let own = reference.and_then(|reference| reference.autowire());
-        own.or(member.component.autowire()).map_or(member.autowire, |said| said.value)
+        let own = reference.and_then(|reference| reference.autowire);
+        own.or(member.component.autowire).map_or(member.autowire, |said| said.value)
     }
 
     fn autowired(
@@ -186,7 +187,7 @@ impl<'f> Wires<'f, '_> {
 /// only with `nonOverridable`. In SCA 1.0 those of a reference that takes several do.
 fn keeps_own(fleet: &Fleet<'_>, (member, _): ReferenceId<'_>, reference: Option<&ReferenceElement>) -> bool {
     let Some(reference) = reference else { return false };
-    let is_fixed = reference.non_overridable().is_some_and(|fixed| fixed.value);
-    let is_many = reference.multiplicity().is_some_and(|given| given.value.is_many());
+    let is_fixed = reference.non_overridable.is_some_and(|fixed| fixed.value);
+    let is_many = reference.multiplicity.is_some_and(|given| given.value.is_many());
     is_fixed || is_many && !fleet.members[member].composite.version.is_1_1()
 }

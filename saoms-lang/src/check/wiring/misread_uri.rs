@@ -68,11 +68,11 @@ pub(crate) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'
     };
     let promoted: Vec<&str> = match side {
         Side::Service => {
-            let all = inner.services().filter(|one| one.promote.as_deref().is_some_and(leads_there));
+            let all = inner.services().filter(|one| one.promote.as_ref().is_some_and(leads_there));
             all.map(|one| one.name.as_str()).collect()
         }
         Side::Reference => {
-            let all = inner.references().filter(|one| one.promote().iter().any(leads_there));
+            let all = inner.references().filter(|one| one.promote.iter().any(leads_there));
             all.map(|one| one.name.as_str()).collect()
         }
     };

@@ -132,6 +132,6 @@ impl<'a> Fleet<'a> {
     pub(crate) fn given_multiplicity(&self, (member, name): ReferenceId<'_>) -> Option<Multiplicity> {
         let own = self.members[member].component.reference(name);
         let inner = self.inner(member).and_then(|inner| inner.references().find(|one| one.name == name));
-        [own, inner].into_iter().flatten().find_map(|one| Some(one.multiplicity()?.value))
+        [own, inner].into_iter().flatten().find_map(|one| Some(one.multiplicity?.value))
     }
 }

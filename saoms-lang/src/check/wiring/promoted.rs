@@ -27,7 +27,7 @@ impl Fleet<'_> {
             }
             let Kind::Composite(scope) = self.members[member].kind else { return None };
             let inner = self.inner(member)?;
-            let promote = inner.references().find(|one| one.name == name.as_str())?.promote().first()?;
+            let promote = inner.references().find(|one| one.name == name.as_str())?.promote.first()?;
             let (component, part) = parts(promote);
             member = self.find(scope, component).or_else(|| self.group(scope, component)?.first().copied())?;
             name = match part {
@@ -48,7 +48,7 @@ pub(crate) fn service(
     if let Offer::Service(provider) = fleet.offer(member, name)
         && let Some(declared) = fleet.interface_of(provider)
     {
-        interface::check(service.interface(), declared, &service.name, "ASM60005", report);
+        interface::check(service.contract().interface.as_ref(), declared, &service.name, "ASM60005", report);
     }
 }
 
@@ -60,12 +60,12 @@ pub(crate) fn reference(
     fleet: &Fleet<'_>,
     report: &mut Report<'_>,
 ) -> bool {
-    if reference.interface().is_none() && found.len() < 2 {
+    if reference.contract().interface.as_ref().is_none() && found.len() < 2 {
         return true;
     }
     let mut interfaces = found.iter().filter_map(|(place, at)| Some((fleet.reference_interface(*place)?, *at)));
     let Some((first, first_at)) = interfaces.next() else { return true };
-    interface::check(reference.interface(), first, &reference.name, "ASM60012", report);
+    interface::check(reference.contract().interface.as_ref(), first, &reference.name, "ASM60012", report);
     let Some((other, at)) = interfaces.find(|(other, _)| *other != first) else { return true };
     let message = format!(
         "reference {} of the composite promotes references with the interfaces {} and {}",
@@ -105,9 +105,9 @@ pub(crate) fn multiplicities<'f>(
     for place @ (member, name) in found {
         let own = fleet.members[member].component.reference(name);
         let Some(takes) = fleet.multiplicity(place) else { continue };
-        let said = own.and_then(|own| own.non_overridable()).filter(|said| said.value && !takes.is_many());
+        let said = own.and_then(|own| own.non_overridable).filter(|said| said.value && !takes.is_many());
         fixed.extend(said.map(|said| (place, said.location)));
-        let Some(outer) = by.multiplicity() else { continue };
+        let Some(outer) = by.multiplicity else { continue };
         // One that has a target already needs none from outside.
         let has_target = own.is_some_and(|own| !own.targets.is_empty());
         if outer.value.narrows(takes) || has_target && outer.value.is_many() <= takes.is_many() {
@@ -122,7 +122,7 @@ pub(crate) fn multiplicities<'f>(
     if !fixed.is_empty() {
         report.push(overridden(by, &fixed, fleet));
     }
-    if let (Some(outer), false) = (by.multiplicity(), narrower.is_empty()) {
+    if let (Some(outer), false) = (by.multiplicity, narrower.is_empty()) {
         let (outer, at) = (outer.value, outer.location);
         report.push(widened(by, (outer, at), &narrower, fleet));
     }

@@ -52,11 +52,11 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
         }
         let owner = fleet.scopes[unit.scope].owner;
         for reference in unit.references() {
-            if reference.promote().is_empty() {
+            if reference.promote.is_empty() {
                 all.dangling.add(unit.scope, None, fleet);
             }
             let mut found: Vec<Found<'f>> = Vec::new();
-            for promote in reference.promote() {
+            for promote in &reference.promote {
                 for (text, _) in spread(promote, unit.scope, fleet) {
                     match find(&text, Side::Reference, unit, fleet, report) {
                         Some(one) => found.push((one, text.location)),
@@ -80,7 +80,7 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
                     }
                 }
                 None => {
-                    let has_address = || has_address(reference.bindings());
+                    let has_address = || has_address(&reference.contract().bindings);
                     let needs_target = || found.iter().any(|inner| needs_target(*inner, fleet));
                     if reference.targets.is_empty() && !has_address() && needs_target() {
                         unwired(reference, report);
@@ -114,7 +114,7 @@ fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
             continue;
         }
         let own = fleet.members[member].component.reference(name);
-        if own.is_some_and(|own| has_address(own.bindings())) {
+        if own.is_some_and(|own| has_address(&own.contract().bindings)) {
             continue;
         }
         let Some(inner) = fleet.inner(member) else {
@@ -123,8 +123,8 @@ fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
             }
             continue;
         };
-        for reference in inner.references().filter(|one| one.name == name && !has_address(one.bindings())) {
-            for promote in reference.promote() {
+        for reference in inner.references().filter(|one| one.name == name && !has_address(&one.contract().bindings)) {
+            for promote in &reference.promote {
                 let (component, part) = parts(promote);
                 let Some(member) = fleet.find(inner.scope, component) else { continue };
                 let only = || match &fleet.members[member].component.references[..] {

@@ -72,7 +72,7 @@ pub(crate) fn target(
             let code = (&codes::UNKNOWN_TARGET_SERVICE, None);
             fleet.unknown_name(member, Side::Service, code, (name, at), report);
             // The bindings that a component writes are all that its service has.
-            if component.service(name).is_some_and(|service| !service.bindings().is_empty()) {
+            if component.service(name).is_some_and(|service| !service.contract().bindings.is_empty()) {
                 bound(text, &uri, (member, name), fleet, report);
             }
             return Target::Open;
@@ -134,7 +134,7 @@ fn bound(
 ) -> bool {
     let Some((binding, at)) = &uri.binding else { return true };
     let component = fleet.members[member].component;
-    let declared = component.service(name).map_or(&[][..], |service| service.bindings());
+    let declared = component.service(name).map_or(&[][..], |service| &service.contract().bindings);
     // A binding without a name has that of its service, and a service without bindings has one of SCA.
     let names = declared.iter().map(|known| known.name.as_ref().map_or(name, |name| name.as_str()));
     let known: Vec<&str> = if declared.is_empty() { vec![name] } else { names.collect() };

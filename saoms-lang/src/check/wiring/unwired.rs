@@ -37,7 +37,7 @@ impl Wires<'_, '_> {
             is_required |= fleet.given_multiplicity(place).is_some_and(Multiplicity::is_required);
             let reference = fleet.members[place.0].component.reference(place.1);
             let is_wired_elsewhere = |reference: &ReferenceElement| {
-                reference.wired_by_impl().is_some_and(|wired| wired.value) || has_address(reference.bindings())
+                reference.wired_by_impl.is_some_and(|wired| wired.value) || has_address(&reference.contract().bindings)
             };
             if reference.is_some_and(is_wired_elsewhere) {
                 return fleet.is_misread;

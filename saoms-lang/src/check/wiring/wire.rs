@@ -44,7 +44,7 @@ pub(crate) fn wires<'f>(
                 let _ = Uri::of(to, (3, Side::Service), (scope, fleet), report);
                 continue;
             }
-            let is_replacing = wire.replace().is_some_and(|replace| replace.value);
+            let is_replacing = wire.replace.is_some_and(|replace| replace.value);
             if let Some(from) = backwards((source, to), scope, fleet) {
                 let message = format!(
                     "this wire goes backwards: {} offers a service, and {} is a reference",

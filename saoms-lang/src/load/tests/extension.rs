@@ -31,9 +31,9 @@ fn an_xsi_type_says_which_interface_it_is() {
     let component = &composite.components[0];
     assert_eq!(component.class().unwrap().as_str(), "x.Y");
     let service = &component.services[0];
-    assert_eq!(service.interface().unwrap().kind, InterfaceKind::Java);
-    assert_eq!(service.interface().unwrap().interface.as_ref().unwrap().as_str(), "x.S");
-    assert_eq!((service.bindings()[0].kind.as_str(), service.bindings()[0].is_sca), ("sca", true));
+    assert_eq!(service.contract().interface.as_ref().unwrap().kind, InterfaceKind::Java);
+    assert_eq!(service.contract().interface.as_ref().unwrap().interface.as_ref().unwrap().as_str(), "x.S");
+    assert_eq!((service.contract().bindings[0].kind.as_str(), service.contract().bindings[0].is_sca), ("sca", true));
     assert_eq!(
         faults,
         "5:22 [interface] error S1008 `interface` needs the attribute `interface`

@@ -111,29 +111,33 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
     assert_eq!(both(&composite.includes[0].name).1, "t:base");
 
     let currency = &composite.properties[0];
-    assert_eq!(both(currency.text().unwrap()), ("EUR", "EUR"));
+    assert_eq!(both(currency.text.as_ref().unwrap()), ("EUR", "EUR"));
     assert_eq!((both(currency.r#type().unwrap()).1, *currency.many().unwrap()), ("xsd:string", false));
     assert!(*currency.must_supply().unwrap());
     assert_eq!(both(composite.services[0].promote.as_ref().unwrap()).1, "Robot/Move");
-    assert_eq!(composite.services[0].interface().unwrap().kind, InterfaceKind::Rust);
-    assert_eq!(words(composite.references[0].promote()), ["Robot/gps", "Other/gps"]);
-    assert_eq!(**composite.references[0].multiplicity().unwrap(), Multiplicity::Any);
+    assert_eq!(composite.services[0].contract().interface.as_ref().unwrap().kind, InterfaceKind::Rust);
+    assert_eq!(words(&composite.references[0].promote), ["Robot/gps", "Other/gps"]);
+    assert_eq!(*composite.references[0].multiplicity.unwrap(), Multiplicity::Any);
 
     let robot = composite.component("Robot").unwrap();
-    assert_eq!((at(FLEET, robot.tag()), *robot.autowire().unwrap()), ("sca:component", true));
+    assert_eq!((at(FLEET, robot.tag()), *robot.autowire.unwrap()), ("sca:component", true));
     assert_eq!(both(robot.class().unwrap()).1, "robot");
     let ImplementationKind::Rust { library, .. } = &robot.implementation.as_ref().unwrap().kind else {
         panic!("implementation.rust")
     };
     assert_eq!(library.as_ref().unwrap().as_str(), "librobot.so");
     let service = robot.service("Move").unwrap();
-    let interface = service.interface().unwrap();
+    let interface = service.contract().interface.as_ref().unwrap();
     assert_eq!(interface.kind, InterfaceKind::Java);
     assert_eq!(both(interface.interface.as_ref().unwrap()).1, "a.Move");
-    let uris: Vec<_> =
-        service.bindings().iter().map(|one| (one.kind.as_str(), one.is_sca, both(one.uri.as_ref().unwrap()))).collect();
+    let uris: Vec<_> = service
+        .contract()
+        .bindings
+        .iter()
+        .map(|one| (one.kind.as_str(), one.is_sca, both(one.uri.as_ref().unwrap())))
+        .collect();
     assert_eq!(uris, [("ws", true, ("http://h/&x", "http://h/&amp;x")), ("http", false, ("/h", "/h"))]);
-    assert_eq!(service.callback().unwrap().bindings[0].kind, "sca");
+    assert_eq!(service.contract().callback.as_ref().unwrap().bindings[0].kind, "sca");
 
     assert_eq!(both(robot.property("ID").unwrap().simple_value().unwrap()).1, "Robot001");
     assert_eq!(both(robot.property("period").unwrap().simple_value().unwrap()), ("100us", "100us"));
@@ -146,8 +150,8 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
     assert!(order.has_value() && order.simple_value().is_none());
     let gps = robot.reference("gps").unwrap();
     assert_eq!(words(&gps.targets), ["Gps", "Gps2/Where/ws"]);
-    assert_eq!((*gps.autowire().unwrap(), *gps.wired_by_impl().unwrap()), (true, false));
-    assert!(*gps.non_overridable().unwrap() && gps.multiplicity().unwrap().is_required());
+    assert_eq!((*gps.autowire.unwrap(), *gps.wired_by_impl.unwrap()), (true, false));
+    assert!(*gps.non_overridable.unwrap() && gps.multiplicity.unwrap().is_required());
     let element = robot.origin.element(&composite.document);
     assert_eq!(element.children().last().unwrap().name(), "f:extension");
 
@@ -159,7 +163,7 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
     let wire = &composite.wires[0];
     assert_eq!(both(wire.source.as_ref().unwrap()).1, "Robot/gps");
     assert_eq!(both(wire.target.as_ref().unwrap()).1, "Gps3/Where");
-    assert!(*wire.replace().unwrap());
+    assert!(*wire.replace.unwrap());
 }
 
 #[test]

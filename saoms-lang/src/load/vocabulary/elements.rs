@@ -1,6 +1,6 @@
 //! The tables.
 
-use super::Known;
+use super::{Kind, Known};
 
 attributes! {
     REQUIRES = known "requires" Names: "The intents of policies that apply.";
@@ -174,36 +174,42 @@ kinds! {
         "extensions"]
 }
 
-/// Kinds of implementations, interfaces and bindings that SCA defines.
-pub const VARIANTS: &[(&str, &[&str])] = &[
-    (
-        "implementation.",
-        &[
-            "implementation.java", "implementation.composite", "implementation.rust", "implementation.bpel",
-            "implementation.spring", "implementation.ejb", "implementation.jee", "implementation.web",
-            "implementation.c", "implementation.cpp",
-        ],
-    ),
-    (
-        "interface.",
-        &[
-            "interface.java", "interface.rust", "interface.wsdl", "interface.c", "interface.cpp",
-            "interface.partnerLinkType",
-        ],
-    ),
-    ("binding.", &["binding.sca", "binding.ws", "binding.jms", "binding.jca", "binding.ejb"]),
-    ("wireFormat.", &["wireFormat.jmsDefault", "wireFormat.jmsdefault"]),
-    ("operationSelector.", &["operationSelector.jmsDefault", "operationSelector.jmsdefault"]),
+// Elements that name intents, policy sets and operations (SCA Policy 1.1, 4.2 and 4.3; SCA 1.0 for operations).
+kinds! {
+    /// Intents, in an element of their own.
+    pub INTENTS = "requires": "Intents of policies. SAOMS does not look at them." {
+        known "intents" Names: "The intents that apply.";
+    } []
+
+    /// A policy set, in an element of its own.
+    pub POLICY_SET = "policySetAttachment": "A set of policies. SAOMS does not look at it." {
+        known "name" Names: "The policy set that applies.";
+    } []
+
+    /// Policies of an operation.
+    pub OPERATION = "operation": "Policies of an operation. SAOMS does not look at them." {
+    } []
+
+    /// Elements of other vendors.
+    pub EXTENSIONS = "extensions": "Elements of other namespaces, which SAOMS does not look at." {
+    } []
+}
+
+/// The elements of composites whose parts are known. Of two of one name, the first is that of a composite, the other
+/// that of a component.
+pub(super) const KINDS: [&Kind; 18] = [
+    &COMPOSITE, &COMPONENT, &INCLUDE, &WIRE, &COMPOSITE_PROPERTY, &COMPOSITE_SERVICE, &COMPOSITE_REFERENCE,
+    &COMPONENT_PROPERTY, &COMPONENT_SERVICE, &COMPONENT_REFERENCE, &CALLBACK, &IMPLEMENTATION_JAVA,
+    &IMPLEMENTATION_COMPOSITE, &IMPLEMENTATION_RUST, &INTERFACE_JAVA, &INTERFACE_RUST, &INTERFACE_WSDL, &BINDING_SCA,
 ];
 
+/// Those that the model does not keep.
+pub(in crate::load) const POLICIES: [&Kind; 4] = [&INTENTS, &POLICY_SET, &OPERATION, &EXTENSIONS];
+
 /// The purposes of elements whose parts are not known here.
-pub const OTHERS: &[(&str, &str)] = &[
+pub(super) const OTHERS: &[(&str, &str)] = &[
     ("value", "One value of the property."),
     ("documentation", "Text for people; anything can stand inside."),
-    ("extensions", "Elements of other namespaces, which SAOMS does not look at."),
-    ("requires", "Intents of policies. SAOMS does not look at them."),
-    ("policySetAttachment", "A set of policies. SAOMS does not look at it."),
-    ("operation", "Policies of an operation. SAOMS does not look at them."),
     ("implementation.bpel", "A process of BPEL: known, and not run by SAOMS."),
     ("implementation.spring", "An application of Spring: known, and not run by SAOMS."),
     ("implementation.ejb", "A session bean: known, and not run by SAOMS."),
@@ -222,4 +228,64 @@ pub const OTHERS: &[(&str, &str)] = &[
     ("wireFormat.jmsdefault", "The usual format of messages of JMS."),
     ("operationSelector.jmsDefault", "The usual way in which messages of JMS name operations."),
     ("operationSelector.jmsdefault", "The usual way in which messages of JMS name operations."),
+];
+
+// Elements and attributes of SAOMS in its own namespace.
+attributes! {
+    PATH = known "path" Text: "The path that the component had before `saoms expand` resolved the composites around it.";
+    COUNT = known "count" Number: "How many replicas there are of the component. Its name has to hold an expression such as `${index}` or `${index:03}`; its values and targets can.";
+    FROM = known "from" Number: "The index of the first replica; 1 unless given.";
+    OVERRIDES = known "overrides" Table: "A table (CSV) beside the composite: a line for each replica that differs, a column for each property that does.";
+    IF = known "if" Condition: "It is there only where this is true: a comparison of properties of the composite, as `robots > 10 and site == 'north'`.";
+    ENV = known "env" Variable: "The environment variable that the value is taken from, where it is set and nothing else gives one.";
+}
+
+/// The attributes that SAOMS adds in its own namespace, each with the element that has it; `composite/property` is that
+/// of a composite.
+pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
+    ("component", PATH),
+    ("component", COUNT),
+    ("component", FROM),
+    ("component", OVERRIDES),
+    ("component", IF),
+    ("include", IF),
+    ("wire", IF),
+    ("composite/property", ENV),
+];
+
+/// The elements that SAOMS adds in its own namespace.
+pub const OWN_ELEMENTS: &[&str] = &["implementation.rust", "interface.rust", "loop", "severity"];
+
+/// The elements of SCA that a `severity` stands in.
+pub const SEVERITY_PARENTS: &[&str] = &["composite", "component", "service", "reference", "wire", "include"];
+
+/// The elements of SCA that an element of SAOMS stands in.
+pub(in crate::load) fn own_parents(name: &str) -> &'static [&'static str] {
+    match name {
+        "severity" => SEVERITY_PARENTS,
+        "interface.rust" => &["service", "reference"],
+        _ => &["component"],
+    }
+}
+
+kinds! {
+    /// Severities of diagnostics in a composite.
+    pub SEVERITY = "severity": "Sets how bad the diagnostics of one code are: in a composite for all of it, in a component, service, reference, wire or include for that." {
+        required "code" Code: "The code of the diagnostics, such as `S4001`.";
+        required "level" Level: "What they become: `allow`, `note`, `warning` or `error`.";
+        required "reason" Text: "Why; it stands in the output for machines.";
+    } ["documentation"]
+}
+
+/// The namespace of XML Schema.
+pub const XML_SCHEMA: &str = "http://www.w3.org/2001/XMLSchema";
+
+/// The simple types that XML Schema 1.0 and 1.1 have, and their common ancestor.
+pub const BUILT_IN_TYPES: &[&str] = &[
+    "anyType", "anySimpleType", "anyAtomicType", "string", "boolean", "decimal", "float", "double", "duration",
+    "dateTime", "time", "date", "gYearMonth", "gYear", "gMonthDay", "gDay", "gMonth", "hexBinary", "base64Binary",
+    "anyURI", "QName", "NOTATION", "normalizedString", "token", "language", "NMTOKEN", "NMTOKENS", "Name", "NCName",
+    "ID", "IDREF", "IDREFS", "ENTITY", "ENTITIES", "integer", "nonPositiveInteger", "negativeInteger", "long", "int",
+    "short", "byte", "nonNegativeInteger", "unsignedLong", "unsignedInt", "unsignedShort", "unsignedByte",
+    "positiveInteger", "yearMonthDuration", "dayTimeDuration", "dateTimeStamp",
 ];

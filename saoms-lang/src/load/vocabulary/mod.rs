@@ -38,26 +38,20 @@ macro_rules! kinds {
     (@children $names:tt) => { &$names };
 }
 
-mod contribution;
-mod definitions;
 mod elements;
-mod own;
-mod policy;
-mod types;
+mod files;
 
-pub(super) use contribution::COMPONENT_TYPE;
-pub use contribution::CONTRIBUTION;
-pub(crate) use definitions::DEFINITIONS;
-pub(super) use definitions::{definition, is_of_definitions};
 pub use elements::{
-    BINDING_SCA, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, COMPOSITE,
-    COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, IMPLEMENTATION_COMPOSITE, IMPLEMENTATION_JAVA,
-    IMPLEMENTATION_RUST, INCLUDE, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, LOOP, OTHERS, VARIANTS, WIRE,
+    BINDING_SCA, BUILT_IN_TYPES, CALLBACK, COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE,
+    COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE, EXTENSIONS, IMPLEMENTATION_COMPOSITE,
+    IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, INCLUDE, INTENTS, INTERFACE_JAVA, INTERFACE_RUST, INTERFACE_WSDL, LOOP,
+    OPERATION, OWN_ATTRIBUTES, OWN_ELEMENTS, POLICY_SET, SEVERITY, SEVERITY_PARENTS, WIRE, XML_SCHEMA,
 };
-pub(super) use own::own_parents;
-pub use own::{OWN_ATTRIBUTES, OWN_ELEMENTS, SEVERITY, SEVERITY_PARENTS};
-pub use policy::{EXTENSIONS, INTENTS, OPERATION, POLICY_SET};
-pub use types::{BUILT_IN_TYPES, XML_SCHEMA};
+use elements::{KINDS, OTHERS};
+pub(super) use elements::{POLICIES, own_parents};
+pub use files::CONTRIBUTION;
+pub(crate) use files::DEFINITIONS;
+pub(super) use files::{COMPONENT_TYPE, definition, is_of_definitions};
 
 use crate::model::Version;
 
@@ -195,48 +189,33 @@ impl Kind {
     /// known.
     pub fn child(&self, name: &str) -> Option<&'static Kind> {
         if std::ptr::eq(self, &CONTRIBUTION) {
-            return contribution::PARTS.iter().find(|part| part.name == name);
+            return files::PARTS.iter().find(|part| part.name == name);
         }
-        let is_top = std::ptr::eq(self, &COMPOSITE);
-        let found = match (name, is_top) {
-            ("component", _) => &COMPONENT,
-            ("include", _) => &INCLUDE,
-            ("wire", _) => &WIRE,
-            ("property", true) => &COMPOSITE_PROPERTY,
-            ("property", false) => &COMPONENT_PROPERTY,
-            ("service", true) => &COMPOSITE_SERVICE,
-            ("service", false) => &COMPONENT_SERVICE,
-            ("reference", true) => &COMPOSITE_REFERENCE,
-            ("reference", false) => &COMPONENT_REFERENCE,
-            ("callback", _) => &CALLBACK,
-            ("implementation.java", _) => &IMPLEMENTATION_JAVA,
-            ("implementation.composite", _) => &IMPLEMENTATION_COMPOSITE,
-            ("implementation.rust", _) => &IMPLEMENTATION_RUST,
-            ("interface.java", _) => &INTERFACE_JAVA,
-            ("interface.rust", _) => &INTERFACE_RUST,
-            ("interface.wsdl", _) => &INTERFACE_WSDL,
-            ("binding.sca", _) => &BINDING_SCA,
-            _ => return None,
-        };
-        children(self).any(|child| child == name).then_some(found)
+        let mut named = KINDS.into_iter().filter(|kind| kind.name == name);
+        let found = if std::ptr::eq(self, &COMPOSITE) { named.next() } else { named.next_back() };
+        found.filter(|_| children(self).any(|child| child == name))
     }
+}
+
+/// The elements of SCA in composites.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    let others = OTHERS.iter().map(|(name, _)| *name);
+    KINDS.into_iter().chain(POLICIES).map(|kind| kind.name).chain(others)
 }
 
 /// The elements that `kind` can hold, all variants by name.
 pub fn children(kind: &Kind) -> impl Iterator<Item = &'static str> {
     kind.children.iter().flat_map(|child| {
-        match VARIANTS.iter().find(|(prefix, _)| prefix == child) {
-            Some((_, variants)) => *variants,
-            None => std::slice::from_ref(child),
-        }
-        .iter()
-        .copied()
+        let itself = (!child.ends_with('.')).then_some(*child);
+        let variants = names().filter(move |name| itself.is_none() && name.starts_with(child));
+        itself.into_iter().chain(variants)
     })
 }
 
 /// The purpose of an element whose parts are not known here.
 pub fn other(name: &str) -> Option<&'static str> {
-    OTHERS.iter().find(|(known, _)| *known == name).map(|(_, doc)| *doc)
+    let policies = POLICIES.into_iter().map(|kind| (kind.name, kind.doc));
+    policies.chain(OTHERS.iter().copied()).find(|(known, _)| *known == name).map(|(_, doc)| doc)
 }
 
 /// The attributes that SAOMS adds to an element.
@@ -253,10 +232,4 @@ pub(super) fn own_names(kind: &'static Kind) -> impl Iterator<Item = &'static st
 /// True if SAOMS adds the attribute to the element.
 pub(super) fn is_own(kind: &'static Kind, attribute: &str) -> bool {
     own_names(kind).any(|known| known == attribute)
-}
-
-/// True if SCA has an element of this name somewhere in a composite.
-pub(super) fn is_known(name: &str) -> bool {
-    let all = [&COMPOSITE, &COMPONENT, &COMPONENT_SERVICE, &BINDING_SCA, &COMPONENT_PROPERTY];
-    name == "composite" || all.into_iter().flat_map(children).any(|known| known == name)
 }

@@ -1,49 +1,59 @@
 //! Nesting: which end tag belongs to which start tag.
 //!
-//! If all tags fit, one pass over the tokens is enough. If they do not, a second pass knows from the numbers of tags
-//! which names lack end tags, and from the vocabulary of composites which elements cannot stand in which; so an element
-//! that is never closed ends where it should have, and what follows it is read as what it is.
+//! If not all tags fit, it is known from the numbers of tags which names lack end tags, and from the vocabulary of
+//! composites which elements cannot stand in which; so an element that is never closed ends where it should have, and
+//! what follows it is read as what it is.
 
-mod counts;
 mod repair;
 mod tags;
 
-use counts::Counts;
+use std::collections::HashMap;
+
 use tags::{Named, is_holder, local};
 
-use super::document::{NONE, Node};
+use super::document::{
+    BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, HAS_TEXT, NONE, Node, Token, TokenKind, UNSURE_TEXT,
+};
+use super::element::part_span;
 use super::fault::Input;
 use super::lexer::{Lexer, end_name};
-use super::token::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, HAS_TEXT, TokenKind, UNSURE_TEXT};
 use super::value;
 use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
 
-/// The flags of start tags that are found here.
-const FOUND_HERE: u8 = CLOSED | HAS_TEXT | DAMAGED_CONTENT | UNSURE_TEXT;
-
 /// Finds the ends and the parents of all elements.
 pub(super) fn nest(lexer: &mut Lexer<'_>) {
-    let found = lexer.faults.len();
-    if Nest::new(lexer).run().is_err() {
-        lexer.faults.truncate(found);
-        for token in lexer.tokens.iter_mut().filter(|token| token.is_start()) {
-            token.flags &= !FOUND_HERE;
-        }
-        let mut nest = Nest::new(lexer);
-        nest.counts = Some(nest.counted());
-        let _ = nest.run();
+    let input = lexer.input;
+    let (counts, open) = (HashMap::new(), Vec::new());
+    let mut nest = Nest { input, lexer, counts, open, count: 0, has_second_root: false, has_other_root: false };
+    if !nest.fits() {
+        nest.counts = nest.counted();
     }
+    nest.run();
 }
 
-/// Tags that do not fit.
-struct Mismatch;
+/// The tags of one name, from the place on that is looked at.
+#[derive(Clone, Copy, Debug, Default)]
+struct Count {
+    /// Elements that are open.
+    open: u32,
+    /// Start tags that come, without those of empty elements.
+    starts: u32,
+    /// End tags that come.
+    ends: u32,
+}
+
+impl Count {
+    fn missing_ends(self) -> u32 {
+        (self.open + self.starts).saturating_sub(self.ends)
+    }
+}
 
 struct Nest<'l, 'a> {
     input: Input<'a>,
     lexer: &'l mut Lexer<'a>,
-    /// The tags that are still to come, in the second pass.
-    counts: Option<Counts<'a>>,
+    /// The tags by name; empty where all fit.
+    counts: HashMap<&'a str, Count>,
     open: Vec<u32>,
     /// The number of elements so far.
     count: u32,
@@ -52,26 +62,47 @@ struct Nest<'l, 'a> {
     has_other_root: bool,
 }
 
-impl<'l, 'a> Nest<'l, 'a> {
-    fn new(lexer: &'l mut Lexer<'a>) -> Self {
-        let input = lexer.input;
-        Self { input, lexer, counts: None, open: Vec::new(), count: 0, has_second_root: false, has_other_root: false }
+impl<'a> Nest<'_, 'a> {
+    /// True if there is one root, and each end tag is that of the element that was opened last.
+    fn fits(&self) -> bool {
+        let mut elements = self.lexer.elements.iter();
+        let mut open = Vec::new();
+        let is_fit = self.lexer.tokens.iter().all(|token| match token.kind {
+            TokenKind::StartTag | TokenKind::EmptyTag => {
+                let is_root = elements.len() == self.lexer.elements.len();
+                let is_inside = !open.is_empty();
+                let name = elements.next().map(|node| self.name(node));
+                open.extend(name.filter(|_| token.kind == TokenKind::StartTag));
+                token.flags & BROKEN_OFF == 0 && (is_root || is_inside)
+            }
+            TokenKind::EndTag => open.pop() == Some(self.end_name(token.start)),
+            _ => true,
+        });
+        is_fit && open.is_empty()
     }
 
-    /// Counts all tags.
-    fn counted(&self) -> Counts<'a> {
-        let mut counts = Counts::default();
-        let elements = &self.lexer.elements;
-        for one in elements.iter().filter(|one| self.token(one.token).kind == TokenKind::StartTag) {
-            counts.add_start(self.name(one));
+    fn counted(&self) -> HashMap<&'a str, Count> {
+        let mut counts: HashMap<&str, Count> = HashMap::new();
+        for node in self.lexer.elements.iter().filter(|node| self.token(node.token).kind == TokenKind::StartTag) {
+            counts.entry(self.name(node)).or_default().starts += 1;
         }
         for token in self.lexer.tokens.iter().filter(|token| token.kind == TokenKind::EndTag) {
-            counts.add_end(self.end_name(token.start));
+            counts.entry(self.end_name(token.start)).or_default().ends += 1;
         }
         counts
     }
 
-    fn token(&self, at: u32) -> super::token::Token {
+    fn count_of(&self, name: &str) -> Count {
+        self.counts.get(name).copied().unwrap_or_default()
+    }
+
+    fn recount(&mut self, name: &'a str, change: impl FnOnce(&mut Count)) {
+        if !self.counts.is_empty() {
+            change(self.counts.entry(name).or_default());
+        }
+    }
+
+    fn token(&self, at: u32) -> Token {
         self.lexer.tokens[at as usize]
     }
 
@@ -84,17 +115,15 @@ impl<'l, 'a> Nest<'l, 'a> {
     }
 
     fn name(&self, node: &Node) -> &'a str {
-        self.input.slice(node.name, node.name + node.name_len)
+        self.input.piece(node.name_span())
     }
 
     fn end_name(&self, start: u32) -> &'a str {
-        let (name, _) = end_name(self.input, start);
-        self.input.slice(name.start, name.end)
+        self.input.piece(end_name(self.input, start).0)
     }
 
     fn named(&self, node: &Node) -> Named<'a> {
-        let at = Span::new(node.name, node.name + node.name_len);
-        Named { name: self.name(node), at, start_tag: self.span(node.token) }
+        Named { name: self.name(node), at: node.name_span(), start_tag: self.span(node.token) }
     }
 
     fn flag(&mut self, element: u32, flags: u8) {
@@ -102,43 +131,40 @@ impl<'l, 'a> Nest<'l, 'a> {
         self.lexer.tokens[token].flags |= flags;
     }
 
-    fn run(&mut self) -> Result<(), Mismatch> {
+    fn run(&mut self) {
         let mut next = 0;
         for at in 0..self.lexer.tokens.len() as u32 - 1 {
-            let token = self.token(at);
-            match token.kind {
+            match self.token(at).kind {
                 TokenKind::StartTag | TokenKind::EmptyTag => {
-                    self.start_tag(at, next)?;
+                    self.start_tag(at, next);
                     next += 1;
                 }
-                TokenKind::EndTag => self.end_tag(at)?,
+                TokenKind::EndTag => self.end_tag(at),
                 TokenKind::Text | TokenKind::Section | TokenKind::Error => self.text(at),
                 _ => {}
             }
         }
-        self.finish()
+        self.finish();
     }
 
     /// Opens the next element of the lexer, `next`, whose start tag is at the token `at`.
-    fn start_tag(&mut self, at: u32, next: usize) -> Result<(), Mismatch> {
+    fn start_tag(&mut self, at: u32, next: usize) {
         let mut node = self.lexer.elements[next];
         let named = self.named(&node);
-        let is_empty = self.token(at).kind == TokenKind::EmptyTag;
-        let mut lacks_end = false;
-        if self.counts.is_some() {
-            let behind = self.lexer.elements.get(next + 1).map(|one| one.attributes);
-            let has_none = node.attributes == behind.unwrap_or(self.lexer.attributes.len() as u32);
-            let has_no_room = self.makes_room(at, named, has_none && !is_empty);
-            if !is_empty {
-                lacks_end = self.count_with(|counts| counts.missing_ends(named.name) > 0) == Some(true);
-                self.count_with(|counts| counts.start(named.name));
-            }
-            if has_no_room {
-                return Ok(());
-            }
+        let Token { kind, flags, .. } = self.token(at);
+        let is_empty = kind == TokenKind::EmptyTag;
+        let behind = self.lexer.elements.get(next + 1).map(|one| one.attributes);
+        let has_none = node.attributes == behind.unwrap_or(self.lexer.attributes.len() as u32);
+        let has_no_room = self.makes_room(at, named, has_none && !is_empty);
+        let lacks_end = !is_empty && self.count_of(named.name).missing_ends() > 0;
+        if !is_empty {
+            self.recount(named.name, |count| count.starts = count.starts.saturating_sub(1));
+        }
+        if has_no_room {
+            return;
         }
         if self.open.is_empty() && self.count > 0 {
-            self.second_root(named)?;
+            self.second_root(named);
         }
         node.parent = self.open.last().copied().unwrap_or(NONE);
         node.end = at;
@@ -146,57 +172,33 @@ impl<'l, 'a> Nest<'l, 'a> {
         node.after = element + 1;
         self.lexer.elements[element as usize] = node;
         self.count += 1;
-        let flags = self.token(at).flags;
         if flags & BROKEN_OFF != 0 {
-            if self.counts.is_none() {
-                return Err(Mismatch);
-            }
             // Most elements that are being typed stand alone; those that hold others have end tags.
             if lacks_end && !is_holder(local(named.name)) {
                 self.lexer.elements[element as usize].end = at + 1;
-                return Ok(());
+                return;
             }
         } else if is_empty {
-            self.flag(element, CLOSED);
-            return Ok(());
+            return self.flag(element, CLOSED);
         }
+        self.open_element(element);
+    }
+
+    fn open_element(&mut self, element: u32) {
         self.open.push(element);
-        self.count_with(|counts| counts.open(named.name));
-        Ok(())
+        let name = self.name(self.node(element));
+        self.recount(name, |count| count.open += 1);
     }
 
-    fn count_with<T>(&mut self, with: impl FnOnce(&mut Counts<'a>) -> T) -> Option<T> {
-        self.counts.as_mut().map(with)
-    }
-
-    fn end_tag(&mut self, at: u32) -> Result<(), Mismatch> {
-        let start = self.token(at).start;
-        if self.counts.is_none()
-            && let Some(&top) = self.open.last()
-        {
-            let name = self.name(self.node(top)).as_bytes();
-            let behind = &self.input.bytes()[start as usize + 2..];
-            if behind.starts_with(name) && matches!(behind.get(name.len()), Some(b'>' | b' ' | b'\t' | b'\r' | b'\n')) {
-                self.close(at, true);
-                return Ok(());
-            }
-        }
-        let found = self.end_name(start);
-        if self.counts.is_none() {
-            let is_top = self.open.last().is_some_and(|top| self.name(self.node(*top)) == found);
-            if is_top {
-                self.close(at, true);
-                return Ok(());
-            }
-            return Err(Mismatch);
-        }
-        self.count_with(|counts| counts.end(found));
+    fn end_tag(&mut self, at: u32) {
+        let tag = self.span(at);
+        let found = self.end_name(tag.start);
+        self.recount(found, |count| count.ends = count.ends.saturating_sub(1));
         match self.open.last() {
             None => {
-                let end = self.span(at).end;
                 self.lexer.faults.add(|| {
                     let message = format!("{} closes nothing: no element is open", quoted(&format!("</{found}>")));
-                    self.input.fault(&codes::XML_TAG_MISMATCH, start, end, message)
+                    self.input.fault(&codes::XML_TAG_MISMATCH, tag.start, tag.end, message)
                 });
                 self.lexer.tokens[at as usize].kind = TokenKind::Error;
             }
@@ -204,7 +206,6 @@ impl<'l, 'a> Nest<'l, 'a> {
             Some(top) if found.is_empty() || self.name(self.node(*top)) == found => self.close(at, true),
             Some(&top) => self.mismatch(at, found, top),
         }
-        Ok(())
     }
 
     fn ignore(&mut self, at: u32, top: u32) {
@@ -222,15 +223,12 @@ impl<'l, 'a> Nest<'l, 'a> {
         let is_in_text = !has_end_tag && self.has_end_tag_in_text(at, &node);
         let damage = if is_in_text { DAMAGED_CONTENT | UNSURE_TEXT } else { DAMAGED_CONTENT };
         self.flag(element, if has_end_tag { CLOSED } else { damage });
-        if let Some(counts) = &mut self.counts {
-            counts.close(self.input.slice(node.name, node.name + node.name_len));
-        }
+        self.recount(self.input.piece(node.name_span()), |count| count.open = count.open.saturating_sub(1));
     }
 
     /// True if the text before the token `at` ends with the end tag of an element but for its `<`.
     fn has_end_tag_in_text(&self, at: u32, node: &Node) -> bool {
-        let span = self.span(at - 1);
-        let text = self.input.slice(span.start, span.end).trim_end();
+        let text = self.input.piece(self.span(at - 1)).trim_end();
         let name = text.strip_suffix('>').and_then(|text| text.strip_suffix(self.name(node)));
         name.is_some_and(|text| text.ends_with('/'))
     }
@@ -238,35 +236,26 @@ impl<'l, 'a> Nest<'l, 'a> {
     /// Text, a CDATA section, or an error.
     fn text(&mut self, at: u32) {
         let (span, token) = (self.span(at), self.token(at));
+        let written = self.input.piece(span);
         let Some(&top) = self.open.last() else {
-            let is_outside = self.count == 0 || !self.has_second_root;
-            if is_outside && token.kind != TokenKind::Error {
-                let written = self.input.slice(span.start, span.end);
+            if !self.has_second_root && token.kind != TokenKind::Error {
                 let text = value::trim(written);
-                let start = span.start + (written.len() - written.trim_start_matches(value::is_space).len()) as u32;
-                let place = Span::new(start, start + text.len() as u32);
+                let place = part_span(span.start, written, text);
                 let root = (self.count > 0).then(|| self.named(self.node(0)));
                 self.lexer.faults.add(|| tags::outside(self.input, place, root));
             }
             return;
         };
-        let is_blank = token.kind == TokenKind::Section && {
-            let written = self.input.slice(span.start, span.end);
-            let inside = written.strip_prefix("<![CDATA[").unwrap_or_default();
-            inside.strip_suffix("]]>").unwrap_or(inside).trim_matches(value::is_space).is_empty()
-        };
+        let is_blank = token.kind == TokenKind::Section && value::trim(value::section(written)).is_empty();
         let is_markup = token.kind == TokenKind::Error && span.len() > 1;
         let text = if is_blank || is_markup { 0 } else { HAS_TEXT };
         let damage = if token.kind == TokenKind::Error { DAMAGED_CONTENT } else { 0 };
         self.flag(top, text | damage | token.flags & UNSURE_TEXT);
     }
 
-    fn finish(&mut self) -> Result<(), Mismatch> {
+    fn finish(&mut self) {
         let end = self.lexer.tokens.len() as u32 - 1;
         if let Some(&top) = self.open.last() {
-            if self.counts.is_none() {
-                return Err(Mismatch);
-            }
             let node = *self.node(top);
             // A tag of which nobody knows the end may have been meant as `/>`.
             let is_doubtful = self.token(node.token).flags & DAMAGED_TAG != 0 && top + 1 == self.count;
@@ -283,10 +272,9 @@ impl<'l, 'a> Nest<'l, 'a> {
         }
         self.lexer.elements.truncate(self.count as usize);
         let is_nothing = self.lexer.elements.len() == 1 && self.node(0).name_len == 0;
-        if is_nothing && self.lexer.faults.len() == 0 {
+        if is_nothing && self.lexer.faults.is_empty() {
             let at = self.input.len();
             self.lexer.faults.add(|| self.input.ended(&codes::XML_SYNTAX, at, at, "the file holds no element"));
         }
-        Ok(())
     }
 }

@@ -1,31 +1,34 @@
 //! Tags that do not fit: what was meant, as far as the numbers of tags and the vocabulary of composites tell it.
 
+use super::Nest;
 use super::tags::{self, Named, holders, local};
-use super::{Mismatch, Nest};
 use crate::diagnostic::{nearest, quoted};
 use crate::limits::{OPEN_ELEMENTS_SEARCHED, SIBLINGS_SEARCHED};
-use crate::source::Span;
-use crate::syntax::document::Node;
-use crate::syntax::token::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, HAS_TEXT, TokenKind};
+use crate::syntax::document::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, HAS_TEXT, Node, TokenKind};
 
 impl<'a> Nest<'_, 'a> {
     /// Closes elements that lack end tags, and that the next element, `named`, cannot stand in. Gives whether its start
     /// tag was meant as an end tag, so that there is no such element.
     pub(super) fn makes_room(&mut self, at: u32, named: Named<'a>, is_bare: bool) -> bool {
+        if self.counts.is_empty() {
+            return false;
+        }
         let Some(holders) = holders(local(named.name)) else { return false };
         let is_holder = |one: &&u32| tags::is_one_of(local(self.name(self.node(**one))), holders);
         let Some(above) = self.open.iter().rev().take(OPEN_ELEMENTS_SEARCHED).position(|one| is_holder(&one)) else {
             return false;
         };
         let above: Vec<u32> = self.open.iter().rev().take(above).copied().collect();
-        let Some(counts) = &self.counts else { return false };
-        let is_missing = |one: &u32| counts.missing_ends(self.name(self.node(*one))) > 0;
+        let missing = |name: &str| self.count_of(name).missing_ends();
+        let is_missing = |one: &u32| missing(self.name(self.node(*one))) > 0;
         if above.is_empty() || !above.iter().all(is_missing) {
             return false;
         }
         let open = self.named(self.node(above[0]));
-        if is_bare && open.name == named.name && counts.missing_ends(named.name) > 1 && above.len() == 1 {
-            self.lexer.faults.add(|| tags::start_for_end(self.input, named, open));
+        if is_bare && open.name == named.name && missing(named.name) > 1 && above.len() == 1 {
+            self.lexer.faults.add(|| {
+                tags::replaced(tags::mismatch(self.input, &format!("<{}>", named.name), named.start_tag, open), open)
+            });
             self.lexer.tokens[at as usize].kind = TokenKind::Error;
             self.close(at, false);
             return true;
@@ -41,10 +44,7 @@ impl<'a> Nest<'_, 'a> {
     }
 
     /// Reports an element beside the root. What is not called as the root stands in it, which is closed too early then.
-    pub(super) fn second_root(&mut self, named: Named<'a>) -> Result<(), Mismatch> {
-        if self.counts.is_none() {
-            return Err(Mismatch);
-        }
+    pub(super) fn second_root(&mut self, named: Named<'a>) {
         let root = *self.node(0);
         let first = self.named(&root);
         if !self.has_second_root {
@@ -54,10 +54,8 @@ impl<'a> Nest<'_, 'a> {
         self.has_other_root |= first.name == named.name;
         if !self.has_other_root {
             self.reopen(0);
-            self.open.push(0);
-            self.count_with(|counts| counts.open(first.name));
+            self.open_element(0);
         }
-        Ok(())
     }
 
     /// Takes the end of an element back.
@@ -75,11 +73,12 @@ impl<'a> Nest<'_, 'a> {
     pub(super) fn mismatch(&mut self, at: u32, found: &'a str, top: u32) {
         let (input, tag) = (self.input, self.span(at));
         let open = self.named(self.node(top));
-        let Some(counts) = &self.counts else { return };
         let is_near = nearest(found, [open.name]).is_some();
-        let lacks_end = counts.missing_ends(open.name) > 0;
-        let fault = || tags::mismatch(input, found, tag, open);
-        let is_for_outer = counts.is_open(found) && !(is_near && lacks_end && counts.has_surplus_end(found));
+        let lacks_end = self.count_of(open.name).missing_ends() > 0;
+        let same = self.count_of(found);
+        let fault = || tags::mismatch(input, &format!("</{found}>"), tag, open);
+        let has_surplus_end = same.ends + 1 > same.open + same.starts;
+        let is_for_outer = same.open > 0 && !(is_near && lacks_end && has_surplus_end);
         let is_broken_off = self.token(self.node(top).token).flags & BROKEN_OFF != 0;
         if is_for_outer {
             let Node { token, .. } = *self.node(top);
@@ -104,12 +103,12 @@ impl<'a> Nest<'_, 'a> {
             self.lexer.faults.add(|| {
                 if is_early {
                     let end = sibling.start_tag.end;
-                    let slash = Span::new(end - 2, end - 1).in_file(input.file);
+                    let slash = input.at(end - 2, end - 1);
                     let one = fault().label(place, format!("this {} ends with `/>`", quoted(found)));
                     return one.suggest("remove its `/`", slash, "");
                 }
                 let one = fault().label(place, format!("this {} is closed", quoted(found)));
-                one.suggest("remove it", tag.in_file(input.file), "")
+                one.mend("remove it", "")
             });
             if is_early {
                 self.close_late(same, top, at);
@@ -118,7 +117,7 @@ impl<'a> Nest<'_, 'a> {
             }
             return;
         }
-        self.lexer.faults.add(|| tags::replaced(fault(), tag.in_file(input.file), open));
+        self.lexer.faults.add(|| tags::replaced(fault(), open));
         if is_near || lacks_end {
             self.close(at, true);
         } else {

@@ -1,7 +1,7 @@
 //! Faults of start and end tags that do not fit.
 
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::source::{Location, Span};
+use crate::source::Span;
 use crate::syntax::fault::Input;
 
 /// An element, for a message.
@@ -50,66 +50,58 @@ pub(super) fn local(name: &str) -> &str {
     name.split_once(':').map_or(name, |(_, local)| local)
 }
 
-/// The fault of an end tag where that of `open` is expected.
-pub(super) fn mismatch(input: Input<'_>, found: &str, tag: Span, open: Named<'_>) -> Diagnostic {
+/// The fault of a tag where that of `open` is expected.
+pub(super) fn mismatch(input: Input<'_>, tag: &str, at: Span, open: Named<'_>) -> Diagnostic {
     let expected = format!("</{}>", open.name);
-    let message = format!("{} found where {} is expected", quoted(&format!("</{found}>")), quoted(&expected));
-    let one = input.fault(&codes::XML_TAG_MISMATCH, tag.start, tag.end, message);
+    let message = format!("{} found where {} is expected", quoted(tag), quoted(&expected));
+    let one = input.fault(&codes::XML_TAG_MISMATCH, at.start, at.end, message);
     one.label(open.at.in_file(input.file), format!("{} is open", quoted(open.name)))
 }
 
 /// The suggestion to write the end tag of the open element instead.
-pub(super) fn replaced(one: Diagnostic, tag: Location, open: Named<'_>) -> Diagnostic {
+pub(super) fn replaced(one: Diagnostic, open: Named<'_>) -> Diagnostic {
     let close = format!("</{}>", open.name);
-    one.suggest(format!("replace it with {}", quoted(&close)), tag, close)
+    one.mend(format!("replace it with {}", quoted(&close)), close)
 }
 
 /// The suggestion to close the open element before the end tag at `end` of one around it.
 pub(super) fn closed_first(input: Input<'_>, one: Diagnostic, end: u32, open: Named<'_>, is_bare: bool) -> Diagnostic {
-    let name = quoted(open.name);
     if is_bare && !ends_with_slash(input, open) {
-        let slash = Span::empty(open.start_tag.end - 1).in_file(input.file);
-        return one.suggest(format!("end {name} with `/>`"), slash, "/");
+        return with_slash(input, one, open);
     }
-    let place = Span::empty(end).in_file(input.file);
-    one.suggest(format!("close {name} first"), place, format!("</{}>", open.name))
+    let place = input.at(end, end);
+    one.suggest(format!("close {} first", quoted(open.name)), place, format!("</{}>", open.name))
 }
 
 /// True if a start tag ends with a `/` that is part of a fault in it.
 fn ends_with_slash(input: Input<'_>, open: Named<'_>) -> bool {
-    input.slice(open.start_tag.start, open.start_tag.end).ends_with("/>")
+    input.piece(open.start_tag).ends_with("/>")
+}
+
+/// The suggestion to make an empty element of one that is open.
+fn with_slash(input: Input<'_>, one: Diagnostic, open: Named<'_>) -> Diagnostic {
+    let end = open.start_tag.end - 1;
+    one.suggest(format!("end {} with `/>`", quoted(open.name)), input.at(end, end), "/")
 }
 
 /// The fault of `outer`, which is not closed before `inner`.
 pub(super) fn not_closed(input: Input<'_>, outer: Named<'_>, inner: Named<'_>) -> Diagnostic {
-    let (file, name) = (input.file, quoted(outer.name));
+    let name = quoted(outer.name);
     let close = format!("</{}>", outer.name);
     let message = format!("{name} is not closed before {}", quoted(inner.name));
     let one = input.fault(&codes::XML_UNCLOSED, outer.at.start, outer.at.end, message);
-    let one = one.label(inner.at.in_file(file), "this stands beside it, and not in it");
+    let one = one.label(inner.at.in_file(input.file), "this stands beside it, and not in it");
     let text = input.text;
     let inside = input.slice(outer.start_tag.end, inner.start_tag.start);
     if inside.trim().is_empty() && !ends_with_slash(input, outer) {
-        let slash = Span::empty(outer.start_tag.end - 1).in_file(file);
-        return one.suggest(format!("end {name} with `/>`"), slash, "/");
+        return with_slash(input, one, outer);
     }
     let end = outer.start_tag.end + inside.trim_end().len() as u32;
     let line = text[..outer.start_tag.start as usize].rfind('\n').map_or(0, |at| at + 1);
     let indent = &text[line..outer.start_tag.start as usize];
     let is_long = inside.trim_end().contains('\n') && indent.trim().is_empty();
     let close = if is_long { format!("\n{indent}{close}") } else { close };
-    one.suggest(format!("close {name}"), Span::empty(end).in_file(file), close)
-}
-
-/// The fault of a start tag that is meant as the end tag of `open`.
-pub(super) fn start_for_end(input: Input<'_>, tag: Named<'_>, open: Named<'_>) -> Diagnostic {
-    let close = format!("</{}>", open.name);
-    let found = quoted(&format!("<{}>", tag.name));
-    let message = format!("{found} found where {} is expected", quoted(&close));
-    let place = tag.start_tag.in_file(input.file);
-    let one = Diagnostic::new(&codes::XML_TAG_MISMATCH, place, message);
-    let one = one.label(open.at.in_file(input.file), format!("{} is open", quoted(open.name)));
-    one.suggest(format!("replace it with {}", quoted(&close)), place, close)
+    one.suggest(format!("close {name}"), input.at(end, end), close)
 }
 
 /// The fault of text beside the root element.

@@ -3,22 +3,18 @@
 mod recovery;
 mod value;
 
-use std::collections::HashMap;
-
 use quick_xml::parser::{ElementParser, Parser as _};
 
-use super::attribute::{BAD_NAME, DUPLICATE, NO_VALUE, RawAttribute, UNRESOLVED, UNSURE};
-use super::document::{NO_NAMESPACE, XMLNS};
-use super::fault::{Input, slips};
+use super::attribute::{BAD_NAME, NO_VALUE, RawAttribute, UNSURE};
+use super::characters::name_length;
+use super::document::{BROKEN_OFF, DAMAGED_TAG, NO_NAMESPACE, TokenKind, UNNAMED, UNSURE_TEXT};
+use super::fault::Input;
 use super::lexer::Lexer;
-use super::names::{name_length, scan};
-use super::token::{BROKEN_OFF, DAMAGED_TAG, PREFIXED, TokenKind, UNNAMED, UNSURE_TEXT};
+use super::slips;
 use crate::diagnostic::Diagnostic;
 use crate::limits::TAG_END_SEARCHES;
 use crate::source::Span;
 
-/// An element with more attributes than this has them compared through a map.
-const FEW: usize = 16;
 /// A start tag that is being read.
 struct Tag<'l, 'a> {
     lexer: &'l mut Lexer<'a>,
@@ -44,8 +40,9 @@ impl Lexer<'_> {
         let input = self.input;
         let mut flags = 0;
         let mut from = start + 1;
-        let mut name = scan(&input.bytes()[from as usize..]);
-        if name.len == 0 {
+        let length_at = |from: u32| name_length(&input.bytes()[from as usize..]) as u32;
+        let mut end = from + length_at(from);
+        if end == from {
             self.faults.add(|| slips::nameless(input, start));
             let Some(behind) = name_behind_blank(input, start) else {
                 // Of two `<` one is too many, and no text.
@@ -54,22 +51,18 @@ impl Lexer<'_> {
                 return start + 1;
             };
             from = behind;
-            name = scan(&input.bytes()[from as usize..]);
+            end = from + length_at(from);
         }
-        let mut end = from + name.len;
         let mut at = end;
-        if !name.is_plain {
-            if let Some(fault) = slips::bad_name(input, from, end, "element") {
-                // Behind a character that looks like a blank, an attribute begins.
-                let odd = slips::odd_space(input.slice(from, end));
-                flags |= if odd.is_some() { 0 } else { DAMAGED_TAG | UNNAMED };
-                if let Some((length, odd)) = odd.filter(|(length, _)| *length > 0) {
-                    end = from + length as u32;
-                    at = end + odd.len_utf8() as u32;
-                }
-                self.faults.add(|| fault);
+        if let Some(fault) = slips::bad_name(input, from, end, "element") {
+            // Behind a character that looks like a blank, an attribute begins.
+            let odd = slips::odd_space(input.slice(from, end));
+            flags |= if odd.is_some() { 0 } else { DAMAGED_TAG | UNNAMED };
+            if let Some((length, odd)) = odd.filter(|(length, _)| *length > 0) {
+                end = from + length as u32;
+                at = end + odd.len_utf8() as u32;
             }
-            flags |= if input.slice(from, end).contains(':') { PREFIXED } else { 0 };
+            self.faults.add(|| fault);
         }
         let token = self.tokens.len();
         let first = self.attributes.len();
@@ -82,39 +75,7 @@ impl Lexer<'_> {
         let one = &mut self.tokens[token];
         one.flags = flags;
         one.kind = if is_empty { TokenKind::EmptyTag } else { TokenKind::StartTag };
-        self.check_unique(token, first);
         at
-    }
-
-    /// Finds attributes of one name. Two names of one namespace are for later, when prefixes are known.
-    fn check_unique(&mut self, token: usize, first: usize) {
-        let input = self.input;
-        let name = |one: &RawAttribute| input.slice(one.start, one.start + one.name_len);
-        let Self { attributes, faults, tokens, .. } = self;
-        let attributes = &mut attributes[first..];
-        if attributes.len() < 2 {
-            return;
-        }
-        let mut seen: HashMap<&str, usize> = HashMap::new();
-        for index in 1..attributes.len() {
-            let one = &attributes[index];
-            let before = if attributes.len() <= FEW {
-                let same = |other: &RawAttribute| other.name_len == one.name_len && name(other) == name(one);
-                attributes[..index].iter().position(same)
-            } else {
-                if index == 1 {
-                    seen.insert(name(&attributes[0]), 0);
-                }
-                let before = seen.get(name(one)).copied();
-                seen.entry(name(one)).or_insert(index);
-                before
-            };
-            if let Some(before) = before {
-                faults.add(|| slips::duplicate(input, &attributes[before], one, None));
-                attributes[index].flags |= DUPLICATE;
-                tokens[token].flags |= DAMAGED_TAG;
-            }
-        }
     }
 }
 
@@ -206,11 +167,9 @@ impl Tag<'_, '_> {
     /// Reads the attribute whose name starts at `start`.
     fn attribute(&mut self, start: u32) {
         let input = self.input;
-        let name = scan(&input.bytes()[start as usize..]);
-        let name_end = start + name.len;
-        let raw = &input.bytes()[start as usize..name_end as usize];
-        let mut one =
-            RawAttribute { start, name_len: name.len, value: Span::empty(name_end), namespace: NO_NAMESPACE, flags: 0 };
+        let name_len = name_length(&input.bytes()[start as usize..]) as u32;
+        let name_end = start + name_len;
+        let mut one = RawAttribute { start, name_len, value: Span::empty(name_end), namespace: NO_NAMESPACE, flags: 0 };
         let equals = input.skip_space(name_end);
         let has_equals = input.byte(equals) == Some(b'=');
         let colon = if has_equals { None } else { slips::colon(input, start, name_end, equals) };
@@ -218,19 +177,10 @@ impl Tag<'_, '_> {
         if let Some(fault) = colon {
             self.fault(|| fault);
             one.name_len -= 1;
-        } else if let Some(fault) =
-            (!name.is_plain).then(|| slips::bad_name(input, start, name_end, "attribute")).flatten()
-        {
+        } else if let Some(fault) = slips::bad_name(input, start, name_end, "attribute") {
             self.fault(|| fault);
             one.flags |= BAD_NAME;
             self.flags |= DAMAGED_TAG;
-        }
-        if raw.starts_with(b"xmlns") && matches!(raw.get(5), None | Some(b':')) {
-            one.namespace = XMLNS;
-            self.flags |= PREFIXED;
-        } else if !name.is_plain && !is_colon && raw.contains(&b':') {
-            one.namespace = UNRESOLVED;
-            self.flags |= PREFIXED;
         }
         let from = if has_equals { input.skip_space(equals + 1) } else { equals };
         let quote = input.byte(from).filter(|byte| matches!(byte, b'"' | b'\''));

@@ -4,9 +4,9 @@ use super::{Tag, starts_attribute};
 use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
 use crate::syntax::attribute::{NO_VALUE, OPEN, RawAttribute};
-use crate::syntax::fault::{quotes, slips};
-use crate::syntax::names::name_length;
-use crate::syntax::token::{BROKEN_OFF, DAMAGED_TAG};
+use crate::syntax::characters::name_length;
+use crate::syntax::document::{BROKEN_OFF, DAMAGED_TAG};
+use crate::syntax::slips;
 
 impl Tag<'_, '_> {
     /// The tag ends before the next one starts, or with the text.
@@ -25,7 +25,7 @@ impl Tag<'_, '_> {
         if last.is_some_and(|last| last.flags & NO_VALUE != 0 && is_last(last)) && !is_end {
             return;
         }
-        let shown = quoted(input.slice(name.start, name.end));
+        let shown = quoted(input.piece(name));
         let limit = self.limit;
         self.fault(|| {
             if is_end {
@@ -52,7 +52,7 @@ impl Tag<'_, '_> {
         let input = self.input;
         self.fault(|| {
             let message = "white space is missing between two attributes";
-            let location = Span::empty(at).in_file(input.file);
+            let location = input.at(at, at);
             let end = input.character_end(at);
             input.fault(&codes::XML_ATTRIBUTE, at, end, message).suggest("insert a blank", location, " ")
         });
@@ -72,7 +72,7 @@ impl Tag<'_, '_> {
             return false;
         }
         let quote_at = last.value.start - 1;
-        if let Some((one, end)) = quotes::closing(input, quote_at, at - 1) {
+        if let Some((one, end)) = slips::closing_quote(input, quote_at, at - 1) {
             self.fault(|| one);
             self.end_last(end.start);
             self.at = end.end;
@@ -140,14 +140,13 @@ impl Tag<'_, '_> {
         if byte >= b' ' {
             self.fault(|| {
                 let what = input.shown(at);
-                let tag = quoted(input.slice(name.start, name.end));
+                let tag = quoted(input.piece(name));
                 let message = format!("{what} is misplaced in the start tag of {tag}");
                 let one = input.fault(&codes::XML_SYNTAX, at, end, message);
                 if is_separator {
                     let has_space = input.byte(end).is_some_and(|byte| byte.is_ascii_whitespace());
-                    let place = Span::new(at, end).in_file(input.file);
                     let instead = if has_space { "" } else { " " };
-                    return one.suggest(format!("remove {what}"), place, instead);
+                    return one.mend(format!("remove {what}"), instead);
                 }
                 one.help("attributes are written `name=\"value\"`; the tag ends with `>` or `/>`")
             });

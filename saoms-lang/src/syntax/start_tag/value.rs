@@ -4,8 +4,7 @@ use super::{Tag, starts_attribute};
 use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
 use crate::syntax::attribute::{OPEN, RawAttribute, UNSURE};
-use crate::syntax::fault::{quotes, slips};
-use crate::syntax::reference;
+use crate::syntax::slips;
 
 impl Tag<'_, '_> {
     /// Reads a value up to its closing quote, or to where it probably ends.
@@ -24,16 +23,13 @@ impl Tag<'_, '_> {
             };
             at += length as u32;
             match bytes[at as usize] {
-                b'&' => match reference::check(input, at) {
-                    Ok(end) => at = end,
-                    Err(fault) => {
-                        one.flags |= if fault.is_unknown() { UNSURE } else { 0 };
-                        self.fault(|| fault.diagnostic(input));
-                        at += 1;
-                    }
-                },
+                b'&' => {
+                    let (behind, is_sure) = self.lexer.reference(at);
+                    one.flags |= if is_sure { 0 } else { UNSURE };
+                    at = behind;
+                }
                 b'<' => {
-                    if let Some((curly, end)) = quotes::closing(input, quote_at, at) {
+                    if let Some((curly, end)) = slips::closing_quote(input, quote_at, at) {
                         self.fault(|| curly);
                         one.value = Span::new(quote_at + 1, end.start);
                         one.flags |= OPEN;
@@ -74,7 +70,7 @@ impl Tag<'_, '_> {
         if at == input.len() {
             return;
         }
-        if let Some((fault, inside, end)) = quotes::around(input, at) {
+        if let Some((fault, inside, end)) = slips::curly_quotes(input, at) {
             self.fault(|| fault);
             one.value = inside;
             self.at = end;

@@ -352,7 +352,7 @@ fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
     let Ok(document) = syntax::parse(place.file, text).well_formed() else {
         return Some(Vec::new());
     };
-    let element = document.element_at(place.span.start);
+    let element = document.innermost(place.span.start).unwrap();
     let snippet = sources.snippet(place);
     let mut things = vec![snippet.to_owned(), element.local_name().to_owned()];
     things.extend(snippet.split([':', '/']).filter(|part| !part.is_empty()).map(str::to_owned));

@@ -3,10 +3,7 @@
 use std::collections::HashSet;
 
 use saoms_lang::diagnostic::{codes, human, json};
-use saoms_lang::model::{
-    Binding, Callback, Composite, ImplementationKind, InterfaceElement, Part, Property, ReferenceElement,
-    ServiceElement,
-};
+use saoms_lang::model::{Composite, Contract, ImplementationKind, Part, Property, ReferenceElement, ServiceElement};
 use saoms_lang::source::{Location, Span, Text};
 use saoms_lang::syntax;
 
@@ -23,7 +20,7 @@ pub(crate) fn checked(name: &str, text: &str) -> Vec<String> {
             assert!(!is_literal || written == text.as_str(), "{name}: {text:?} is written as {written:?}");
         }
         for part in parts(composite) {
-            let element = composite.document.element_at(part.span.start);
+            let element = composite.document.innermost(part.span.start).unwrap();
             assert_eq!(element.name_location(), part, "{name}");
         }
     }
@@ -56,7 +53,7 @@ fn places(text: &str) -> Option<HashSet<Span>> {
         assert_eq!(slice(element.name_span()), element.name());
         assert!(element.end_name_span().is_none_or(|end| slice(end) == element.name()));
         assert!(slice(element.start_tag_span()).starts_with('<') && slice(element.start_tag_span()).ends_with('>'));
-        assert_eq!(document.element_at(element.span().start + 1).id(), element.id());
+        assert_eq!(document.innermost(element.span().start + 1).unwrap().id(), element.id());
         all.insert(element.name_span());
         all.extend(element.text_span());
         for attribute in element.attributes().chain(element.namespace_declarations()) {
@@ -93,7 +90,7 @@ fn texts(composite: &Composite) -> Vec<&Text> {
                 ImplementationKind::Composite { name } => all.extend(name),
                 ImplementationKind::Rust { class, library } => {
                     all.extend(class);
-                    all.extend(library.as_deref());
+                    all.extend(library.as_ref());
                 }
                 ImplementationKind::Other { .. } => {}
             }
@@ -108,36 +105,32 @@ fn texts(composite: &Composite) -> Vec<&Text> {
 
 fn property<'a>(property: &'a Property, all: &mut Vec<&'a Text>) {
     all.push(&property.name);
-    all.extend(property.value());
+    all.extend(property.value.as_ref());
     // Text between markup is longer in the file than in the model.
-    all.extend(property.text().into_iter().filter(|_| property.content().is_empty()));
+    all.extend(property.text.as_ref().into_iter().filter(|_| property.content().is_empty()));
     all.extend([property.r#type(), property.element(), property.source(), property.file()].into_iter().flatten());
     all.extend(property.values().iter().filter(|one| one.content.is_empty()).map(|one| &one.text));
 }
 
 fn service<'a>(service: &'a ServiceElement, all: &mut Vec<&'a Text>) {
     all.push(&service.name);
-    all.extend(service.promote.as_deref());
-    contract(service.interface(), service.bindings(), service.callback(), all);
+    all.extend(service.promote.as_ref());
+    contract(service.contract(), all);
 }
 
 fn reference<'a>(reference: &'a ReferenceElement, all: &mut Vec<&'a Text>) {
     all.push(&reference.name);
-    all.extend(reference.targets.iter().chain(reference.promote()));
-    contract(reference.interface(), reference.bindings(), reference.callback(), all);
+    all.extend(reference.targets.iter().chain(&reference.promote));
+    contract(reference.contract(), all);
 }
 
-fn contract<'a>(
-    interface: Option<&'a InterfaceElement>,
-    bindings: &'a [Binding],
-    callback: Option<&'a Callback>,
-    all: &mut Vec<&'a Text>,
-) {
+fn contract<'a>(contract: &'a Contract, all: &mut Vec<&'a Text>) {
+    let Contract { interface, bindings, callback } = contract;
     if let Some(interface) = interface {
         all.extend(&interface.interface);
     }
     for binding in bindings.iter().chain(callback.iter().flat_map(|callback| &callback.bindings)) {
-        all.extend(binding.name.as_deref());
+        all.extend(binding.name.as_ref());
         all.extend(&binding.uri);
     }
 }

@@ -208,7 +208,7 @@ pub(super) fn composites(scene: &Scene, element: ElementId, range: &Range<usize>
             let bound = file.element(element).prefix_of(namespace).filter(|prefix| !prefix.is_empty());
             let written = bound.map_or_else(|| name.clone(), |prefix| format!("{prefix}:{name}"));
             // Without a prefix it is of the default namespace.
-            let is_plain = namespace.is_empty() || default.as_deref() == Some(namespace);
+            let is_plain = namespace.is_empty() || default == Some(namespace);
             // A name that would lead elsewhere, or nowhere, is of no use.
             let meant = Named { element, text: written.clone(), at: range.clone() };
             let leads = scene.composite(0, &meant) == Some(place);

@@ -229,13 +229,13 @@ impl Scene {
         let bound = |prefix| from.element(name.element).resolve_prefix(prefix);
         match name.text.split_once(':') {
             Some((prefix, _)) => match bound(prefix) {
-                Some(namespace) => of(&namespace),
+                Some(namespace) => of(namespace),
                 None => found.first().copied(),
             },
             // As the model resolves names without a prefix.
             None => {
                 let default = bound("").filter(|namespace| Version::from_namespace(namespace).is_none());
-                let all = [default.as_deref(), Some(from.outline.namespace.as_str()), Some("")];
+                let all = [default, Some(from.outline.namespace.as_str()), Some("")];
                 all.into_iter().flatten().find_map(of)
             }
         }

@@ -1,6 +1,6 @@
-//! The tables of `sca-contribution.xml` and of component types.
+//! The tables of `sca-contribution.xml`, of component types, and of `definitions.xml`.
 
-use super::{Kind, Known};
+use super::{Holds, Kind, Known};
 
 attributes! {
     COMPOSITE = required "composite" Composite: "Its name, with a prefix of its namespace.";
@@ -51,4 +51,67 @@ const fn part(name: &'static str, attributes: &'static [Known]) -> Kind {
         attributes,
         children: &["documentation", "extensions"],
     }
+}
+
+/// The root of `definitions.xml`. Of this file, names alone are looked at, as the XML schemas of SCA Policy 1.0 or 1.1
+/// allow them.
+pub(crate) static DEFINITIONS: Kind = definition_of(
+    "definitions",
+    &[any("targetNamespace")],
+    &["intent", "policySet", "bindingType", "implementationType", "externalAttachment", "binding.", "documentation"],
+);
+
+static DEFINITION_PARTS: [Kind; 8] = [
+    definition_of(
+        "intent",
+        &[
+            needed("name"),
+            any("constrains"),
+            any("requires"),
+            any("excludes"),
+            any("mutuallyExclusive"),
+            any("intentType"),
+        ],
+        &["description", "qualifier"],
+    ),
+    definition_of("qualifier", &[needed("name"), any("default")], &["description", "intentMap"]),
+    definition_of(
+        "policySet",
+        &[needed("name"), any("provides"), any("appliesTo"), any("attachTo")],
+        &[
+            "policySetReference", "intentMap", "allow", "permitAll", "denyAll", "runAs", "authorization",
+            "securityIdentity",
+        ],
+    ),
+    definition_of("policySetReference", &[needed("name")], &[]),
+    definition_of("intentMap", &[needed("provides"), any("default")], &["qualifier"]),
+    definition_of("bindingType", &[needed("type"), any("alwaysProvides"), any("mayProvide")], &["documentation"]),
+    definition_of(
+        "implementationType",
+        &[needed("type"), any("alwaysProvides"), any("mayProvide")],
+        &["documentation"],
+    ),
+    definition_of("externalAttachment", &[any("intents"), any("policySets"), needed("attachTo")], &[]),
+];
+
+const fn definition_of(name: &'static str, attributes: &'static [Known], children: &'static [&'static str]) -> Kind {
+    Kind { name, doc: "", attributes, children }
+}
+
+const fn any(name: &'static str) -> Known {
+    super::known(name, Holds::Text, "")
+}
+
+const fn needed(name: &'static str) -> Known {
+    super::required(name, Holds::Text, "")
+}
+
+/// The element of this name inside, where its parts are known.
+pub(in crate::load) fn definition(name: &str) -> Option<&'static Kind> {
+    DEFINITION_PARTS.iter().find(|kind| kind.name == name)
+}
+
+/// True if an element stands in `definitions.xml` alone.
+pub(in crate::load) fn is_of_definitions(name: &str) -> bool {
+    name != "qualifier" && definition(name).is_some()
 }

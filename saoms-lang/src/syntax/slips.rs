@@ -1,14 +1,18 @@
 //! Faults of tags, with what is probably meant.
 
-use super::Input;
+use super::attribute::RawAttribute;
+use super::characters::{is_qualified_name, name_length};
+use super::fault::Input;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Span;
-use crate::syntax::attribute::RawAttribute;
-use crate::syntax::names::{is_qualified_name, name_length};
+
+/// The quotes of word processors and web pages.
+const CURLY: [char; 9] =
+    ['\u{201c}', '\u{201d}', '\u{201e}', '\u{201f}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}'];
 
 impl Input<'_> {
     /// The character at a byte, for a message.
-    pub(in crate::syntax) fn shown(self, at: u32) -> String {
+    pub(super) fn shown(self, at: u32) -> String {
         match self.text[at as usize..].chars().next() {
             Some(' ' | '\t' | '\r' | '\n') => "white space".to_owned(),
             Some(character) => quoted(character.encode_utf8(&mut [0; 4])),
@@ -18,22 +22,21 @@ impl Input<'_> {
 }
 
 /// The fault of a `<` without a name behind it.
-pub(in crate::syntax) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
+pub(super) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
     let message = match input.byte(start + 1) {
         Some(_) => {
             format!("{} cannot follow `<`: the name of an element is expected", input.shown(start + 1))
         }
         None => "the file ends behind `<`".to_owned(),
     };
-    let location = Span::new(start, start + 1).in_file(input.file);
     input
         .fault(&codes::XML_NAME, start, start + 1, message)
         .help("write `&lt;` for the character itself")
-        .suggest("replace `<` with `&lt;`", location, "&lt;")
+        .mend("replace `<` with `&lt;`", "&lt;")
 }
 
 /// The fault of a name that is none; `what` it is of.
-pub(in crate::syntax) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Option<Diagnostic> {
+pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Option<Diagnostic> {
     let name = input.slice(start, end);
     if is_qualified_name(name) {
         return None;
@@ -46,7 +49,7 @@ pub(in crate::syntax) fn bad_name(input: Input<'_>, start: u32, end: u32, what: 
         let message = format!("U+{code:04X}, which looks like {kind}, in the name of an {what}");
         let one = input.fault(&codes::XML_NAME, at, end, message);
         let description = if meant.is_empty() { "remove it" } else { "replace it with a blank" };
-        return Some(one.suggest(description, Span::new(at, end).in_file(input.file), meant));
+        return Some(one.mend(description, meant));
     }
     let message = format!("{} is no name for an {what}", quoted(name));
     let help = if name.contains(':') {
@@ -58,23 +61,23 @@ pub(in crate::syntax) fn bad_name(input: Input<'_>, start: u32, end: u32, what: 
 }
 
 /// The first character of a name that looks like a blank, or like nothing, and where it is.
-pub(in crate::syntax) fn odd_space(name: &str) -> Option<(usize, char)> {
+pub(super) fn odd_space(name: &str) -> Option<(usize, char)> {
     let is_odd = |c: char| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{2060}' | '\u{feff}');
     name.char_indices().find(|(_, c)| is_odd(*c))
 }
 
 /// The fault of a start tag, of the element at `name`, whose `>` is missing at `at`, before the text of the element.
-pub(in crate::syntax) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
-    let shown = quoted(input.slice(name.start, name.end));
+pub(super) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
+    let shown = quoted(input.piece(name));
     let message = format!("the start tag of {shown} is not closed before the text");
     let one = input.fault(&codes::XML_UNCLOSED, name.start, name.end, message);
-    let place = Span::empty(at).in_file(input.file);
+    let place = input.at(at, at);
     one.label(place, "the tag ends here").suggest("insert `>`", place, ">")
 }
 
 /// The quote that closes a value, of which the first character is at `at`, where the opening quote is missing or stands
 /// elsewhere: before it nothing ends the value, and behind it the tag goes on.
-pub(in crate::syntax) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
+pub(super) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
     let is_end = |byte: &u8| matches!(byte, b'"' | b'\'' | b'<' | b'>' | b'=' | b' ' | b'\t' | b'\r' | b'\n');
     let end = at + input.bytes()[at as usize..].iter().position(is_end)? as u32;
     let is_quote = matches!(input.byte(end), Some(b'"' | b'\''));
@@ -83,52 +86,80 @@ pub(in crate::syntax) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
 }
 
 /// The fault of a value from `at` to `end` without its first quote.
-pub(in crate::syntax) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32, end: u32) -> Diagnostic {
+pub(super) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32, end: u32) -> Diagnostic {
     let name = quoted(input.slice(one.start, one.start + one.name_len));
     let quote = input.slice(end, end + 1);
     let message = format!("the value of {name} has no quote before it");
     let fault = input.fault(&codes::XML_ATTRIBUTE, at, end, message);
-    let place = Span::empty(at).in_file(input.file);
+    let place = input.at(at, at);
     fault.suggest(format!("insert {}", quoted(quote)), place, quote)
 }
 
 /// The fault of the second of two quotes, at `at`.
-pub(in crate::syntax) fn doubled_quote(input: Input<'_>, at: u32) -> Diagnostic {
+pub(super) fn doubled_quote(input: Input<'_>, at: u32) -> Diagnostic {
     let shown = input.shown(at);
     let one = input.fault(&codes::XML_ATTRIBUTE, at, at + 1, format!("{shown} stands here twice"));
-    one.suggest(format!("remove {shown}"), Span::new(at, at + 1).in_file(input.file), "")
+    one.mend(format!("remove {shown}"), "")
+}
+
+/// The fault of a value at `at` in the quotes of a word processor; also the value inside, and where it ends.
+pub(super) fn curly_quotes(input: Input<'_>, at: u32) -> Option<(Diagnostic, Span, u32)> {
+    let text = &input.text[at as usize..];
+    let first = text.chars().next().filter(|first| CURLY.contains(first))?;
+    let inside = &text[first.len_utf8()..];
+    let length = inside.find([CURLY.as_slice(), &['"', '\'', '<', '>', '\n']].concat().as_slice())?;
+    let last = inside[length..].chars().next()?;
+    let is_closed = CURLY.contains(&last) || matches!(last, '"' | '\'');
+    let end = at + (first.len_utf8() + length + if is_closed { last.len_utf8() } else { 0 }) as u32;
+    let shown = quoted(first.encode_utf8(&mut [0; 4]));
+    let message = format!("{shown} is no quote of XML: values stand between two `\"`");
+    let one = input.fault(&codes::XML_ATTRIBUTE, at, end, message);
+    let straight = format!("\"{}\"", &inside[..length]);
+    let start = at + first.len_utf8() as u32;
+    let value = Span::new(start, start + length as u32);
+    Some((one.mend(format!("replace it with {}", quoted(&straight)), straight), value, end))
+}
+
+/// The fault of a value that starts with a straight quote and is closed by one of a word processor before `end`; also
+/// where that is.
+pub(super) fn closing_quote(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, Span)> {
+    let value = input.slice(quote_at + 1, end);
+    let (length, found) = value.char_indices().find(|(_, c)| CURLY.contains(c))?;
+    let at = quote_at + 1 + length as u32;
+    let end = at + found.len_utf8() as u32;
+    let shown = quoted(found.encode_utf8(&mut [0; 4]));
+    let straight = input.slice(quote_at, quote_at + 1);
+    let message = format!("{shown} does not close a value that starts with {}", quoted(straight));
+    let one = input.fault(&codes::XML_ATTRIBUTE, at, end, message);
+    let one = one.label(input.at(quote_at, quote_at + 1), "the value starts here");
+    Some((one.mend(format!("replace {shown} with {}", quoted(straight)), straight), Span::new(at, end)))
 }
 
 /// The fault of an attribute without a value; with a quote at `quote_at`, it lacks a `=` alone.
-pub(in crate::syntax) fn without_value(
-    input: Input<'_>,
-    start: u32,
-    name_end: u32,
-    quote_at: Option<u32>,
-) -> Diagnostic {
+pub(super) fn without_value(input: Input<'_>, start: u32, name_end: u32, quote_at: Option<u32>) -> Diagnostic {
     let name = input.slice(start, name_end);
     let message = format!("the attribute {} has no value", quoted(name));
     let one = input.fault(&codes::XML_ATTRIBUTE, start, name_end, message);
     match quote_at {
-        Some(at) => one.suggest("insert `=`", Span::new(name_end, at).in_file(input.file), "="),
+        Some(at) => one.suggest("insert `=`", input.at(name_end, at), "="),
         None => one.help(format!("write {}", quoted(&format!("{name}=\"...\"")))),
     }
 }
 
 /// The fault of `name: "value"`, as other languages write it.
-pub(in crate::syntax) fn colon(input: Input<'_>, start: u32, name_end: u32, next: u32) -> Option<Diagnostic> {
+pub(super) fn colon(input: Input<'_>, start: u32, name_end: u32, next: u32) -> Option<Diagnostic> {
     let name = input.slice(start, name_end).strip_suffix(':').filter(|name| !name.is_empty())?;
     if !matches!(input.byte(next), Some(b'"' | b'\'')) {
         return None;
     }
     let message = format!("`:` stands between {} and its value, and not `=`", quoted(name));
     let one = input.fault(&codes::XML_ATTRIBUTE, name_end - 1, name_end, message);
-    let place = Span::new(name_end - 1, next).in_file(input.file);
+    let place = input.at(name_end - 1, next);
     Some(one.suggest("replace `:` with `=`", place, "="))
 }
 
 /// The fault of a value without quotes at `at`, and how long the value is.
-pub(in crate::syntax) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32) -> (Diagnostic, u32) {
+pub(super) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32) -> (Diagnostic, u32) {
     let name = quoted(input.slice(one.start, one.start + one.name_len));
     let rest = &input.text[at as usize..];
     let stop = |c: char| matches!(c, ' ' | '\t' | '\r' | '\n' | '>' | '<' | '"' | '\'' | '/' | '&');
@@ -139,13 +170,12 @@ pub(in crate::syntax) fn unquoted(input: Input<'_>, one: &RawAttribute, at: u32)
     }
     let word = input.slice(at, at + length);
     let fault = input.fault(&codes::XML_ATTRIBUTE, at, at + length, message);
-    let place = Span::new(at, at + length).in_file(input.file);
-    (fault.suggest("put it in quotes", place, format!("\"{word}\"")), length)
+    (fault.mend("put it in quotes", format!("\"{word}\"")), length)
 }
 
 /// The fault of a value that is open at a `<`: its quote is missing before the end of the tag, or the character is
 /// meant.
-pub(in crate::syntax) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -> Diagnostic {
+pub(super) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -> Diagnostic {
     let name = quoted(name);
     let (quote, value) = (input.slice(quote_at, quote_at + 1), input.slice(quote_at + 1, at));
     if let Some(length) = value.find('>') {
@@ -154,9 +184,9 @@ pub(in crate::syntax) fn open_value(input: Input<'_>, name: &str, quote_at: u32,
         let end = quote_at + 1 + inside.len() as u32;
         let message = format!("the value of {name} is not closed");
         let one = input.fault(&codes::XML_ATTRIBUTE, quote_at, end, message);
-        let one = one.label(Span::new(at, at + 1).in_file(input.file), "`<` cannot stand in a value");
+        let one = one.label(input.at(at, at + 1), "`<` cannot stand in a value");
         let other = inside.ends_with(['"', '\'']);
-        let place = Span::new(end - u32::from(other), end).in_file(input.file);
+        let place = input.at(end - u32::from(other), end);
         let description = match other {
             true => format!("replace {} with {}", quoted(&inside[inside.len() - 1..]), quoted(quote)),
             false => format!("close it with {}", quoted(quote)),
@@ -166,15 +196,15 @@ pub(in crate::syntax) fn open_value(input: Input<'_>, name: &str, quote_at: u32,
     let message = format!("`<` in the value of {name}");
     let one = input
         .fault(&codes::XML_ATTRIBUTE, at, at + 1, message)
-        .label(Span::new(quote_at, quote_at + 1).in_file(input.file), "the value starts here");
+        .label(input.at(quote_at, quote_at + 1), "the value starts here");
     if closed_behind(input, quote_at, at).is_some() {
-        return one.suggest("replace `<` with `&lt;`", Span::new(at, at + 1).in_file(input.file), "&lt;");
+        return one.mend("replace `<` with `&lt;`", "&lt;");
     }
     one.help("close the value before, or write `&lt;` for the character itself")
 }
 
 /// The end of a value with a `<` at `at`, if that surely is its quote.
-pub(in crate::syntax) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32) -> Option<u32> {
+pub(super) fn closed_behind(input: Input<'_>, quote_at: u32, at: u32) -> Option<u32> {
     if input.slice(quote_at, at).contains('>') {
         return None;
     }
@@ -194,7 +224,7 @@ fn ends_with_attribute_name(text: &str) -> bool {
 }
 
 /// The end of a value without a closing quote, the place where its tag goes on, and true if it surely ends there.
-pub(in crate::syntax) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
+pub(super) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
     let start = quote_at + 1;
     let rest = &input.text[start as usize..];
     let mut length = 0;
@@ -219,7 +249,7 @@ pub(in crate::syntax) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32
 
 /// The fault of a value that is closed by the quote at `end`, with which the next attribute starts: `a="b c="d"`. Also
 /// where the value should end.
-pub(in crate::syntax) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, u32)> {
+pub(super) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(Diagnostic, u32)> {
     let value = input.slice(quote_at + 1, end);
     let next = value.strip_suffix('=')?;
     if !ends_with_attribute_name(next) {
@@ -231,26 +261,22 @@ pub(in crate::syntax) fn open_before(input: Input<'_>, quote_at: u32, end: u32) 
     let message = format!("this value is not closed before {}", quoted(name));
     let one = input.fault(&codes::XML_ATTRIBUTE, quote_at, end, message);
     let quote = input.slice(quote_at, quote_at + 1);
-    let place = Span::empty(end).in_file(input.file);
+    let place = input.at(end, end);
     Some((one.suggest(format!("close it with {}", quoted(quote)), place, quote), end))
 }
 
-/// The fault of the second of two attributes that are the same.
-pub(in crate::syntax) fn duplicate(
-    input: Input<'_>,
-    first: &RawAttribute,
-    second: &RawAttribute,
-    namespace: Option<&str>,
-) -> Diagnostic {
+/// The fault of the second of two attributes that are the same, in the namespace `uri`.
+pub(super) fn duplicate(input: Input<'_>, first: &RawAttribute, second: &RawAttribute, uri: &str) -> Diagnostic {
     let here = second.name_span();
-    let name = quoted(input.slice(here.start, here.end));
-    let message = match namespace {
-        None => format!("the attribute {name} is given twice"),
-        Some(uri) => format!("the attribute {name} is given twice: both prefixes are of {}", quoted(uri)),
+    let name = quoted(input.piece(here));
+    let there = first.name_span();
+    let message = match input.piece(there) == input.piece(here) {
+        true => format!("the attribute {name} is given twice"),
+        false => format!("the attribute {name} is given twice: both prefixes are of {}", quoted(uri)),
     };
     let before = input.slice(0, second.start).trim_end_matches([' ', '\t', '\r', '\n']).len() as u32;
     input
         .fault(&codes::XML_DUPLICATE_ATTRIBUTE, here.start, here.end, message)
-        .label(first.name_span().in_file(input.file), "first given here")
-        .suggest(format!("remove the second {name}"), Span::new(before, second.end()).in_file(input.file), "")
+        .label(there.in_file(input.file), "first given here")
+        .suggest(format!("remove the second {name}"), input.at(before, second.end()), "")
 }

@@ -1,12 +1,8 @@
 //! Faults of a text, as diagnostics.
 
-pub(super) mod quotes;
-pub(super) mod slips;
-pub(super) mod unbound;
-
 use crate::diagnostic::{Code, Diagnostic};
 use crate::limits::TEXT_FAULTS;
-use crate::source::{FileId, Span};
+use crate::source::{FileId, Location, Span};
 
 /// The faults found so far.
 #[derive(Debug, Default)]
@@ -20,13 +16,8 @@ impl Faults {
         }
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Forgets those behind the first `count`.
-    pub(super) fn truncate(&mut self, count: usize) {
-        self.0.truncate(count);
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// The faults in the order of their places.
@@ -56,6 +47,10 @@ impl<'a> Input<'a> {
         &self.text[start as usize..end as usize]
     }
 
+    pub(super) fn piece(self, span: Span) -> &'a str {
+        self.slice(span.start, span.end)
+    }
+
     pub(super) fn byte(self, at: u32) -> Option<u8> {
         self.bytes().get(at as usize).copied()
     }
@@ -72,15 +67,19 @@ impl<'a> Input<'a> {
         memchr::memchr(byte, &self.bytes()[at as usize..]).map(|length| at + length as u32)
     }
 
+    /// The place of the bytes from `start` to `end`.
+    pub(super) fn at(self, start: u32, end: u32) -> Location {
+        Span::new(start, end).in_file(self.file)
+    }
+
     /// A diagnostic at the bytes from `start` to `end`.
     pub(super) fn fault(self, code: &'static Code, start: u32, end: u32, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(code, Span::new(start, end).in_file(self.file), message)
+        Diagnostic::new(code, self.at(start, end), message)
     }
 
     /// The diagnostic for a text that ends inside something that starts at `start`.
     pub(super) fn ended(self, code: &'static Code, start: u32, end: u32, message: impl Into<String>) -> Diagnostic {
-        let behind = Span::empty(self.len()).in_file(self.file);
-        self.fault(code, start, end, message).label(behind, "the file ends here")
+        self.fault(code, start, end, message).label(self.at(self.len(), self.len()), "the file ends here")
     }
 
     /// The end of the character at byte `at`.
