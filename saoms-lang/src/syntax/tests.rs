@@ -509,3 +509,8 @@ fn neither_depth_nor_width_matters() {
     assert_eq!(document.root().children().count(), 100_000);
     assert_eq!(document.root().text().len(), 200_000);
 }
+
+#[test]
+fn a_value_that_goes_on_behind_the_end_of_its_tag_ends_with_the_text() {
+    assert!(fault("<:\" s=\">\"f").starts_with("1:2 [:] S0107"));
+}

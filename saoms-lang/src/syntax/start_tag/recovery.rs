@@ -165,7 +165,8 @@ impl Tag<'_, '_> {
     pub(super) fn resume(&mut self, from: u32) {
         let input = self.input;
         self.flags |= DAMAGED_TAG;
-        let bound = self.close.unwrap_or(self.limit).max(from);
+        // Behind a value that goes on beyond it, the `>` is none of this tag.
+        let bound = self.close.filter(|close| *close >= from).unwrap_or(self.limit).max(from);
         let mut at = from;
         while at < bound {
             let byte = input.bytes()[at as usize];
