@@ -5,4 +5,5 @@ pub(crate) mod files;
 mod findings;
 mod given_on;
 mod parameters;
+mod paths;
 pub(crate) mod properties;
