@@ -2,9 +2,11 @@
 
 use std::collections::HashSet;
 use std::fmt::{self, Display};
-use std::fs::{self, OpenOptions};
+use std::fs::{self, OpenOptions, Permissions};
 use std::io::{self, BufWriter, IsTerminal, Write};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
+use std::process;
 
 use clap::Args;
 use saoms_lang::contribution::composites_below;
@@ -152,13 +154,23 @@ fn replace(path: &Path, text: &impl Display) -> io::Result<()> {
     // A file that its user may not write is not replaced either.
     OpenOptions::new().write(true).open(&path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    let mut buffered = BufWriter::new(&mut file);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let beside = folder.join(format!(".{name}.{}.new", process::id()));
+    let written = write_new(&beside, text, about.permissions()).and_then(|()| fs::rename(&beside, &path));
+    if written.is_err() {
+        // Whatever is left of it is of no use, and may not be there at all.
+        let _ = fs::remove_file(&beside);
+    }
+    written
+}
+
+/// Writes a file that is not there yet, with these permissions, up to the disk.
+fn write_new(path: &Path, text: &impl Display, permissions: Permissions) -> io::Result<()> {
+    // Nobody else reads a text that the file it replaces may keep from them.
+    let file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(path)?;
+    let mut buffered = BufWriter::new(&file);
     write!(buffered, "{text}")?;
     buffered.flush()?;
-    drop(buffered);
-    file.as_file().set_permissions(about.permissions())?;
-    file.as_file().sync_all()?;
-    file.persist(&path)?;
-    Ok(())
+    file.set_permissions(permissions)?;
+    file.sync_all()
 }

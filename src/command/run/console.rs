@@ -1,14 +1,13 @@
 //! The observer that shows what happens in a fleet, and a summary at the end.
 
-use std::io::IsTerminal;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use saoms_api::Level;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent, RunProgress};
 use saoms_core::report::RunReport;
 use saoms_lang::assembly::Assembly;
 
+use super::status_line::StatusLine;
 use super::summary::summary;
 use super::{ConsoleStyle, RunArguments};
 use crate::output::{eprint, print};
@@ -21,8 +20,8 @@ pub(crate) struct Console {
     verbosity: Verbosity,
     /// The width of the column with the names of components.
     width: usize,
-    /// On a terminal, the line below the others that says how far the run is.
-    bar: Option<ProgressBar>,
+    /// The line below the others, on a terminal.
+    status: Option<StatusLine>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -46,19 +45,15 @@ impl Console {
         if verbosity == Verbosity::Classic {
             print("Starting...\n");
         }
-        let on_terminal = std::io::stdout().is_terminal() && std::io::stderr().is_terminal();
-        let bar = (verbosity == Verbosity::Plain && on_terminal).then(|| {
-            let style = ProgressStyle::with_template("{spinner} {msg}");
-            ProgressBar::new_spinner().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
-        });
+        let status = if verbosity == Verbosity::Plain { StatusLine::on_terminal() } else { None };
         let names = assembly.components.iter().map(|component| component.path.chars().count());
         let width = names.max().unwrap_or(0).clamp(NAMES.0, NAMES.1);
-        Console { verbosity, width, bar }
+        Console { verbosity, width, status }
     }
 
     fn line(&self, text: &str) {
-        match &self.bar {
-            Some(bar) => bar.suspend(|| print(text)),
+        match &self.status {
+            Some(status) => status.above(|| print(text)),
             None => print(text),
         }
     }
@@ -86,23 +81,22 @@ impl Observer for Console {
         Interest {
             log: Some(log),
             console: self.verbosity == Verbosity::Classic,
-            progress: self.bar.as_ref().map(|_| Duration::from_millis(100)),
+            progress: self.status.as_ref().map(|_| Duration::from_millis(100)),
             journal: false,
         }
     }
 
     fn progress(&self, progress: &RunProgress) {
-        if let Some(bar) = &self.bar {
+        if let Some(status) = &self.status {
             let RunProgress { time, periods, summaries } = progress;
             let summaries: String = summaries.iter().map(|summary| format!(" · {summary}")).collect();
-            bar.set_message(format!("{time} · {periods} executions{summaries}"));
-            bar.tick();
+            status.set(format!("{time} · {periods} executions{summaries}"));
         }
     }
 
     fn end(&self, report: &RunReport) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+        if let Some(status) = &self.status {
+            status.clear();
         }
         if self.verbosity != Verbosity::Quiet {
             print(&summary(report));

@@ -6,6 +6,7 @@ mod outputs;
 mod picture_file;
 mod reload;
 mod report_file;
+mod status_line;
 mod summary;
 
 use std::io;
