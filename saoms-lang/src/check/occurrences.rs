@@ -68,7 +68,7 @@ impl Occurrences {
         let mut counts: HashMap<(FileId, ElementId), usize> = HashMap::new();
         for composite in contribution.composites() {
             let special = composite.components.iter();
-            let special = special.filter(|one| one.replicas.as_ref().is_some() || one.condition.as_ref().is_some());
+            let special = special.filter(|one| one.replicas.is_some() || one.condition.is_some());
             counts.extend(special.map(|one| ((one.origin.file(), one.origin.element), 0)));
         }
         let mut here: HashMap<(usize, (FileId, ElementId)), usize> = HashMap::new();

@@ -21,8 +21,8 @@ use crate::source::{Location, Sources, identity};
 /// first folder where there is none. What is not there is looked for in the contributions that export its namespace
 /// (for component types, its package), where the description of its own imports that: those of the composites that are
 /// given together, those in folders beside it, and the folder that the import has as its `location`. Of a file
-/// that is not needed no more is read than its first tag, and a large folder is given up after some ten thousand entries. Texts that were not read from
-/// files are not looked at, but for [`STANDARD_INPUT`].
+/// that is not needed no more is read than its first tag, and a large folder is given up after some ten thousand
+/// entries. Texts that were not read from files are not looked at, but for [`STANDARD_INPUT`].
 ///
 /// A fault of a file that is found, or that has the name of one that is not, is reported; that one is not found is
 /// for the checker to say. A [`Finder`] does it for several contributions that are in the same folders.

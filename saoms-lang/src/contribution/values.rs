@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::overrides::table;
 use super::value_file::{self, FileValue};
@@ -60,7 +61,7 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
         match read::value(&path, max_size, file.location, sources.open()) {
             Ok(text) => {
                 let file = sources.add(path.display().to_string(), text);
-                replicas.table = table(file, sources, diagnostics);
+                replicas.table = table(file, sources, diagnostics).map(Arc::new);
             }
             Err(diagnostic) => diagnostics.push(*diagnostic),
         }

@@ -101,7 +101,7 @@ codes! {
     COMPOSITE_CIRCLE = "S2032" Error "composite-circle": "A composite includes itself or is implemented by itself, directly or through others.";
     INCLUDED_TWICE = "S2033" Error "included-twice" ("ASM60031"): "A composite is included twice in one composite.";
     INCLUDE_LOCAL = "S2034" Error "include-local" ("ASM60041"): "A composite that is `local` is included in one that is not.";
-    FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites or replicas come to more components or wires, or sources to more values, than a fleet can have.";
+    FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites or replicas come to more components or wires, or sources to more values, than a fleet can have; or paths of sources look at too many elements.";
     PROMOTED_MULTIPLICITY = "S2036" Error "promoted-multiplicity" ("ASM60011"): "A composite's reference allows numbers of targets that a reference it promotes does not.";
     PROMOTED_FIXED = "S2037" Error "promoted-fixed" ("ASM50042"): "A reference for one target that must not be overridden is promoted.";
     WIRED_BY_IMPLEMENTATION = "S2038" Error "wired-by-implementation" ("ASM50013"): "A reference that its implementation wires has a target. In SCA 1.0 files a warning.";

@@ -1,6 +1,6 @@
 //! The collection of diagnostics.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::codes::Absence;
 use super::{Code, Diagnostic, Severity, codes};
@@ -23,6 +23,8 @@ pub struct Diagnostics {
     /// overlaps another.
     damaged: BTreeMap<(FileId, u32), u32>,
     hidden: HiddenNames,
+    /// The codes whose warnings are errors in a file.
+    escalated: HashSet<(FileId, &'static str)>,
 }
 
 /// The kinds of names that faults of texts may hide: one of them that is found nowhere may be there.
@@ -120,9 +122,12 @@ impl Diagnostics {
         count
     }
 
-    /// Makes errors of all warnings of one code in one file, and says why: what a file may say can still be wrong for
-    /// what is to be done with it.
+    /// Makes errors of all warnings of one code that one file has so far, once, and says why: what a file may say can
+    /// still be wrong for what is to be done with it.
     pub fn escalate(&mut self, code: &'static Code, file: FileId, why: &str) {
+        if !self.escalated.insert((file, code.id)) {
+            return;
+        }
         let is_meant =
             |one: &&mut Diagnostic| one.code == code && one.location.file == file && one.severity == Severity::Warning;
         let mut kept = 0;
@@ -167,15 +172,18 @@ impl Diagnostics {
 
     /// Takes back those of a code at a place, where another one says it better.
     pub(crate) fn withdraw(&mut self, code: &'static Code, location: Location) {
-        let before = self.items.len();
-        let mut severities = Vec::new();
-        self.items.retain(|one| {
-            let is_meant = one.code == code && one.location == location;
-            severities.extend(is_meant.then_some(one.severity));
-            !is_meant
-        });
-        let number = (before - self.items.len()) as u32;
-        severities.into_iter().for_each(|severity| self.recount(severity, 1, usize::saturating_sub));
+        // Most that are withdrawn were never told.
+        if self.counts.get(&(location.file, code.id)).is_none_or(|count| count.kept == 0) {
+            return;
+        }
+        let all = self.items.iter().enumerate();
+        let meant = all.filter(|(_, one)| one.location == location && one.code == code).map(|(place, _)| place);
+        let meant: Vec<usize> = meant.collect();
+        let number = meant.len() as u32;
+        for place in meant.into_iter().rev() {
+            let severity = self.items.remove(place).severity;
+            self.recount(severity, 1, usize::saturating_sub);
+        }
         if let Some(count) = self.counts.get_mut(&(location.file, code.id)) {
             count.number -= number;
             count.kept -= number;

@@ -27,6 +27,7 @@ pub use json::json;
 pub use level::{SetBy, SeverityLevel};
 pub(crate) use meant_boolean::meant_boolean;
 pub use quoted::quoted;
+pub(crate) use quoted::replacing;
 pub use saoms_api::host::{nearest_equal, nearest_few};
 pub use saoms_api::rule::{Severity, nearest};
 pub use sarif::{Sarif, sarif};

@@ -23,3 +23,8 @@ pub fn quoted(text: &str) -> String {
     out.push('`');
     out
 }
+
+/// The description of a suggestion that replaces a name.
+pub(crate) fn replacing(name: &str, meant: &str) -> String {
+    format!("replace {} with {}", quoted(name), quoted(meant))
+}

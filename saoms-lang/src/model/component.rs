@@ -1,5 +1,7 @@
 //! Components, with their implementations, loops and replicas.
 
+use std::sync::Arc;
+
 use smol_str::SmolStr;
 
 use super::{Origin, Property, ReferenceElement, ServiceElement};
@@ -133,7 +135,7 @@ pub struct Replicas {
     pub overrides: Option<Text>,
     /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
     /// read.
-    pub table: Option<Table>,
+    pub table: Option<Arc<Table>>,
 }
 
 /// A table of what differs from one replica to another.

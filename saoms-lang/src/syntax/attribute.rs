@@ -134,11 +134,14 @@ impl<'a> Attribute<'a> {
     /// The words of a value that is a list, each with its own place. Blanks between `${` and `}` do not separate.
     pub fn words(self) -> impl Iterator<Item = Text> + use<'a> {
         let mut rest = self.raw_value();
+        // Behind the last `}` no expression is closed.
+        let closed = rest.rfind('}').map_or(rest.len(), |last| rest.len() - last);
         std::iter::from_fn(move || {
             rest = rest.trim_start_matches(value::is_space);
             let mut end = 0;
             while let Some(next) = rest[end..].chars().next().filter(|next| !value::is_space(*next)) {
-                let inside = rest[end..].strip_prefix("${").and_then(|inside| inside.find('}'));
+                let is_open = rest.len() - end > closed;
+                let inside = rest[end..].strip_prefix("${").filter(|_| is_open).and_then(|inside| inside.find('}'));
                 end += inside.map_or(next.len_utf8(), |length| length + 3);
             }
             let word;

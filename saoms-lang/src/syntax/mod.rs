@@ -4,7 +4,8 @@
 //! is kept. Nothing is recursive, so depth costs no stack. Names and values stay in the text: the tree holds spans.
 //!
 //! The steps, each with a file: `lexer` cuts the text into tokens (quick-xml finds the ends of markup), `start_tag`
-//! reads attributes, `nest` finds which end tag belongs to which start tag, `resolve` binds prefixes to namespaces.
+//! reads attributes (`slips` says where a damaged one ends), `nest` finds which end tag belongs to which start tag,
+//! `resolve` binds prefixes to namespaces.
 //! What cannot be relied on behind a fault is marked in the tree ([`Element::is_damaged`]), so that nobody reports the
 //! same mistake a second time.
 

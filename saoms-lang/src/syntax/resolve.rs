@@ -1,5 +1,6 @@
 //! Namespaces of elements and attributes, and attributes that are the same.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -64,7 +65,12 @@ struct Resolver<'a> {
 impl<'a> Resolver<'a> {
     fn element(&mut self, lexer: &mut Lexer<'a>, element: usize) {
         while let Some((_, prefix)) = self.in_scope.pop_if(|(after, _)| *after <= element as u32) {
-            self.bound.entry(prefix).and_modify(|bound| _ = bound.pop());
+            if let Entry::Occupied(mut bound) = self.bound.entry(prefix) {
+                bound.get_mut().pop();
+                if bound.get().is_empty() {
+                    bound.remove();
+                }
+            }
         }
         let node = lexer.elements[element];
         let end = lexer.elements.get(element + 1).map_or(lexer.attributes.len(), |next| next.attributes as usize);

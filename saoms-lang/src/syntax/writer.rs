@@ -3,6 +3,9 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
+use crate::diagnostic::{Diagnostic, replacing};
+use crate::source::Location;
+
 /// An element to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewElement {
@@ -153,4 +156,12 @@ pub fn escaped(text: &str) -> String {
         }
     }
     out
+}
+
+impl Diagnostic {
+    /// Adds the suggestion to write another name in place of the one at a place, with what XML asks for in it.
+    #[must_use]
+    pub(crate) fn replace(self, written: &str, at: Location, meant: &str) -> Self {
+        self.suggest(replacing(written, meant), at, escaped(meant))
+    }
 }

@@ -11,7 +11,7 @@ use crate::syntax::{Element, escaped};
 
 /// Checks that no two components have one path. Where nobody gives one, names alone see to that.
 pub(crate) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    if fleet.members.iter().all(|member| member.component.path.as_ref().is_none()) {
+    if fleet.members.iter().all(|member| member.component.path.is_none()) {
         return;
     }
     let mut first: HashMap<&str, Location> = HashMap::with_capacity(fleet.members.len());

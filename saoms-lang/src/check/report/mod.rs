@@ -7,18 +7,19 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use crate::check::fleet::Member;
+pub(crate) use crate::diagnostic::replacing;
 use crate::diagnostic::{
     Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest_equal, quoted,
 };
 use crate::expression::has_expression;
 use crate::source::{FileId, Location, Sources, Span, Text};
-use crate::syntax::{SourceMap, escaped};
+use crate::syntax::SourceMap;
 
 /// Collects diagnostics, and knows the texts they are about.
 pub(crate) struct Report<'a> {
     sources: &'a Sources,
     diagnostics: &'a mut Diagnostics,
-    /// The number of right names are still looked at for wrong ones.
+    /// How many right names may still be looked at for wrong ones.
     candidates: Candidates,
     /// The prefixes of types that are bound to nothing, by their files.
     unbound: HashSet<(FileId, String)>,
@@ -52,10 +53,10 @@ struct ReplicaDiagnostic {
     more: usize,
 }
 
-/// The number of diagnostics about replicas are kept together; further ones are told as they come.
+/// How many diagnostics about replicas are kept together; further ones are told as they come.
 const MOST_COPIES: usize = 2000;
 
-/// The number of diagnostics are remembered.
+/// How many diagnostics are remembered.
 const REMEMBERED: usize = 20_000;
 
 impl<'a> Report<'a> {
@@ -320,19 +321,6 @@ impl Parts {
             None => self.written,
         }
     }
-}
-
-impl Diagnostic {
-    /// Adds the suggestion to write another name in place of the one at a place.
-    #[must_use]
-    pub(crate) fn replace(self, written: &str, at: Location, meant: &str) -> Self {
-        self.suggest(replacing(written, meant), at, escaped(meant))
-    }
-}
-
-/// The description of a suggestion that replaces a name.
-pub(crate) fn replacing(name: &str, meant: &str) -> String {
-    format!("replace {} with {}", quoted(name), quoted(meant))
 }
 
 /// Names for a line of help: `a`, `b` and `c`, at most thirty of them.

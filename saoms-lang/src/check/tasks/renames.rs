@@ -1,7 +1,7 @@
 //! The topics that components give new names. Components may share a list of them: a name that none of them uses is a
 //! mistake.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use crate::assembly::topic_rename::{self, Fault};
 use crate::check::fleet::Fleet;
@@ -64,9 +64,9 @@ impl Renames {
             let classes = members.iter().filter_map(|member| fleet.class_of(*member));
             let classes: HashMap<&str, &ClassIndex<'_>> = classes.map(|class| (class.class.name(), class)).collect();
             let used: BTreeSet<&str> = classes.values().flat_map(|class| topics(class)).collect();
-            let is_listed = |topic: &str| names.iter().any(|(name, _)| name == topic);
+            let listed: HashSet<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
+            let others: Vec<&str> = used.iter().copied().filter(|topic| !listed.contains(topic)).collect();
             for (name, at) in names.iter().filter(|(name, _)| !used.contains(name.as_str())) {
-                let others: Vec<&str> = used.iter().copied().filter(|topic| !is_listed(topic)).collect();
                 let mut classes = classes.keys();
                 let whose = match (classes.next(), classes.len()) {
                     (Some(only), 0) => format!("class {} uses no topic", quoted(only)),

@@ -35,7 +35,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         let own = component.path.as_ref().unwrap_or(&component.name);
         match owner {
             Some(owner) => member.set_path(format!("{}/{own}", self.fleet.members[owner].path())),
-            None if component.path.as_ref().is_some() => member.set_path(own.to_string()),
+            None if component.path.is_some() => member.set_path(own.to_string()),
             None => {}
         }
         self.fleet.members.push(member);

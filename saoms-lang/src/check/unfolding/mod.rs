@@ -119,11 +119,12 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     pub(crate) report: &'r mut Report<'s>,
     /// True if errors about unknown attributes may be let pass.
     pub(crate) lowers_attributes: bool,
-    /// The number of components the composites come to that were asked about.
+    /// How many components composites come to, by their place, as far as that was asked.
     sizes: HashMap<usize, usize>,
     pub(crate) replicas: Appender<'a, Replica>,
     pub(crate) replicas_left: u64,
-    /// The properties of units that have expressions.
+    /// The properties for what expressions take while composites are unfolded. Their faults are told later, when the
+    /// properties of the whole fleet are found.
     pub(crate) parameters: Parameters<'a>,
 }
 

@@ -110,7 +110,7 @@ impl<'a> Plan<'a> {
 
     /// The row of the table for an index.
     pub(crate) fn row(&self, index: i64) -> Option<(&'a Table, usize)> {
-        let table = self.component.replicas.as_ref()?.table.as_ref()?;
+        let table = self.component.replicas.as_ref()?.table.as_deref()?;
         Some((table, *self.rows.get(&index)?))
     }
 

@@ -14,14 +14,23 @@ use crate::syntax::Element;
 /// Elements that the steps of all paths of a fleet may look at.
 pub(crate) const MOST_LOOKED_AT: u64 = 200_000_000;
 
-/// Steps of which is kept what each value that they can ask for leads to.
-const MOST_TABLES: usize = 64;
+/// Elements in the tables that are kept for one value.
+const MOST_KEPT: usize = 1_000_000;
+
+/// Steps of one path.
+const MOST_STEPS: usize = 100;
+
+/// Elements that a step to any depth, and a new table, count for: they take so much longer for each.
+const DEEP: usize = 10;
+const TABLE: usize = 20;
 
 /// The values of a property.
 pub(crate) struct SharedValues<'a> {
     pub(crate) raw: Raw<'a>,
     /// The elements behind steps such as `robot[@id='r1']`, by the path up to the value: many paths ask for one each.
     tables: RefCell<HashMap<String, ByValue<'a>>>,
+    /// The number of elements in these tables.
+    kept: Cell<usize>,
 }
 
 /// The values of a property; `Err` with a fault, which is reported.
@@ -44,7 +53,7 @@ struct Level<'a> {
 impl<'a> SharedValues<'a> {
     /// Values that no property declares.
     pub(crate) fn new(raw: Raw<'a>) -> Rc<Self> {
-        Rc::new(Self { raw, tables: RefCell::default() })
+        Rc::new(Self { raw, tables: RefCell::default(), kept: Cell::default() })
     }
 
     /// These values as those of a property of this declaration.
@@ -87,6 +96,9 @@ impl<'a> SharedValues<'a> {
             [(_, "text()")] => self.raw.0.iter().all(|piece| matches!(piece, Piece::Text(_))),
             _ => false,
         };
+        if let Some((at, _)) = all.get(MOST_STEPS) {
+            return Err(Fault::new(at.clone(), format!("a path has at most {MOST_STEPS} steps")));
+        }
         Ok(Self::new(if is_all { Raw(values.to_vec()) } else { self.walk(values, path, &all, left)? }))
     }
 
@@ -100,6 +112,7 @@ impl<'a> SharedValues<'a> {
     ) -> Result<Raw<'a>, Fault> {
         let instance = values.iter().find_map(Piece::instance);
         let mut steps = all.iter();
+        look_at(0, &all[0].0, left)?;
         // From the last step on of which it is known where it leads.
         let known = (1..=all.len()).rev().find_map(|count| Some((count, self.known(path, &all[count - 1])?)));
         let mut level = match known {
@@ -107,15 +120,15 @@ impl<'a> SharedValues<'a> {
                 steps = all[count..].iter();
                 Level { around: found, ..Level::default() }
             }
-            None => Level::start(values, path, all[0].1)?,
+            None => Level::start(values, path, &all[0], left)?,
         };
         while let Some((at, step)) = steps.next() {
             let is_last = steps.len() == 0;
             if step.is_empty() && !is_last && !level.is_deep {
-                level = level.deep();
-                look_at(level.around.len(), at, left)?;
+                level = level.deep(at, left)?;
                 continue;
             }
+            look_at(level.around.len(), at, left)?;
             if let Some(end) = ends(&level.around, (at.clone(), step), is_last, instance) {
                 return end;
             }
@@ -127,13 +140,20 @@ impl<'a> SharedValues<'a> {
                 None => named.clone(),
                 Some(None) => siblings(&named).filter_map(|these| these.last().copied()).collect(),
                 Some(Some((of, value))) => {
-                    let table = by_value(&named, of);
-                    let found = table.get(&*value).cloned().unwrap_or_default();
                     let mut tables = self.tables.borrow_mut();
-                    if tables.len() < MOST_TABLES {
-                        tables.insert(key(path, at, &test, of), table);
+                    let key = key(path, at, &test, of);
+                    if let Some(table) = tables.get(&key) {
+                        table.get(&*value).cloned().unwrap_or_default()
+                    } else {
+                        look_at(TABLE * named.len(), at, left)?;
+                        let table = by_value(&named, of);
+                        let found = table.get(&*value).cloned().unwrap_or_default();
+                        if self.kept.get() + named.len() <= MOST_KEPT {
+                            self.kept.set(self.kept.get() + named.len());
+                            tables.insert(key, table);
+                        }
+                        found
                     }
-                    found
                 }
             };
             if found.is_empty() {
@@ -160,7 +180,7 @@ fn key(path: &str, at: &Range<usize>, test: &Test<'_>, of: &str) -> String {
     format!("{}{}[{of}", &path[..at.start], test.name.unwrap_or("*"))
 }
 
-/// Counts elements that the step at these bytes looks at.
+/// Counts elements that the step at these bytes is to look at.
 fn look_at(count: usize, at: &Range<usize>, left: &Cell<u64>) -> Result<(), Fault> {
     left.set(left.get().saturating_sub(count as u64));
     if left.get() == 0 { Err(Fault::too_many(at.clone())) } else { Ok(()) }
@@ -197,7 +217,12 @@ fn siblings<'e, 'a>(all: &'e [Element<'a>]) -> impl Iterator<Item = &'e [Element
 impl<'a> Level<'a> {
     /// The elements that the first step of a path starts from. Where each value is one element, that may mean a part of
     /// it: `$order/total` also means the `total` of a value that is written as one element.
-    fn start(values: &[Piece<'a>], path: &str, first: &str) -> Result<Self, Fault> {
+    fn start(
+        values: &[Piece<'a>],
+        path: &str,
+        (at, first): &(Range<usize>, &str),
+        left: &Cell<u64>,
+    ) -> Result<Self, Fault> {
         let elements: Vec<&[Element<'a>]> = values.iter().filter_map(Piece::elements).collect();
         let top = elements.concat();
         if top.is_empty() {
@@ -205,15 +230,15 @@ impl<'a> Level<'a> {
             let message = format!("the property has a simple value: there are no parts in it{of_values}");
             return Err(Fault::new(0..path.len(), message));
         }
+        let mut looked_at = top.len();
+        let mut inside = top.iter().flat_map(|one| one.children()).inspect(|_| looked_at += 1);
         let is_inside = elements.iter().all(|value| value.len() == 1)
             && match Test::of(first) {
                 Some(Test { name: None, .. }) => false,
-                Some(test) => {
-                    !top.iter().any(|one| test.is_of_name(*one))
-                        && top.iter().flat_map(|one| one.children()).any(|one| test.is_of_name(one))
-                }
-                None => first.starts_with('@') || first == "text()",
+                Some(test) => !top.iter().any(|one| test.is_of_name(*one)) && inside.any(|one| test.is_of_name(one)),
+                None => first.starts_with('@') || *first == "text()",
             };
+        look_at(looked_at, at, left)?;
         Ok(match is_inside {
             true => Self { around: top, ..Self::default() },
             false => Self { top, ..Self::default() },
@@ -226,16 +251,17 @@ impl<'a> Level<'a> {
     }
 
     /// All that is inside, to any depth: siblings beside each other.
-    fn deep(self) -> Self {
+    fn deep(self, at: &Range<usize>, left: &Cell<u64>) -> Result<Self, Fault> {
         let mut waiting = [&self.around[..], &self.top].concat();
         let (mut around, mut seen) = (Vec::new(), HashSet::new());
         while let Some(one) = waiting.pop() {
             if seen.insert(one.id()) {
+                look_at(DEEP, at, left)?;
                 around.push(one);
                 waiting.extend(one.children());
             }
         }
         around.sort_unstable_by_key(|one| one.id());
-        Self { around, top: self.top, is_deep: true }
+        Ok(Self { around, top: self.top, is_deep: true })
     }
 }

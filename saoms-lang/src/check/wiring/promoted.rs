@@ -60,7 +60,7 @@ pub(crate) fn reference(
     fleet: &Fleet<'_>,
     report: &mut Report<'_>,
 ) -> bool {
-    if reference.contract().interface.as_ref().is_none() && found.len() < 2 {
+    if reference.contract().interface.is_none() && found.len() < 2 {
         return true;
     }
     let mut interfaces = found.iter().filter_map(|(place, at)| Some((fleet.reference_interface(*place)?, *at)));
@@ -104,7 +104,9 @@ pub(crate) fn multiplicities<'f>(
     let mut fixed: Vec<(ReferenceId<'f>, Location)> = Vec::new();
     for place @ (member, name) in found {
         let own = fleet.members[member].component.reference(name);
-        let Some(takes) = fleet.multiplicity(place) else { continue };
+        // Of a class that is not found, which is reported, a reference takes one target as SCA says.
+        let usual = (fleet.members[member].kind == Kind::Nothing).then_some(Multiplicity::One);
+        let Some(takes) = fleet.multiplicity(place).or(usual) else { continue };
         let said = own.and_then(|own| own.non_overridable).filter(|said| said.value && !takes.is_many());
         fixed.extend(said.map(|said| (place, said.location)));
         let Some(outer) = by.multiplicity else { continue };

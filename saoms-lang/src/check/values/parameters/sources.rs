@@ -171,7 +171,8 @@ impl<'a> Parameters<'a> {
         let at = report.part(source, step.clone());
         if kind == FaultKind::TooMany {
             if !std::mem::replace(&mut self.is_told_of_elements, true) {
-                report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message));
+                let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message);
+                report.push(one.help("ask for parts by their names, by an attribute or by a place, without `//`"));
             }
             return;
         }

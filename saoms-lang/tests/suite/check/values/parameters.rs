@@ -72,8 +72,6 @@ fn sources_lead_to_composite_properties() {
     )));
 }
 
-/// What users need of XPath, and what is said of the rest.
-
 #[test]
 fn settings_take_the_place_of_composite_properties() {
     let text = fleet(&format!(
@@ -171,7 +169,6 @@ fn values_are_the_elements_that_properties_are_typed_by() {
 }
 
 /// Wherever a value comes from, it is held to the type of the property.
-
 #[test]
 fn values_from_outside_are_of_the_type_of_the_property() {
     let inside = robot(r#"<property name="speed" source="$speed"/>"#);
@@ -226,6 +223,7 @@ fn types_that_xml_schema_does_not_have_are_told_with_the_nearest() {
     assert_eq!(property("own:itn") + &property("xsd:unsignedByte"), "");
 }
 
+/// Where classes are taken as given, a composite may be there for components of others.
 #[test]
 fn a_value_that_a_component_has_to_give_is_awaited_of_one_that_is_not_seen() {
     let inside = r#"<property name="pace" mustSupply="true"/>
@@ -275,7 +273,6 @@ fn many_values_may_be_a_list_of_its_type() {
 }
 
 /// Each of many that takes all of many values would be the square of what the file has.
-
 #[test]
 fn sources_of_many_values_have_a_limit() {
     let inside = format!(
@@ -289,7 +286,6 @@ fn sources_of_many_values_have_a_limit() {
 }
 
 /// Each of many that takes a long text has it.
-
 #[test]
 fn sources_of_long_texts_have_a_limit() {
     let inside = format!(

@@ -5,6 +5,7 @@ use expect_test::expect;
 use crate::check::support::{faults, fleet, nested, outcome, part, shown};
 use crate::check::values::properties::robot;
 
+/// What users need of XPath, and what is said of the rest.
 #[test]
 fn sources_are_paths() {
     let bays = r#"<bays xmlns="urn:x" unit="m"><bay id="a"><x>3</x><y>4</y></bay><bay id="b/c"><x>5</x></bay><bay> 7 <x> 8 </x></bay></bays>"#;
@@ -128,8 +129,6 @@ fn what_is_given_no_value_has_no_parts_either() {
     )));
 }
 
-/// Where classes are taken as given, a composite may be there for components of others.
-
 #[test]
 fn paths_lead_to_any_depth_and_to_what_a_part_says() {
     let of = |source: &str, assume_classes: bool| {
@@ -185,7 +184,6 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
 }
 
 /// Values that are written beside each other are several, as those in `value` are.
-
 #[test]
 fn one_of_several_elements_is_asked_for_by_its_place() {
     let place = |x: u8| format!("<p:place xmlns=\"\"><x>{x}</x><y>4</y></p:place>");
@@ -206,7 +204,6 @@ fn one_of_several_elements_is_asked_for_by_its_place() {
 }
 
 /// A composite of another program may have an XPath that is more than a path.
-
 #[test]
 fn a_source_that_is_no_path_says_what_paths_are() {
     let text = part(
@@ -230,4 +227,31 @@ fn a_source_that_is_no_path_says_what_paths_are() {
             "#]].assert_eq(&all),
         }
     }
+}
+
+#[test]
+fn each_of_many_groups_is_searched_for_its_parts() {
+    let zone = |z: usize| format!("<zone id=\"z{z}\"><robot id=\"r{z}\"><speed>1.0{z:02}</speed></robot></zone>");
+    let zones: String = (0..70).map(zone).collect();
+    let taking = |z: usize| {
+        let source = format!("$zones/zone[@id='z{z}']/robot[@id='r{z}']/speed");
+        let one = robot(&format!("<property name=\"speed\" source=\"{source}\"/>"));
+        one.replace("name=\"R\"", &format!("name=\"R{z}\"")).replace(">R<", &format!(">R{z}<"))
+    };
+    let robots: String = (0..70).map(taking).collect();
+    let found = outcome(&[&fleet(&format!("<property name=\"zones\">{zones}</property>{robots}"))], &[]);
+    for (z, line) in found.lines().enumerate() {
+        assert!(line.contains(&format!("speed=Text(\"1.0{z:02}\")")), "{found}");
+    }
+    assert_eq!(found.lines().count(), 70, "{found}");
+}
+
+#[test]
+fn a_path_has_a_limit_of_steps() {
+    let path = |steps: usize| format!("$v{}", "/a[1]".repeat(steps));
+    let deep = format!("<property name=\"v\">{}1{}</property>", "<a>".repeat(101), "</a>".repeat(101));
+    let taking =
+        |path: &str| faults(&(deep.clone() + &robot(&format!("<property name=\"speed\" source=\"{path}\"/>"))));
+    assert!(!taking(&path(100)).contains("steps"));
+    assert!(taking(&path(101)).contains("error S2023: a path has at most 100 steps"), "{}", taking(&path(101)));
 }

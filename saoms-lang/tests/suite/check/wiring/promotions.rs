@@ -67,6 +67,16 @@ fn what_is_wrong_with_several_that_are_promoted_together_is_told_once() {
 }
 
 #[test]
+fn what_a_promotion_must_keep_is_told_beside_a_class_that_is_not_there() {
+    let component =
+        "<component name='B'><implementation.java class='x.B'/><reference name='q' nonOverridable='true'/></component>";
+    let found = found(&format!("{component}<reference name='d' multiplicity='0..n' promote='B/q'/>"), TYPE, false);
+    for code in ["S3001", "S2036", "S2037"] {
+        assert!(found.contains(code), "{code}: {found}");
+    }
+}
+
+#[test]
 fn interfaces_of_composites_are_those_of_the_classes() {
     let wrong = "<component name='N'><implementation.java class='example.Navigator'/></component>
 <component name='R'><implementation.java class='example.Robot001'/><property name='ID'>R</property><property name='period'>1</property></component>
