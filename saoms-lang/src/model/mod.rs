@@ -3,7 +3,7 @@
 //! A [`Composite`] is what [`load`](crate::load) makes of one file. Nothing is resolved: includes, promotions, targets
 //! and sources of properties are texts with places. Values that the file leaves out are `None` or empty, defaults are
 //! for the checker to apply. Foreign elements and attributes are not copied: they are in the composite's
-//! [`Document`](crate::syntax::Document), reached through each part's [`Origin`].
+//! [`Document`], reached through each part's [`Origin`].
 
 /// Parts of the model by their types.
 macro_rules! parts {

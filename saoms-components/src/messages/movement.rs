@@ -1,11 +1,16 @@
+//! Where robots are and go.
+
 use std::fmt;
 
 use saoms_api::{Field, Message, Topic};
 
 use crate::grid::{Block, Map};
+use crate::hardware::Area;
 use crate::validation::{MessageValidator, Problem, Validate, of_robot};
 
 /// Position and next blocks of each robot, the newest message of each.
+///
+/// Published by robots; read by robots.
 pub const POSITION: Topic<Position> = Topic::state("POSTOPIC");
 
 /// Priority of a robot that never makes way: it handles luggage, has to charge, or cannot move.
@@ -80,3 +85,35 @@ impl Validate for Position {
         validator.check_speaker(self.robot, sender)
     }
 }
+
+/// Collisions of robots.
+///
+/// Published by the world, or robots without one; read by observers of the fleet.
+pub const COLLISION: Topic<Collision> = Topic::event("COLLISIONTOPIC").optional();
+
+/// A collision of two robots.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+pub struct Collision {
+    /// Number of the robot that entered the block.
+    pub robot: u32,
+    /// Number of the robot that held it.
+    pub other: u32,
+    /// Block of the collision.
+    pub block: Block,
+    /// True if the two robots exchanged their blocks. It is the same collision that was reported before as a meeting in
+    /// one block.
+    pub swap: bool,
+}
+
+impl fmt::Display for Collision {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Collision { robot, other, block, swap } = self;
+        let what = if *swap { "collide: they exchange blocks at" } else { "collide at" };
+        write!(formatter, "robots {robot} and {other} {what} {block}")
+    }
+}
+
+/// The map that the robots share, published when the world starts.
+///
+/// Published by the world; read by the master of the environment, the environment and observers of the fleet.
+pub const AREA: Topic<Area> = Topic::state("AREATOPIC");

@@ -1,0 +1,216 @@
+//! What the environment tells the fleet: luggage, exceptional events and faults.
+
+use std::fmt;
+
+use saoms_api::{Field, Message, Topic};
+
+use crate::grid::{Block, Map};
+use crate::validation::{MessageValidator, Problem, Validate, of_robot};
+
+/// Events of any kind from the environment.
+///
+/// Published by the environment, or anyone; read by the master of the environment and the world.
+pub const ENVIRONMENT: Topic<EnvironmentEvent> = Topic::event("ETOPIC");
+
+/// Events outside the fleet: new luggage, exceptional events and faults, one or several at once.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+pub struct EnvironmentEvent {
+    /// Requests to bring luggage.
+    pub luggage: Vec<EventLuggage>,
+    /// Landings and take-offs.
+    pub exceptional: Vec<ExceptionalEvent>,
+    /// Faults of robots.
+    pub faults: Vec<Fault>,
+}
+
+impl From<EventLuggage> for EnvironmentEvent {
+    fn from(luggage: EventLuggage) -> EnvironmentEvent {
+        EnvironmentEvent { luggage: vec![luggage], ..EnvironmentEvent::default() }
+    }
+}
+
+impl From<ExceptionalEvent> for EnvironmentEvent {
+    fn from(event: ExceptionalEvent) -> EnvironmentEvent {
+        EnvironmentEvent { exceptional: vec![event], ..EnvironmentEvent::default() }
+    }
+}
+
+impl From<Fault> for EnvironmentEvent {
+    fn from(fault: Fault) -> EnvironmentEvent {
+        EnvironmentEvent { faults: vec![fault], ..EnvironmentEvent::default() }
+    }
+}
+
+/// Requests to bring luggage, and the robots' responses.
+///
+/// Published by the master of the environment and robots; read by robots, the master of the environment, the
+/// environment and the world.
+pub const EVENT_LUGGAGE: Topic<EventLuggage> = Topic::event("ELMSTOPIC");
+
+/// Stages of an [`EventLuggage`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+pub enum LuggageStage {
+    /// The luggage waits for a robot.
+    #[default]
+    Request,
+    /// The robot is interested and reports its position.
+    Interest,
+    /// The robot takes its interest back: another robot is closer.
+    Release,
+    /// The robot brings the luggage; no other robot has to.
+    Taken,
+    /// The robot has brought the luggage to its destination.
+    Delivered,
+    /// The robot can never bring the luggage.
+    Refused,
+    /// No robot can bring the luggage; it is no open work any more.
+    GivenUp,
+}
+
+/// A request to bring luggage from one block to another, or the response of a robot.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+pub struct EventLuggage {
+    /// Number of the robot that responds; 0 in a request.
+    pub robot: u32,
+    /// Number of the luggage.
+    pub luggage: u32,
+    /// Request, or kind of response.
+    pub stage: LuggageStage,
+    /// Block where the luggage is collected.
+    pub from: Block,
+    /// Block where the luggage is deposited.
+    pub to: Block,
+    /// Position of the robot that responds; without meaning in a request.
+    pub block: Block,
+}
+
+impl EventLuggage {
+    /// A request.
+    pub const fn request(luggage: u32, from: Block, to: Block) -> EventLuggage {
+        EventLuggage { robot: 0, luggage, stage: LuggageStage::Request, from, to, block: from }
+    }
+
+    /// A report that no robot can bring the luggage of a request.
+    pub const fn given_up(luggage: u32, from: Block, to: Block) -> EventLuggage {
+        EventLuggage { stage: LuggageStage::GivenUp, ..EventLuggage::request(luggage, from, to) }
+    }
+}
+
+impl fmt::Display for EventLuggage {
+    /// Format of the console in the manual's figures.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "Luggage to bring from {} to {}", self.from, self.to)
+    }
+}
+
+impl Validate for EventLuggage {
+    const WHAT: &'static str = "a message";
+
+    fn about(&self) -> String {
+        format!("luggage {} from {} to {}", self.luggage, self.from, self.to)
+    }
+
+    fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+        let EventLuggage { robot, from, to, block, .. } = *self;
+        match self.stage {
+            LuggageStage::Request => Problem::of_request(self, area),
+            // The component that requested luggage gives it up in nobody's name, even if the request was impossible.
+            LuggageStage::GivenUp if robot == 0 => Ok(()),
+            LuggageStage::Interest
+            | LuggageStage::Release
+            | LuggageStage::Taken
+            | LuggageStage::Delivered
+            | LuggageStage::Refused
+            | LuggageStage::GivenUp => {
+                for block in [from, to, block] {
+                    Problem::of_block(block, area)?;
+                }
+                validator.check_known_speaker(robot, sender)
+            }
+        }
+    }
+}
+
+/// Events that change the number of robots that are needed.
+///
+/// Published by the master of the environment; read by the master of the robots.
+pub const EXCEPTIONAL_EVENT: Topic<ExceptionalEvent> = Topic::event("EETOPIC").optional();
+
+/// Kinds of exceptional events.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+pub enum ExceptionalKind {
+    /// An airplane landed.
+    #[default]
+    Landing,
+    /// An airplane is about to take off.
+    Takeoff,
+}
+
+/// An event that brings more luggage than usual.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+pub struct ExceptionalEvent {
+    /// Landing or take-off.
+    pub kind: ExceptionalKind,
+    /// Number of pieces of luggage that are expected.
+    pub pieces: u32,
+}
+
+impl fmt::Display for ExceptionalEvent {
+    /// Format of the console in the manual's figures.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = match self.kind {
+            ExceptionalKind::Landing => "LANDING",
+            ExceptionalKind::Takeoff => "TAKEOFF",
+        };
+        write!(formatter, "{kind} with {} expected pieces of luggage", self.pieces)
+    }
+}
+
+/// Faults of robots.
+///
+/// Published by the master of the environment; read by robots.
+pub const FAULT: Topic<Fault> = Topic::event("FAULTTOPIC");
+
+/// Kinds of faults.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+pub enum FaultKind {
+    /// The robot can neither move nor handle luggage any more.
+    #[default]
+    Breakdown,
+}
+
+/// A fault of a robot.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+pub struct Fault {
+    /// Number of the robot.
+    pub robot: u32,
+    /// Kind of the fault.
+    pub kind: FaultKind,
+}
+
+impl Fault {
+    /// The breakdown of a robot.
+    pub const fn breakdown(robot: u32) -> Fault {
+        Fault { robot, kind: FaultKind::Breakdown }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.kind {
+            FaultKind::Breakdown => write!(formatter, "robot {} breaks down", self.robot),
+        }
+    }
+}
+
+impl Validate for Fault {
+    const WHAT: &'static str = "a fault";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+        validator.check_known(self.robot)
+    }
+}
