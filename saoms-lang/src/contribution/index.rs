@@ -33,7 +33,7 @@ pub(super) struct Index {
     open: OpenTexts,
 }
 
-/// What a folder or a contribution has, sorted.
+/// Files and folders of a folder or a contribution, sorted.
 #[derive(Debug, Default)]
 pub(super) struct Listing {
     pub(super) composites: Vec<PathBuf>,

@@ -57,7 +57,7 @@ pub struct Property {
     pub value: Option<Text>,
     /// The text inside, trimmed; `None` when there is none but white space.
     pub text: Option<Text>,
-    /// What few properties have, in a box: a composite may have very many. The methods give it.
+    /// Rarely needed fields, boxed: a composite may have very many properties. The methods give them.
     pub details: Option<Box<PropertyDetails>>,
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Where a text stands, which decides what its characters mean.
+/// The surroundings of a text, which decide what its characters mean.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// In an attribute, where each white space character is a blank (XML 1.0, 3.3.3).

@@ -42,7 +42,7 @@ pub(crate) struct Fleet<'a> {
     pub(crate) is_misread: bool,
     /// The scopes of expressions in units that have any.
     pub(crate) names: Vec<Option<Rc<Names>>>,
-    /// How many more elements the paths of sources may look at.
+    /// The rest of the elements that paths of sources may look at.
     pub(crate) elements_left: Rc<Cell<u64>>,
 }
 

@@ -19,7 +19,7 @@ use crate::syntax::SourceMap;
 pub(crate) struct Report<'a> {
     sources: &'a Sources,
     diagnostics: &'a mut Diagnostics,
-    /// How many right names may still be looked at for wrong ones.
+    /// The rest of the right names that may be compared with wrong ones.
     candidates: Candidates,
     /// The prefixes of types that are bound to nothing, by their files.
     unbound: HashSet<(FileId, String)>,
@@ -53,10 +53,10 @@ struct ReplicaDiagnostic {
     more: usize,
 }
 
-/// How many diagnostics about replicas are kept together; further ones are told as they come.
+/// Limit of diagnostics about replicas that are kept together; further ones are told as they come.
 const MOST_COPIES: usize = 2000;
 
-/// How many diagnostics are remembered.
+/// Limit of diagnostics that are remembered.
 const REMEMBERED: usize = 20_000;
 
 impl<'a> Report<'a> {

@@ -119,7 +119,7 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     pub(crate) report: &'r mut Report<'s>,
     /// True if errors about unknown attributes may be let pass.
     pub(crate) lowers_attributes: bool,
-    /// How many components composites come to, by their place, as far as that was asked.
+    /// Numbers of components in composites, by the places of these, as far as they were asked for.
     sizes: HashMap<usize, usize>,
     pub(crate) replicas: Appender<'a, Replica>,
     pub(crate) replicas_left: u64,

@@ -14,7 +14,7 @@ use crate::syntax::Document;
 pub(crate) struct Instance {
     pub(crate) index: i64,
     pub(crate) names: Rc<Names>,
-    /// Where it stands for replicas that cannot be made: what is missing of it.
+    /// The missing part, where it stands for replicas that cannot be made.
     pub(crate) partial: Option<Partial>,
 }
 

@@ -41,7 +41,8 @@ impl<'a> Raw<'a> {
         self.0.iter().map(length).sum()
     }
 
-    /// What components take of a property of this declaration: what is inside of each `element` that is its type.
+    /// The values that components take of a property of this declaration: what is inside of each `element` that is its
+    /// type.
     pub(crate) fn inside_elements_of(self, property: &Property) -> Self {
         let Some(of) = property.element() else { return self };
         let is_it = |one: &Element<'_>| one.local_name() == local(of);

@@ -29,13 +29,13 @@ pub(crate) struct Parameters<'a> {
     options: &'a Options,
     values: Budget,
     text: Budget,
-    /// How many more elements the paths of sources may look at.
+    /// The rest of the elements that paths of sources may look at.
     elements_left: Rc<Cell<u64>>,
     /// True if it is told that they look at too many.
     is_told_of_elements: bool,
 }
 
-/// What sources can lead to in all: each component that takes a value has it.
+/// Limits of what sources lead to in all: each component that takes a value has it.
 struct Budget {
     left: usize,
     most: &'static str,
