@@ -11,7 +11,7 @@ use super::raw::{Piece, Raw};
 use crate::model::Property;
 use crate::syntax::Element;
 
-/// Elements that the steps of all paths of a fleet may look at.
+/// Elements that the steps of all paths of a fleet may look at, those that take longer counted several times.
 pub(crate) const MOST_LOOKED_AT: u64 = 200_000_000;
 
 /// Elements in the tables that are kept for one value.
@@ -112,6 +112,7 @@ impl<'a> SharedValues<'a> {
     ) -> Result<Raw<'a>, Fault> {
         let instance = values.iter().find_map(Piece::instance);
         let mut steps = all.iter();
+        // Once the limit is reached, no path is walked any more.
         look_at(0, &all[0].0, left)?;
         // From the last step on of which it is known where it leads.
         let known = (1..=all.len()).rev().find_map(|count| Some((count, self.known(path, &all[count - 1])?)));
