@@ -1,11 +1,14 @@
 //! The command line: one file or folder per subcommand, with its options and what it does.
 
 mod check;
+mod completions;
 mod components;
 mod expand;
+mod explain;
 mod fmt;
 mod graph;
 pub(crate) mod lsp;
+mod man;
 mod new;
 mod run;
 mod schema;
@@ -14,7 +17,7 @@ mod why;
 use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::Exit;
 
@@ -38,6 +41,7 @@ struct Arguments {
 enum Command {
     Run(run::RunArguments),
     Check(check::CheckArguments),
+    Explain(explain::ExplainArguments),
     Expand(expand::ExpandArguments),
     Fmt(fmt::FmtArguments),
     Graph(graph::GraphArguments),
@@ -46,6 +50,8 @@ enum Command {
     Schema(schema::SchemaArguments),
     Lsp(lsp::LspArguments),
     Components(components::ComponentsArguments),
+    Completions(completions::CompletionsArguments),
+    Man(man::ManArguments),
 }
 
 /// Parses the command line and executes its subcommand.
@@ -53,6 +59,7 @@ pub(crate) fn execute() -> Exit {
     match parsed().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
+        Command::Explain(arguments) => explain::explain(&arguments),
         Command::Expand(arguments) => expand::expand(&arguments),
         Command::Fmt(arguments) => fmt::fmt(&arguments),
         Command::Graph(arguments) => graph::graph(&arguments),
@@ -61,6 +68,8 @@ pub(crate) fn execute() -> Exit {
         Command::Schema(arguments) => schema::schema(&arguments),
         Command::Lsp(arguments) => lsp::lsp(&arguments),
         Command::Components(arguments) => components::components(&arguments),
+        Command::Completions(arguments) => completions::completions(&arguments, Arguments::command()),
+        Command::Man(arguments) => man::man(&arguments, Arguments::command()),
     }
 }
 

@@ -59,6 +59,8 @@ fn what_a_library_offers_is_listed_and_runs_not() {
     let rules = listed["rules"].as_array().unwrap();
     let rule = rules.iter().find(|rule| rule["code"] == "X0001").unwrap();
     assert_eq!((&rule["severity"], &rule["library"]), (&"warning".into(), &good.to_str().unwrap().into()));
+    let run = saoms(folder.path(), &["explain", "one-sender", "--plugin", good.to_str().unwrap()]);
+    assert!(run.text.starts_with("X0001 one-sender (warning)\n\nA fleet has several senders"), "{}", run.text);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod contributions;
 mod events;
+mod explain;
 mod fmt;
 mod graph;
 mod new;

@@ -254,7 +254,7 @@ fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {
     let one = Diagnostic::new(&codes::SEVERITY, code.location, format!("there is no code {}", quoted(code)));
     match meant(code, known) {
         Some(meant) => one.replace(code, code.location, meant),
-        None => one.help("each diagnostic shows its code, and `docs/diagnostics.md` lists them"),
+        None => one.help("each diagnostic shows its code, and `saoms explain` lists them"),
     }
 }
 

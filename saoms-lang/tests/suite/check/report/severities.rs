@@ -237,7 +237,7 @@ fn what_is_wrong_with_severities_is_found() {
         --severity:1:1-7 error S2048: there is no code `S40001`
           fix: replace `S40001` with `S0001` [--severity:1:1-7 "S0001"]
         --severity:1:1-1 error S2048: there is no code ``
-          help: each diagnostic shows its code, and `docs/diagnostics.md` lists them
+          help: each diagnostic shows its code, and `saoms explain` lists them
         --severity:1:1-8 error S2048: there is no code `unwired`
           fix: replace `unwired` with `S2018` [--severity:1:1-8 "S2018"]
         2:23-27 error S2048: there is no code `S400`
