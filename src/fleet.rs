@@ -2,16 +2,17 @@
 
 use std::env;
 use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
 
 use saoms_lang::diagnostic::{Diagnostic, Human, Sarif, Severity, json, sarif};
-use saoms_lang::project::{Compilation, Compilations, Project};
+use saoms_lang::project::{Compilation, Compilations, INPUT, Project};
 use saoms_lang::source::Sources;
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::plugins::{CommandClasses, usable};
+use crate::plugins::{CommandClasses, search, usable};
 
 /// The project of a command line.
 pub(crate) fn project(arguments: &FleetArguments) -> Project {
@@ -35,6 +36,16 @@ pub(crate) fn compiled<T>(
     let compilation = step(project(arguments), &classes);
     usable(&compilation.problems)?;
     Ok(compilation)
+}
+
+/// The files that a compilation read, of composites and of plugins: no output may go there.
+pub(crate) fn files_read<T>(of: &Compilation<T>, arguments: &FleetArguments) -> Vec<PathBuf> {
+    let asked_for = of.contribution.asked_for().iter().map(|one| of.sources.get(one.file()).path().into());
+    let mut all = of.sources.open().files_read();
+    all.extend(search(&arguments.plugins, &asked_for.collect::<Vec<PathBuf>>()).files());
+    all.extend(of.registry.origins().map(Path::to_owned));
+    all.extend(arguments.files.iter().filter(|path| *path == Path::new(INPUT)).cloned());
+    all
 }
 
 /// Diagnostics as they are shown.

@@ -29,5 +29,8 @@ enum Exit {
 
 fn main() -> ExitCode {
     // clap itself ends with 2 on a wrong command line, which is wrong input too.
-    ExitCode::from(command::execute() as u8)
+    let exit = command::execute();
+    // Whatever else there is to say of it: who reads the output lacks a part.
+    let exit = if output::has_failed() { Exit::Failed } else { exit };
+    ExitCode::from(exit as u8)
 }

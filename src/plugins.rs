@@ -43,6 +43,11 @@ impl ClassPath for CommandClasses<'_> {
     }
 }
 
+/// The files of plugins that a command without composites reads.
+pub(crate) fn files_read(arguments: &PluginArguments) -> Vec<PathBuf> {
+    search(arguments, &[]).files()
+}
+
 /// The registry of a command without composites.
 ///
 /// # Errors

@@ -2,11 +2,8 @@
 
 use std::collections::HashSet;
 use std::fmt::{self, Display};
-use std::fs::{self, OpenOptions, Permissions};
-use std::io::{self, BufWriter, IsTerminal, Write};
-use std::os::unix::fs::OpenOptionsExt;
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
-use std::process;
 
 use clap::Args;
 use saoms_lang::contribution::composites_below;
@@ -18,7 +15,7 @@ use saoms_tools::format::Formatted;
 
 use crate::Exit;
 use crate::arguments::parse_size;
-use crate::output::{eprint, print, try_print};
+use crate::output::{Place, eprint, print, replace};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -115,9 +112,17 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
         return if is_same { Outcome::Formatted } else { Outcome::Unformatted };
     }
     let written = match (is_input, is_same) {
-        (true, _) => try_print(&formatted),
+        (true, _) => {
+            print(&formatted);
+            Ok(())
+        }
         (false, true) => Ok(()),
-        (false, false) => replace(path, &formatted),
+        // What links lead to is replaced, not the link.
+        (false, false) => match Place::of(path) {
+            Ok(Place::File(path)) => replace(&path, |to| write!(to, "{formatted}")),
+            Ok(_) => Err(io::Error::other("it is no regular file")),
+            Err(error) => Err(error),
+        },
     };
     written.map_or_else(Outcome::NotWritten, |()| Outcome::Formatted)
 }
@@ -141,36 +146,4 @@ fn is_same(shown: &impl Display, text: &str) -> bool {
     }
     let mut rest = Rest(text);
     fmt::Write::write_fmt(&mut rest, format_args!("{shown}")).is_ok() && rest.0.is_empty()
-}
-
-/// Gives the file another text, whole or not at all: the text is written beside it and takes its name.
-fn replace(path: &Path, text: &impl Display) -> io::Result<()> {
-    // What links lead to is replaced, not the link.
-    let path = fs::canonicalize(path)?;
-    let about = fs::metadata(&path)?;
-    if !about.is_file() {
-        return Err(io::Error::other("it is no regular file"));
-    }
-    // A file that its user may not write is not replaced either.
-    OpenOptions::new().write(true).open(&path)?;
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let beside = folder.join(format!(".{name}.{}.new", process::id()));
-    let written = write_new(&beside, text, about.permissions()).and_then(|()| fs::rename(&beside, &path));
-    if written.is_err() {
-        // Whatever is left of it is of no use, and may not be there at all.
-        let _ = fs::remove_file(&beside);
-    }
-    written
-}
-
-/// Writes a file that is not there yet, with these permissions, up to the disk.
-fn write_new(path: &Path, text: &impl Display, permissions: Permissions) -> io::Result<()> {
-    // Nobody else reads a text that the file it replaces may keep from them.
-    let file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(path)?;
-    let mut buffered = BufWriter::new(&file);
-    write!(buffered, "{text}")?;
-    buffered.flush()?;
-    file.set_permissions(permissions)?;
-    file.sync_all()
 }

@@ -1,25 +1,24 @@
 //! `saoms graph`: draws a composite.
 
-use std::fmt::Display;
-use std::fs::File;
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use saoms_lang::diagnostic::{Diagnostic, Human, Severity};
-use saoms_lang::project::{SET, SEVERITY};
+use saoms_lang::project::{INPUT, SET, SEVERITY};
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
-use crate::fleet::compiled;
-use crate::output::{eprint, unless_closed};
+use crate::fleet::{compiled, files_read};
+use crate::output::{Asked, Outputs, eprint};
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0  drawn, also where the composite has mistakes: what is missing is drawn so
   1  the picture could not be written
-  2  the file cannot be read or is no composite, or nothing says the format";
+  2  the file cannot be read or is no composite, nothing says the format, or the picture would be written over a
+     file that was read";
 
 /// Draw composites: components, services, references, properties, wires, promotions, topics
 #[derive(Debug, Args)]
@@ -87,6 +86,12 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows what is wrong\n"));
     }
     let diagram = Diagram::of(contribution, &compilation.registry, census);
+    let path = arguments.output.as_deref().unwrap_or(Path::new(INPUT));
+    let asked = Asked { what: "picture", option: "--output", path, grows: false };
+    let place = match Outputs::beside(files_read(&compilation, fleet)).add(asked) {
+        Ok(place) => place,
+        Err(refused) => return refused.told(),
+    };
     // A picture of a large composite needs the memory.
     drop(compilation);
     let text = match picture {
@@ -94,24 +99,13 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         PictureFormat::Mermaid => mermaid(&diagram),
         PictureFormat::Dot => dot(&diagram),
     };
-    let written = match path {
-        Some(path) => File::create(path).and_then(|file| written(file, text)),
-        None => unless_closed(written(io::stdout().lock(), text)),
-    };
-    match written {
+    match place.open().and_then(|sink| sink.write(|to| write!(to, "{text}"))) {
         Ok(()) => Exit::Done,
         Err(error) => {
-            let name = path.map_or_else(|| "-".to_owned(), |path| path.display().to_string());
-            eprint(&format!("error: the picture cannot be written to `{name}`: {error}\n"));
+            eprint(&asked.unwritable(&error));
             Exit::Failed
         }
     }
-}
-
-fn written(to: impl Write, text: impl Display) -> io::Result<()> {
-    let mut to = BufWriter::new(to);
-    write!(to, "{text}")?;
-    to.flush()
 }
 
 fn by_ending(path: &Path) -> Option<PictureFormat> {

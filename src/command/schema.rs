@@ -1,23 +1,21 @@
 //! `saoms schema`: writes the language of composites as XML schemas, for editors.
 
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use saoms_lang::registry::Registry;
 use saoms_tools::xsd::{Xsd, catalog, schemas};
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
-use crate::output::{eprint, print};
-use crate::plugins::registry;
+use crate::output::{Asked, Outputs, Place, Refused, print};
+use crate::plugins::{files_read, registry};
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0  written; the names of the files are on standard output
   1  a file could not be written
-  2  a plugin cannot be used";
+  2  a plugin cannot be used, or would be written over";
 
 /// Write the language of composites, with all classes and properties, as XML schemas for editors
 #[derive(Debug, Args)]
@@ -58,24 +56,29 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Exit {
         XsdVersion::V1_1 => Xsd::V1_1,
     };
     let folder = &arguments.output;
-    match write(folder, &registry, xsd) {
-        Ok(files) => {
-            files.iter().for_each(|file| print(&format!("{}\n", folder.join(file).display())));
+    let schemas = schemas(&registry, xsd);
+    let catalog = catalog(&schemas);
+    let texts = schemas.iter().map(|schema| (folder.join(schema.file), &schema.text));
+    let texts: Vec<(PathBuf, &String)> = texts.chain([(folder.join(CATALOG), &catalog)]).collect();
+    match write(folder, &texts, files_read(&arguments.plugins)) {
+        Ok(()) => {
+            texts.iter().for_each(|(path, _)| print(&format!("{}\n", path.display())));
             Exit::Done
         }
-        Err((name, error)) => {
-            let path = folder.join(name);
-            eprint(&format!("error: the schema cannot be written to `{}`: {error}\n", path.display()));
-            Exit::Failed
-        }
+        Err(refused) => refused.told(),
     }
 }
 
-/// Writes all files; their names, or the name of the one that could not be written.
-fn write(folder: &Path, registry: &Registry, xsd: Xsd) -> Result<Vec<&'static str>, (&'static str, io::Error)> {
-    fs::create_dir_all(folder).map_err(|error| ("", error))?;
-    let schemas = schemas(registry, xsd);
-    let catalog = catalog(&schemas);
-    let texts = schemas.iter().map(|schema| (schema.file, &schema.text)).chain([(CATALOG, &catalog)]);
-    texts.map(|(file, text)| fs::write(folder.join(file), text).map(|()| file).map_err(|error| (file, error))).collect()
+/// Writes all texts, beside files that are read.
+fn write(folder: &Path, texts: &[(PathBuf, &String)], read: Vec<PathBuf>) -> Result<(), Refused> {
+    let asked = |path| Asked { what: "schema", option: "--output", path, grows: false };
+    fs::create_dir_all(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
+    let mut outputs = Outputs::beside(read);
+    // None is written where one is refused.
+    let places: Vec<Place> = texts.iter().map(|(path, _)| outputs.add(asked(path))).collect::<Result<_, _>>()?;
+    for (place, (path, text)) in places.into_iter().zip(texts) {
+        let written = place.open().and_then(|sink| sink.write(|to| to.write_all(text.as_bytes())));
+        written.map_err(|error| Refused::Unwritable(asked(path).unwritable(&error)))?;
+    }
+    Ok(())
 }

@@ -144,23 +144,19 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
         if line.trim().is_empty() {
             continue;
         }
-        if line.starts_with("{\"end\"") {
-            let last: EndLine = serde_json::from_str(line)
-                .map_err(|error| malformed(number, &error, "this is not how a journal ends"))?;
-            end = Some(last.end);
-            continue;
-        }
-        if line.starts_with("{\"joined\"") {
-            let joined: Joined = serde_json::from_str(line)
-                .map_err(|error| malformed(number, &error, "this is no component of a journal"))?;
-            head.components.push(joined.joined);
-            continue;
-        }
-        match serde_json::from_str::<JournalEntry>(line) {
-            Ok(entry) => entries.push(entry),
-            // A run that goes on, or was killed, may have written half of its last line.
+        let (read, what) = if line.starts_with("{\"end\"") {
+            let last = serde_json::from_str(line).map(|EndLine { end: last }| end = Some(last));
+            (last, "this is not how a journal ends")
+        } else if line.starts_with("{\"joined\"") {
+            let joined = serde_json::from_str(line).map(|Joined { joined }| head.components.push(joined));
+            (joined, "this is no component of a journal")
+        } else {
+            (serde_json::from_str(line).map(|entry| entries.push(entry)), "this is no record of a journal")
+        };
+        match read {
+            // A run that goes on, or was killed, may have written a part of its last line.
             Err(error) if error.is_eof() && lines.peek().is_none() && !text.ends_with('\n') => {}
-            Err(error) => return Err(malformed(number, &error, "this is no record of a journal")),
+            read => read.map_err(|error| malformed(number, &error, what))?,
         }
     }
     let entries = in_order(entries).map_err(|wrong| incomplete(1, wrong.to_string()))?;

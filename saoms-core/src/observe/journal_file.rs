@@ -1,7 +1,7 @@
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use saoms_api::{Failure, Time};
@@ -11,10 +11,12 @@ use super::{Beginning, Interest, Observer, Records};
 
 /// An observer that writes every record of the journal to a file, as lines of JSON.
 ///
-/// The file is created when the fleet starts. The first line holds the format version and the components, the last one
-/// the end of the run.
+/// The file is created when the fleet starts, and holds whole lines at any time but while one is written. The first line
+/// holds the format version and the components, the last one the end of the run.
 pub struct JournalFile {
     path: PathBuf,
+    /// What is written in place of a file at the path.
+    given: Mutex<Option<File>>,
     file: Mutex<Option<Open>>,
 }
 
@@ -28,7 +30,12 @@ struct Open {
 impl JournalFile {
     /// The observer that writes to this path.
     pub fn new(path: impl Into<PathBuf>) -> JournalFile {
-        JournalFile { path: path.into(), file: Mutex::default() }
+        JournalFile { path: path.into(), given: Mutex::default(), file: Mutex::default() }
+    }
+
+    /// The observer that writes to an open file, as a pipe, that messages call by this path.
+    pub fn to(file: File, path: impl Into<PathBuf>) -> JournalFile {
+        JournalFile { given: Mutex::new(Some(file)), ..JournalFile::new(path) }
     }
 }
 
@@ -44,7 +51,10 @@ impl Observer for JournalFile {
     }
 
     fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
-        let open = Open::create(&self.path, beginning)
+        let given = self.given.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let open = given
+            .map_or_else(|| File::create(&self.path), Ok)
+            .and_then(|file| Open::begin(file, beginning))
             .map_err(|error| Failure::new(format!("the journal cannot be written: {error}")))?;
         *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some(open);
         Ok(())
@@ -61,8 +71,7 @@ impl Observer for JournalFile {
 }
 
 impl Open {
-    fn create(path: &Path, beginning: &Beginning<'_>) -> io::Result<Open> {
-        let mut file = File::create(path)?;
+    fn begin(mut file: File, beginning: &Beginning<'_>) -> io::Result<Open> {
         let clock = if beginning.is_virtual { "virtual" } else { "real" };
         let head = json!({
             "journal": 1, "seed": beginning.seed, "clock": clock, "components": beginning.components

@@ -55,6 +55,12 @@ impl Search {
         Classes { registry, libraries: Some(Rc::new(self.clone())), problems }
     }
 
+    /// The libraries in all places, each of which [`run`](Search::run) reads.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let named = self.named.iter().flat_map(|path| if path.is_dir() { libraries(path) } else { vec![path.clone()] });
+        named.chain(self.folders.iter().flat_map(|folder| libraries(folder))).collect()
+    }
+
     /// Reads the metadata of all libraries. No code of them runs.
     pub fn run(&self) -> FoundLibraries {
         let mut found = FoundLibraries::default();

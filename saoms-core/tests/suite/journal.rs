@@ -205,6 +205,23 @@ fn the_file_is_whole_in_real_time_too() {
 }
 
 #[test]
+fn a_file_that_is_cut_off_anywhere_is_read_up_to_its_last_whole_line() {
+    let (_folder, path) = place();
+    run_to_file(PAIR, simulated(400), &path);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (head, rest) = text.split_at(text.find('\n').unwrap() + 1);
+    let rest = format!("{rest}{{\"joined\":{{\"name\":\"Late\",\"id\":null}}}}\n");
+    for end in 0..rest.len() {
+        let (cut, whole) = (&rest[..end], rest[..end].matches('\n').count());
+        let entries = rest.lines().take(whole).filter(|line| line.starts_with("{\"id\"")).count();
+        let document = read(&format!("{head}{cut}")).unwrap_or_else(|error| panic!("{cut}: {error}"));
+        // A line that lacks nothing but its end is whole as well.
+        let found = document.journal.entries().len();
+        assert!(found == entries || found == entries + 1 && cut.ends_with('}'), "{cut}");
+    }
+}
+
+#[test]
 fn a_file_that_takes_nothing_fails_the_run_and_says_why() {
     let full = Arc::new(JournalFile::new("/dev/full"));
     let error = RunningFleet::start(fleet(PAIR), simulated(1000), vec![full]).unwrap_err();

@@ -1,7 +1,7 @@
 //! The first tags of files.
 
 use std::borrow::Cow;
-use std::fs::{self, File};
+use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -62,7 +62,7 @@ fn first_tag<T>(path: &Path, open: &OpenTexts, make: impl FnOnce(&BytesStart<'_>
         if !fs::metadata(path).ok()?.is_file() {
             return None;
         }
-        File::open(path).ok()?.take(FIRST_TAG_BYTES).read_to_end(&mut bytes).ok()?;
+        open.read(path).ok()?.take(FIRST_TAG_BYTES).read_to_end(&mut bytes).ok()?;
         String::from_utf8_lossy(&bytes)
     };
     let mut reader = Reader::from_str(text.trim_start_matches('\u{feff}'));

@@ -1,6 +1,6 @@
 //! Reading files.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -205,7 +205,7 @@ fn bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failur
     if about.len() > max_size {
         return Err(Failure::TooLarge(Some(about.len())));
     }
-    let file = File::open(path).map_err(Failure::Io)?;
+    let file = open.read(path).map_err(Failure::Io)?;
     limited(file, Vec::with_capacity(about.len() as usize + 1), max_size)
 }
 

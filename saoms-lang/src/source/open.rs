@@ -1,29 +1,47 @@
-//! Texts that editors hold and have not saved.
+//! Texts that editors hold and have not saved, and the files that are read beside them.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Texts that count in place of what their files hold on disk.
 #[derive(Clone, Debug, Default)]
-pub struct OpenTexts(HashMap<PathBuf, Arc<String>>);
+pub struct OpenTexts {
+    texts: HashMap<PathBuf, Arc<String>>,
+    /// The files that were read from disk, of all clones together.
+    read: Arc<Mutex<BTreeSet<PathBuf>>>,
+}
 
 impl OpenTexts {
     /// Gives the file at `path`, which need not exist, another text.
     pub fn insert(&mut self, path: &Path, text: impl Into<Arc<String>>) {
-        self.0.insert(identity(path), text.into());
+        self.texts.insert(identity(path), text.into());
     }
 
     /// The text for the file at `path`, however the path is written.
     pub fn get(&self, path: &Path) -> Option<&Arc<String>> {
         // As a rule there are none, and then nobody has to ask the file system.
-        if self.0.is_empty() { None } else { self.0.get(&identity(path)) }
+        if self.texts.is_empty() { None } else { self.texts.get(&identity(path)) }
+    }
+
+    /// Opens a file on disk to read it, and keeps that in mind.
+    pub(crate) fn read(&self, path: &Path) -> io::Result<File> {
+        let file = File::open(path)?;
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
+        Ok(file)
+    }
+
+    /// The files on disk that were read, also in part, beside this and all its clones: nobody may write over them.
+    pub fn files_read(&self) -> Vec<PathBuf> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
     }
 
     /// The files in this folder that have such a text.
     pub fn inside<'a>(&'a self, folder: &Path) -> impl Iterator<Item = &'a Path> + use<'a> {
-        let folder = (!self.0.is_empty()).then(|| identity(folder));
-        self.0.keys().map(PathBuf::as_path).filter(move |path| path.parent() == folder.as_deref())
+        let folder = (!self.texts.is_empty()).then(|| identity(folder));
+        self.texts.keys().map(PathBuf::as_path).filter(move |path| path.parent() == folder.as_deref())
     }
 }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand, ValueEnum};
 
 use crate::Exit;
-use crate::output::{eprint, print};
+use crate::output::{eprint, print, replace};
 
 use files::Names;
 
@@ -108,13 +108,15 @@ fn is_ncname(text: &str) -> bool {
 fn write_all(folder: &Path, files: Vec<(PathBuf, String)>) -> Result<(), String> {
     for (name, _) in &files {
         let path = folder.join(name);
-        if path.exists() {
+        // A link that leads nowhere is there, too.
+        if path.symlink_metadata().is_ok() {
             return Err(format!("`{}` is there already: nothing was made", path.display()));
         }
     }
     for (name, text) in files {
         let path = folder.join(name);
-        let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&path, text));
+        let written = path.parent().map_or(Ok(()), fs::create_dir_all);
+        let written = written.and_then(|()| replace(&path, |to| to.write_all(text.as_bytes())));
         written.map_err(|error| format!("`{}` cannot be written: {error}", path.display()))?;
     }
     Ok(())

@@ -17,7 +17,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use saoms_api::extension::PictureRegistration;
-use saoms_core::observe::{JournalFile, Observer};
+use saoms_core::observe::Observer;
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
@@ -29,10 +29,11 @@ use signal_hook::iterator::Signals;
 use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
-use crate::fleet::{DiagnosticReport, compiled};
+use crate::fleet::{DiagnosticReport, compiled, files_read};
 use crate::output::{counted, eprint, eprint_json, print_json};
 use console::Console;
 use events::Events;
+use outputs::RunFiles;
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
 use report_file::ReportFile;
@@ -128,10 +129,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         );
         return Exit::WrongInput;
     }
-    let Some(assembly) = assembly(arguments, &files) else { return Exit::WrongInput };
-    if !outputs::are_writable(arguments) {
-        return Exit::WrongInput;
-    }
+    let Some((assembly, read)) = assembly(arguments, &files) else { return Exit::WrongInput };
     let events = arguments.events.as_deref().map(|path| (path, Events::open(path, arguments.seed)));
     let events = match events {
         Some((path, Err(error))) => {
@@ -144,17 +142,19 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         Some((_, Ok(events))) => Some(events),
         None => None,
     };
-    let report = arguments.report.as_deref().map(|path| Arc::new(ReportFile::new(path)));
     let paths = PictureRegistration::linked("paths");
     if arguments.paths.is_some() && paths.is_none() {
         eprint("error: no component of this program draws paths\n");
         return Exit::WrongInput;
     }
-    let picture = arguments.paths.as_deref().zip(paths);
-    let picture = picture.map(|(path, paths)| Arc::new(PictureFile::new(path, title(arguments), paths)));
+    let Some(files_written) = RunFiles::of(arguments, read) else { return Exit::WrongInput };
+    let RunFiles { report, picture, journal } = files_written;
+    let report = report.map(|output| Arc::new(ReportFile { output }));
+    let picture = picture.zip(paths);
+    let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths)));
     // At the end, they write in this order.
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, &assembly))];
-    observers.extend(arguments.journal.as_deref().map(|path| Arc::new(JournalFile::new(path)) as Arc<dyn Observer>));
+    observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
@@ -186,9 +186,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
 }
 
-/// The fleet to run; `None` after its errors have been shown. Texts and diagnostics are dropped here: a run may last
-/// for days.
-fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly> {
+/// The fleet to run, and the files that were read; `None` after its errors have been shown. Texts and diagnostics are
+/// dropped here: a run may last for days.
+fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembly, Vec<PathBuf>)> {
     let compilation = compiled(files, |project, classes| project.compile(classes)).ok()?;
     let shown = DiagnosticReport::from(&compilation);
     // Standard output belongs to the run, unless there is none.
@@ -202,7 +202,9 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<Assembly
     if compilation.output.is_none() && arguments.format == Format::Human {
         eprint(&format!("\n{}: nothing was started\n", counted(shown.count(Severity::Error), "error")));
     }
-    compilation.output
+    let mut read = files_read(&compilation, files);
+    read.extend(arguments.events.clone());
+    compilation.output.map(|assembly| (assembly, read))
 }
 
 fn settings(arguments: &RunArguments) -> Settings {

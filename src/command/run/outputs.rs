@@ -1,65 +1,19 @@
-//! Files that a run leaves behind: tried before it starts, written when it has ended.
+//! Files that a run leaves behind: tried before it starts, written while it goes on or when it has ended.
 
-use std::fs::File;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use saoms_core::observe::JournalFile;
+
 use super::RunArguments;
-use crate::output::{counted, eprint, try_print};
+use crate::output::{Asked, Outputs, Place, Sink, counted, eprint};
 
-/// True if the files can be written, asked before a run that may last for days. What they hold stays until there is
-/// something new. A file that cannot be written has been reported.
-pub(super) fn are_writable(arguments: &RunArguments) -> bool {
-    let files = [
-        ("report", "--report", &arguments.report),
-        ("picture", "--paths", &arguments.paths),
-        ("journal", "--journal", &arguments.journal),
-    ];
-    let mut problems: Vec<String> = files
-        .iter()
-        .filter_map(|(what, _, path)| Some((what, path.as_deref()?)))
-        .filter_map(|(what, path)| Some((what, path, try_open(path).err()?)))
-        .map(|(what, path, problem)| {
-            format!("error: the {what} cannot be written to `{}`: {problem}\n", path.display())
-        })
-        .collect();
-    for (place, (what, _, path)) in files.iter().enumerate() {
-        let Some(path) = path else { continue };
-        for (other, option, _) in files[place + 1..].iter().filter(|(_, _, other)| other.as_ref() == Some(path)) {
-            problems.push(format!(
-                "error: the {what} and the {other} cannot both be written to `{}`\n  = help: give `{option}` another file\n",
-                path.display()
-            ));
-        }
-    }
-    if arguments.journal.as_deref() == Some(Path::new("-")) {
-        let problem = "error: the journal cannot be written to standard output, which is for the lines of the run\n";
-        problems.push(format!("{problem}  = help: give `--journal` a file\n"));
-    }
-    if !problems.is_empty() {
-        eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
-    }
-    problems.is_empty()
-}
-
-/// Tries whether a file can be written, without a trace: a file that exists stays as it is, and no other one exists
-/// afterwards.
-fn try_open(path: &Path) -> io::Result<()> {
-    if path == Path::new("-") {
-        return Ok(());
-    }
-    match File::options().append(true).open(path) {
-        Err(problem) if problem.kind() == io::ErrorKind::NotFound => {}
-        result => return result.map(drop),
-    }
-    // A link to a file that does not exist yet.
-    if let Ok(target) = path.read_link() {
-        return try_open(&path.parent().unwrap_or(Path::new("")).join(target));
-    }
-    // Only a file created here is removed: if another process was faster, this is an error.
-    File::create_new(path)?;
-    std::fs::remove_file(path)
+/// The files of a run.
+pub(super) struct RunFiles {
+    pub(super) report: Option<Output>,
+    pub(super) picture: Option<Output>,
+    pub(super) journal: Option<JournalFile>,
 }
 
 /// A file to write when a run has ended.
@@ -67,21 +21,56 @@ fn try_open(path: &Path) -> io::Result<()> {
 pub(super) struct Output {
     what: &'static str,
     path: PathBuf,
+    sink: Sink,
     has_failed: AtomicBool,
 }
 
+impl RunFiles {
+    /// The files that a run was asked for, tried before it starts, as it may last for days. What they hold stays until
+    /// there is something new. `None` after it was told that one cannot be written, or is one of those that are read.
+    pub(super) fn of<'a>(arguments: &'a RunArguments, read: Vec<PathBuf>) -> Option<RunFiles> {
+        let mut outputs = Outputs::beside(read);
+        let mut problems = Vec::new();
+        let mut add = |what, option, path: Option<&'a Path>, grows| {
+            let asked = Asked { what, option, path: path?, grows };
+            outputs.add(asked).map_err(|refused| problems.push(refused.into_text())).ok().map(|place| (asked, place))
+        };
+        let report = add("report", "--report", arguments.report.as_deref(), false);
+        let picture = add("picture", "--paths", arguments.paths.as_deref(), false);
+        let journal = add("journal", "--journal", arguments.journal.as_deref(), true);
+        if problems.is_empty() {
+            // A pipe waits for its reader, so that it is opened when nothing else can be wrong.
+            let mut told = |asked: Asked<'_>, error| problems.push(asked.unwritable(&error));
+            let mut whole = |(asked, place)| Output::open(asked, place).map_err(|error| told(asked, error)).ok();
+            let (report, picture) = (report.and_then(&mut whole), picture.and_then(&mut whole));
+            let journal =
+                journal.and_then(|(asked, place)| grown(asked, place).map_err(|error| told(asked, error)).ok());
+            if problems.is_empty() {
+                return Some(RunFiles { report, picture, journal });
+            }
+        }
+        eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
+        None
+    }
+}
+
+fn grown(asked: Asked<'_>, place: Place) -> io::Result<JournalFile> {
+    match place.open()? {
+        Sink::Open(file) => Ok(JournalFile::to(file, asked.path)),
+        Sink::File(_) => Ok(JournalFile::new(asked.path)),
+        Sink::Standard => Err(io::Error::other("standard output is for the lines of the run; give it a file")),
+    }
+}
+
 impl Output {
-    pub(super) fn new(what: &'static str, path: &Path) -> Output {
-        Output { what, path: path.to_owned(), has_failed: AtomicBool::new(false) }
+    fn open(asked: Asked<'_>, place: Place) -> io::Result<Output> {
+        let (what, path, sink) = (asked.what, asked.path.to_owned(), place.open()?);
+        Ok(Output { what, path, sink, has_failed: AtomicBool::new(false) })
     }
 
-    /// Writes the text, to standard output where the path is `-`. A failure is reported.
-    pub(super) fn write(&self, text: io::Result<String>) {
-        let put = |text: String| match self.path == Path::new("-") {
-            true => try_print(&text),
-            false => std::fs::write(&self.path, text),
-        };
-        if let Err(problem) = text.and_then(put) {
+    /// Writes it. A failure is told.
+    pub(super) fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
+        if let Err(problem) = self.sink.write(write) {
             let (what, path) = (self.what, self.path.display());
             eprint(&format!("error: the {what} could not be written to `{path}`: {problem}\n"));
             self.has_failed.store(true, Ordering::Relaxed);

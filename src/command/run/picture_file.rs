@@ -1,4 +1,3 @@
-use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use saoms_api::extension::{PictureRegistration, RunPicture};
@@ -17,8 +16,8 @@ pub(super) struct PictureFile {
 }
 
 impl PictureFile {
-    pub(super) fn new(path: &Path, title: String, picture: &PictureRegistration) -> PictureFile {
-        PictureFile { output: Output::new("picture", path), title, picture: Mutex::new((picture.new)()) }
+    pub(super) fn new(output: Output, title: String, picture: &PictureRegistration) -> PictureFile {
+        PictureFile { output, title, picture: Mutex::new((picture.new)()) }
     }
 
     fn picture(&self) -> MutexGuard<'_, Box<dyn RunPicture>> {
@@ -40,6 +39,7 @@ impl Observer for PictureFile {
     }
 
     fn end(&self, report: &RunReport) {
-        self.output.write(Ok(self.picture().draw(&self.title, &outcome(report))));
+        let picture = self.picture().draw(&self.title, &outcome(report));
+        self.output.write(|to| to.write_all(picture.as_bytes()));
     }
 }

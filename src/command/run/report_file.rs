@@ -1,6 +1,3 @@
-use std::io;
-use std::path::Path;
-
 use saoms_core::observe::{Interest, Observer};
 use saoms_core::report::RunReport;
 
@@ -11,19 +8,15 @@ pub(super) struct ReportFile {
     pub(super) output: Output,
 }
 
-impl ReportFile {
-    pub(super) fn new(path: &Path) -> ReportFile {
-        ReportFile { output: Output::new("report", path) }
-    }
-}
-
 impl Observer for ReportFile {
     fn interest(&self) -> Interest {
         Interest::NONE
     }
 
     fn end(&self, report: &RunReport) {
-        let text = serde_json::to_string_pretty(report).map(|text| text + "\n");
-        self.output.write(text.map_err(io::Error::from));
+        self.output.write(|to| {
+            serde_json::to_writer_pretty(&mut *to, report)?;
+            to.write_all(b"\n")
+        });
     }
 }

@@ -113,8 +113,16 @@ fn document(path: &Path) -> Result<JournalDocument, String> {
         std::fs::read(path)
     };
     let bytes = bytes.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
-    let text = String::from_utf8(bytes)
-        .map_err(|error| format!("`{name}` is not text: byte {} is no UTF-8", error.utf8_error().valid_up_to() + 1))?;
+    let text = match String::from_utf8(bytes) {
+        Ok(text) => text,
+        // A run that goes on, or was killed, may have written a part of its last character.
+        Err(error) if error.utf8_error().error_len().is_none() => {
+            String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]).into_owned()
+        }
+        Err(error) => {
+            return Err(format!("`{name}` is not text: byte {} is no UTF-8", error.utf8_error().valid_up_to() + 1));
+        }
+    };
     read(&text).map_err(|error| match error {
         JournalReadError::NoJournal => {
             format!("`{name}` holds no journal: write the report anew with `saoms run --report FILE`")

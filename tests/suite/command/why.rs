@@ -78,6 +78,17 @@ fn what_several_reasons_have_in_common_is_told_once() {
     assert!(answer.contains("     ... and so on as above ...\n"), "{answer}");
 }
 
+/// The file of a run that was killed may end with a part of a character.
+#[test]
+fn a_journal_that_is_cut_off_is_read_up_to_its_last_whole_record() {
+    let folder = folder("cut");
+    let whole = fs::read(folder.join("journal.jsonl")).unwrap();
+    let (records, _end) = whole.split_at(whole[..whole.len() - 1].iter().rposition(|byte| *byte == b'\n').unwrap() + 1);
+    fs::write(folder.join("cut.jsonl"), [records, b"{\"id\":99999,\"text\":\"5 \xc2"].concat()).unwrap();
+    let of = |file: &str| stdout(&saoms_in(&folder, &["why", "Robot7", "--at", "2s", "--report", file]));
+    assert_eq!(of("cut.jsonl"), of("journal.jsonl"));
+}
+
 #[test]
 fn wrong_questions_are_told() {
     let folder = folder("wrong");
@@ -137,7 +148,7 @@ fn the_journal_needs_a_file_of_its_own() {
     let folder = folder("places");
     for (journal, mentions) in [
         ("no/such/folder/j", "the journal cannot be written to `no/such/folder/j`"),
-        ("-", "cannot be written to standard output"),
+        ("-", "cannot be written to `-`: standard output is for the lines of the run"),
         ("report.json", "cannot both be written to `report.json`"),
     ] {
         let run = ["run", "composites/hall.composite", "--virtual", "--report", "report.json", "--journal", journal];

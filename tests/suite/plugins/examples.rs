@@ -17,7 +17,7 @@ use serde_json::Value;
 use crate::support::{root, saoms, text};
 
 /// The library of an example, which cargo built beside this test.
-fn library(package: &str) -> PathBuf {
+pub(crate) fn library(package: &str) -> PathBuf {
     let library = env::current_exe().unwrap().with_file_name(format!("lib{package}.so"));
     assert!(library.exists(), "{} is not there: cargo builds it for this test", library.display());
     library

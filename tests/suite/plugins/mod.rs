@@ -3,3 +3,5 @@
 mod c;
 mod examples;
 mod reload;
+
+pub(crate) use examples::library;

@@ -1,0 +1,18 @@
+//! Where a command writes: standard output and standard error, and files that it was asked for.
+//!
+//! A file is written whole or not at all, and never over one that the command reads ([`Outputs`]).
+
+mod outputs;
+mod place;
+mod replace;
+mod standard;
+
+pub(crate) use outputs::{Asked, Outputs, Refused};
+pub(crate) use place::{Place, Sink};
+pub(crate) use replace::replace;
+pub(crate) use standard::{eprint, eprint_json, has_failed, print, print_json};
+
+/// `1 error`, `2 errors`.
+pub(crate) fn counted(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
