@@ -88,6 +88,7 @@ impl RobotKnowledge {
         match kind {
             ActionKind::Move => {
                 self.block = block;
+                self.use_battery_to_drive();
                 self.judge(context, block)?;
             }
             ActionKind::Collect => {

@@ -1,4 +1,6 @@
-use saoms_api::{Context, Entries, Extras, Failure, Knowledge, Publisher};
+use std::time::Duration;
+
+use saoms_api::{Context, Entries, Extras, Failure, Knowledge, Publisher, Time};
 
 use crate::grid::Block;
 use crate::hardware::Action;
@@ -25,6 +27,10 @@ pub struct RobotKnowledge {
     /// Period of the robot, in microseconds.
     #[entry(unit = "us")]
     pub period: u64,
+    /// Time of the present execution.
+    executed_at: Option<Time>,
+    /// Time from the last execution to the present one.
+    elapsed: Duration,
     /// Position of the robot.
     #[entry]
     pub block: Block,
@@ -94,6 +100,8 @@ impl RobotKnowledge {
             name,
             number,
             period: 0,
+            executed_at: None,
+            elapsed: Duration::ZERO,
             block: charge_block,
             next: charge_block,
             charge_block,
@@ -134,15 +142,27 @@ impl RobotKnowledge {
         Some(if self.variables.has_luggage { job.to } else { job.from })
     }
 
-    /// Discharges the battery by one execution.
+    /// Notes the time of this execution.
+    pub(super) fn note_time(&mut self, now: Time) {
+        self.elapsed = self.executed_at.map_or(Duration::ZERO, |last| now.since(last));
+        self.executed_at = Some(now);
+    }
+
+    /// Discharges the battery by the time since the last execution.
     pub(super) fn use_battery(&mut self) {
-        self.battery.drain();
+        self.battery.drain(self.elapsed);
         self.charge = self.battery.percent();
     }
 
-    /// Charges the battery by one execution.
+    /// Discharges the battery by a move to the next block.
+    pub(super) fn use_battery_to_drive(&mut self) {
+        self.battery.drive();
+        self.charge = self.battery.percent();
+    }
+
+    /// Charges the battery by the time since the last execution.
     pub(super) fn charge_battery(&mut self) {
-        self.battery.charge();
+        self.battery.charge(self.elapsed);
         self.charge = self.battery.percent();
     }
 

@@ -26,7 +26,7 @@ use crate::console::Timestamp;
 use crate::hardware::Hardware;
 use crate::messages::COLLISION;
 
-pub use battery::Battery;
+pub use battery::{Battery, Consumption};
 pub use job::Job;
 pub use knowledge::{RobotKnowledge, Trouble, Variables};
 pub use lists::{Help, Helps, Lists, Peers, Request, Requests, Rival};
@@ -92,7 +92,7 @@ impl Component for Robot {
     fn new(properties: RobotProperties) -> Result<Self, Failure> {
         let number = properties.number()?;
         let charge_block = properties.charge_block(number)?;
-        let battery = Battery::new(properties.battery, properties.discharge);
+        let battery = Battery::new(properties.battery, properties.consumption()?);
         let name = properties.id.trim().to_owned();
         let mut knowledge = Box::new(RobotKnowledge::new(name, number, charge_block, battery));
         knowledge.variables.asleep = properties.asleep;
@@ -125,6 +125,7 @@ impl Component for Robot {
             ));
         }
         self.knowledge.polled = None;
+        self.knowledge.note_time(context.now());
         self.loops.monitor(&mut *self.knowledge, context)?;
         if entered {
             self.knowledge.show_lists(context);

@@ -2,6 +2,7 @@ use saoms_api::host::SmolStr;
 use saoms_api::{Failure, Finding, Place, Properties, PropertyField};
 
 use crate::grid::Block;
+use crate::robot::Consumption;
 
 /// Rules by which a robot acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PropertyField)]
@@ -11,6 +12,9 @@ pub enum Policy {
     /// The rules of the manual, for its transcripts: robots can collide and run out of battery.
     Classic,
 }
+
+/// Discharge in percent of an execution, unless a property says otherwise: the manual's.
+const DISCHARGE: f64 = 2.0;
 
 /// Properties of a robot.
 #[derive(Clone, Debug, Properties)]
@@ -31,9 +35,19 @@ pub struct RobotProperties {
     /// Battery level at the start.
     #[property(default = 100.0, range = 0.0..=100.0, unit = "%")]
     pub(crate) battery: f64,
-    /// Discharge of the battery in an execution; while the robot charges, it gains five times as much.
-    #[property(default = 2.0, range = 0.0..=100.0, unit = "% per execution")]
-    pub(crate) discharge: f64,
+    /// Discharge of the battery in an execution off the charger, as in the manual; while the robot charges, it gains
+    /// five times as much. By default 2, unless the battery discharges by distance or time.
+    #[property(range = 0.0..=100.0, unit = "% per execution")]
+    pub(crate) discharge: Option<f64>,
+    /// Discharge of the battery for a move to the next block, whatever the robot's period; with `chargePerSecond`.
+    #[property(range = 0.0..=100.0, unit = "% per block")]
+    pub(crate) discharge_per_block: Option<f64>,
+    /// Discharge of the battery in a second off the charger, whatever the robot's period; with `chargePerSecond`.
+    #[property(range = 0.0..=100.0, unit = "% per s")]
+    pub(crate) discharge_per_second: Option<f64>,
+    /// Gain of the battery in a second at the charger, where the battery discharges by distance or time.
+    #[property(range = 0.001..=100.0, unit = "% per s")]
+    pub(crate) charge_per_second: Option<f64>,
     /// True if the robot starts asleep at its charger and takes no jobs until it is woken.
     #[property(default = false)]
     pub(crate) asleep: bool,
@@ -59,6 +73,37 @@ impl RobotProperties {
                 );
                 Err(Finding::new(Place::property("ID"), message).into())
             }
+        }
+    }
+
+    /// How the battery discharges and charges: by execution, or by distance and time.
+    pub(crate) fn consumption(&self) -> Result<Consumption, Failure> {
+        let finding = |property: &str, message: &str, help: &str| -> Result<Consumption, Failure> {
+            Err(Finding::new(Place::property(property), message).help(help).into())
+        };
+        let physical = self.discharge_per_block.or(self.discharge_per_second);
+        match (self.discharge, physical, self.charge_per_second) {
+            (discharge, None, None) => Ok(Consumption::per_execution(discharge.unwrap_or(DISCHARGE))),
+            (None, Some(_), Some(charge)) => {
+                let [per_block, per_second] =
+                    [self.discharge_per_block, self.discharge_per_second].map(Option::unwrap_or_default);
+                Ok(Consumption::physical(per_block, per_second, charge))
+            }
+            (Some(_), _, _) => finding(
+                "discharge",
+                "the battery discharges by execution, and by distance or time",
+                "remove `discharge`, or `dischargePerBlock`, `dischargePerSecond` and `chargePerSecond`",
+            ),
+            (None, Some(_), None) => finding(
+                if self.discharge_per_block.is_some() { "dischargePerBlock" } else { "dischargePerSecond" },
+                "the battery discharges by distance or time, and `chargePerSecond` is missing",
+                "give `chargePerSecond`: with `2`, an empty battery is full after 50 s at the charger",
+            ),
+            (None, None, Some(_)) => finding(
+                "chargePerSecond",
+                "the battery discharges by execution, and so it charges",
+                "give `dischargePerBlock` or `dischargePerSecond`, too, or remove `chargePerSecond`",
+            ),
         }
     }
 

@@ -7,5 +7,6 @@ mod expand;
 mod invariants;
 mod messages;
 mod pause;
+mod physics;
 mod replace;
 mod sustained;

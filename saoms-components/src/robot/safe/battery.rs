@@ -179,7 +179,7 @@ impl Loop for SafeBattery {
         } else if knowledge.goes_on() {
             None
         } else {
-            let (left, home) = (knowledge.battery.executions_left(), knowledge.home(knowledge.next));
+            let (left, home) = (knowledge.executions_left(), knowledge.home(knowledge.next));
             Some(SafeBatterySymptom::Low { battery, left, home })
         };
         let begins = self.in_charge;
@@ -259,7 +259,7 @@ impl RobotKnowledge {
     /// own.
     fn charger_in_reach(&mut self) -> Option<Block> {
         let home = self.home(self.next);
-        if self.battery.executions_left() > home || self.next != self.block {
+        if self.executions_left() > home || self.next != self.block {
             return None;
         }
         let RobotKnowledge { lists, routes, next, .. } = self;
@@ -288,7 +288,7 @@ impl RobotKnowledge {
 }
 
 impl SafeBattery {
-    /// Discharges or charges the battery by one execution.
+    /// Discharges or charges the battery by the time since the last execution.
     fn use_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
         if !knowledge.is_at_charger() {
             (self.charging, self.in_charge) = (false, false);

@@ -1,5 +1,7 @@
 //! Energy management: decides if the battery lasts.
 
+use std::time::Duration;
+
 use crate::grid::Block;
 use crate::robot::{Job, RobotKnowledge};
 
@@ -63,6 +65,11 @@ impl Energy {
         self.must_charge = false;
     }
 
+    /// Number of executions that a move takes.
+    pub(super) fn executions_of_move(&self) -> u32 {
+        self.pace.moving
+    }
+
     /// Measured speed of the robot.
     pub(super) fn pace(&mut self) -> &mut Pace {
         &mut self.pace
@@ -70,13 +77,27 @@ impl Energy {
 }
 
 impl RobotKnowledge {
+    /// Number of executions that the battery lasts.
+    pub(super) fn executions_left(&self) -> u32 {
+        self.battery.executions_left(self.period(), self.energy.pace.moving)
+    }
+
+    /// Number of executions that a full battery lasts.
+    pub(super) fn executions_when_full(&self) -> u32 {
+        self.battery.executions_when_full(self.period(), self.energy.pace.moving)
+    }
+
+    fn period(&self) -> Duration {
+        Duration::from_micros(self.period)
+    }
+
     /// True if a robot at its charger has too little energy to make way for others.
     pub(super) fn holds_charger(&self) -> bool {
         if !self.is_at_charger() {
             return false;
         }
         let wanted = self.usual_reserve().saturating_add(self.energy.pace.job(YIELD_FROM, 0));
-        self.battery.executions_left() < wanted.min(self.battery.executions_when_full())
+        self.executions_left() < wanted.min(self.executions_when_full())
     }
 
     /// True if the robot need not return to its charger yet: the battery lasts to do so later, or to finish its job
@@ -85,7 +106,7 @@ impl RobotKnowledge {
         if !self.variables.busy && self.battery.percent() <= self.charge_at {
             return false;
         }
-        let left = self.battery.executions_left();
+        let left = self.executions_left();
         let reserve = self.energy.reserve;
         if left >= self.home(self.next).saturating_add(reserve) {
             return true;
@@ -98,7 +119,7 @@ impl RobotKnowledge {
     /// True if the battery lasts for collecting or depositing here, and for the way to the charger.
     pub(super) fn may_handle(&mut self) -> bool {
         let home = self.home(self.next).saturating_add(LEAST_RESERVE);
-        self.battery.executions_left() >= home.saturating_add(self.energy.pace.handling)
+        self.executions_left() >= home.saturating_add(self.energy.pace.handling)
     }
 
     /// Compares the battery with a job that starts here and now.
@@ -106,7 +127,7 @@ impl RobotKnowledge {
         if self.is_loaded {
             return Feasibility::Never;
         }
-        let (left, full) = (self.battery.executions_left(), self.battery.executions_when_full());
+        let (left, full) = (self.executions_left(), self.executions_when_full());
         let usual = self.executions_for(job, false).saturating_add(self.usual_reserve());
         if usual <= left {
             return Feasibility::Enough;
@@ -125,7 +146,7 @@ impl RobotKnowledge {
         let way = self.routes.between(self.next, next);
         let back = self.routes.between(next, self.charge_block);
         let first = self.energy.pace.job(way, 1).saturating_add(self.energy.pace.job(back, 0));
-        let spare = self.battery.executions_left().saturating_sub(first);
+        let spare = self.executions_left().saturating_sub(first);
         // A robot that returned in vain uses a smaller reserve the next time.
         let reserve = (spare / 4 * 3).min(self.usual_reserve());
         let reserve = reserve.checked_shr(self.energy.returns).unwrap_or(0);
@@ -143,7 +164,7 @@ impl RobotKnowledge {
         let Some(job) = self.job.filter(|_| self.variables.busy) else { return true };
         let needs = self.executions_for(&job, self.variables.has_luggage);
         let usual = needs.saturating_add(self.usual_reserve());
-        let may = self.battery.is_full() || self.battery.executions_left() >= usual;
+        let may = self.battery.is_full() || self.executions_left() >= usual;
         if may {
             self.set_out(&job);
         }
@@ -158,7 +179,7 @@ impl RobotKnowledge {
         if !charged || self.energy.returns < IN_VAIN {
             return None;
         }
-        let full = self.battery.executions_when_full();
+        let full = self.executions_when_full();
         let rest = Job { from: to, ..job };
         (!self.is_within(&rest, full)).then_some((job, to))
     }
@@ -170,7 +191,7 @@ impl RobotKnowledge {
     }
 
     fn usual_reserve(&self) -> u32 {
-        let full = self.battery.executions_when_full();
+        let full = self.executions_when_full();
         RESERVE.saturating_mul(self.tempo()).max(full / 4).min(full / 3)
     }
 
@@ -214,7 +235,7 @@ impl RobotKnowledge {
     /// True if the battery lasts for the way to another charger with the usual reserve, or is full.
     pub(super) fn lasts_to(&mut self, charger: Block) -> bool {
         let needs = self.home_to(charger).saturating_add(self.usual_reserve());
-        self.battery.is_full() || self.battery.executions_left() >= needs
+        self.battery.is_full() || self.executions_left() >= needs
     }
 
     /// Number of executions from the block where the robot goes on to another charger.

@@ -9,7 +9,7 @@ const TRY: u32 = 50;
 /// Minimum number of executions before a job is given up.
 const LEAST_TRY: u32 = 500;
 
-/// Maximum number of executions for which a robot may be idle while there is work for it.
+/// Maximum time for which a robot may be idle while there is work for it, in moves of a block.
 const LONGEST_IDLE: u32 = 1000;
 
 /// Number of executions that a robot has been on its job.
@@ -46,9 +46,10 @@ impl Idle {
         self.executions = if is_idle { self.executions.saturating_add(1) } else { 0 };
     }
 
-    /// True if this robot is not going to do work that has waited since `since`.
-    pub(super) fn is_in_vain(&self, since: Time, context: &Context<'_>) -> bool {
-        let longest = context.period().saturating_mul(LONGEST_IDLE);
-        self.executions >= LONGEST_IDLE && context.now().since(since) >= longest
+    /// True if this robot, a move of which takes `moving` executions, is not going to do work that has waited since
+    /// `since`.
+    pub(super) fn is_in_vain(&self, since: Time, moving: u32, context: &Context<'_>) -> bool {
+        let longest = LONGEST_IDLE.saturating_mul(moving);
+        self.executions >= longest && context.now().since(since) >= context.period().saturating_mul(longest)
     }
 }

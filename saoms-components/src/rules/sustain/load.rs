@@ -1,7 +1,7 @@
 //! Rule: luggage arrives permanently faster than the robots can bring it and charge.
 //!
-//! The unit is robots: the number of robots that an endless line of a scenario keeps busy. A robot spends at least a
-//! sixth of its time at its charger, since one execution there gains the energy of five.
+//! The unit is robots: the number of robots that an endless line of a scenario keeps busy. A robot spends a part of its
+//! time at its charger: a sixth, where one execution there gains the energy of five.
 //!
 //! The *least* effort of a piece is certain: the shortest way from the destination of the last piece to this one, and
 //! on to its destination, with the executions that the hardware needs for each move and each handling. The *usual*
@@ -19,9 +19,6 @@ use crate::environment::Spot;
 use crate::grid::{Block, Map};
 use crate::rules::budget::Budget;
 use crate::rules::map::{LuggageLine, WorldMap};
-
-/// Number of executions off the charger for which the energy of one execution at the charger lasts.
-const CHARGE_FACTOR: f64 = 5.0;
 
 /// Number of executions in which robots agree on the robot that brings a piece, and announce their moves.
 const SETTLING: f64 = 4.0;
@@ -117,7 +114,7 @@ fn least_robots(map: &Map, ranges: &[Range], chargers: &[Block], lines: &[Line<'
             let handling = if range.handling > 1 { f64::from(range.handling) } else { 0.0 };
             let driving = moves * f64::from(range.moving);
             let (whole, drained) = (driving + 2.0 * handling, driving + handlings * handling);
-            let charging = if range.full == u32::MAX { 0.0 } else { drained / CHARGE_FACTOR };
+            let charging = range.charge_factor.map_or(0.0, |factor| drained / factor);
             range.period * whole.max(drained + charging)
         });
         busy += least.fold(f64::INFINITY, f64::min) / line.every;
@@ -146,10 +143,8 @@ impl Range {
     /// charger. Under heavy load a robot charges for each piece, but no more than the piece needs.
     fn usual_piece(&self, way: f64, approach: f64, homeward: f64) -> f64 {
         let (moving, settling) = (f64::from(self.moving), 2.0 * f64::from(self.handling) + SETTLING);
-        if self.full == u32::MAX {
-            return (way + approach) * moving + settling;
-        }
-        ((way + homeward) * moving + settling) * (1.0 + 1.0 / CHARGE_FACTOR)
+        let Some(factor) = self.charge_factor else { return (way + approach) * moving + settling };
+        ((way + homeward) * moving + settling) * (1.0 + 1.0 / factor)
     }
 }
 

@@ -49,7 +49,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     if robots.is_empty() || !robots.iter().all(is_known) || may_be_others(fleet) {
         return Vec::new();
     }
-    let ranges: Vec<Range> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();
+    let ranges: Option<Vec<Range>> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();
+    let Some(ranges) = ranges else { return Vec::new() };
     let chargers = ranges.iter().map(|range| range.charger);
     let ends = luggage.iter().flat_map(|piece| [&piece.from, &piece.to]);
     let mut ways = Ways::on(&area.map, chargers.chain(ends.filter_map(|spot| spot.value.block())));
@@ -65,8 +66,11 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
 /// Range and speed of a robot.
 struct Range {
     charger: Block,
-    /// Number of executions that a full battery lasts; `u32::MAX` without discharge.
+    /// Number of executions that a full battery lasts while the robot drives; `u32::MAX` without discharge.
     full: u32,
+    /// Number of executions off the charger for which the energy of one execution at the charger lasts; `None` without
+    /// discharge.
+    charge_factor: Option<f64>,
     /// Number of executions of a move.
     moving: u32,
     /// Number of executions of collecting or depositing.
@@ -76,7 +80,8 @@ struct Range {
 }
 
 impl Range {
-    fn of(fleet: &FleetView<'_>, area: &WorldMap, robot: &FleetRobot) -> Range {
+    /// The range of a robot; `None` if its battery is faulty.
+    fn of(fleet: &FleetView<'_>, area: &WorldMap, robot: &FleetRobot) -> Option<Range> {
         let period = fleet.components()[robot.index].period.unwrap_or_default();
         // A robot checks in each execution if its action is over. Without a world each action is over at once.
         let executions = |time: Duration| match robot.world {
@@ -86,13 +91,16 @@ impl Range {
             }
             _ => 1,
         };
-        Range {
+        let consumption = robot.properties.consumption().ok()?;
+        let moving = executions(area.properties.move_time);
+        Some(Range {
             charger: robot.charger,
-            full: Battery::new(100.0, robot.properties.discharge).executions_when_full(),
-            moving: executions(area.properties.move_time),
+            charge_factor: consumption.charge_factor(period, moving),
+            full: Battery::new(100.0, consumption).executions_when_full(period, moving),
+            moving,
             handling: executions(area.properties.handling_time),
             period: period.as_secs_f64(),
-        }
+        })
     }
 
     /// True if it can go there and back. It may charge between collecting and depositing, so it never needs more at

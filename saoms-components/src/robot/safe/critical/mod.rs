@@ -157,8 +157,8 @@ impl Loop for SafeCriticalSituation {
             context.because(cause);
             return Ok(Some(symptom));
         }
-        let left = knowledge.battery.executions_left();
-        let low = left < knowledge.battery.executions_when_full() / 2;
+        let left = knowledge.executions_left();
+        let low = left < knowledge.executions_when_full() / 2;
         let charges = starts_to_charge && low && knowledge.is_free() && !knowledge.relieved;
         let battery = knowledge.battery.percent();
         let substituted = charges && self.substitution.is_none();
@@ -302,7 +302,8 @@ impl SafeCriticalSituation {
     ) -> Option<(CriticalSituation, Cause)> {
         let oldest = knowledge.lists.helps.open().iter().find(|help| help.situation.job().is_some());
         self.idle.note(oldest.is_some() && knowledge.job.is_none());
-        let oldest = oldest.filter(|help| self.idle.is_in_vain(help.since, context))?;
+        let oldest =
+            oldest.filter(|help| self.idle.is_in_vain(help.since, knowledge.energy.executions_of_move(), context))?;
         Some((oldest.situation.clone(), oldest.cause))
     }
 
@@ -376,7 +377,7 @@ fn look_for_help_requests(knowledge: &mut RobotKnowledge) -> Option<(SafeCritica
     if free {
         knowledge.keep_usual_reserve();
     }
-    let (left, emulates) = (knowledge.battery.executions_left(), knowledge.stands_in_for);
+    let (left, emulates) = (knowledge.executions_left(), knowledge.stands_in_for);
     let can = |request: &&Help| {
         let idle = request.situation.kind == CriticalKind::Idle;
         let means = if idle { knowledge.lists.sleepers().next().is_some() } else { free };

@@ -13,7 +13,7 @@ use super::patience::{Attempt, Idle};
 
 pub(super) use records::{Hindrance, SafeLuggageDecision, SafeLuggageSymptom};
 
-/// Number of executions that count as one block of distance, so that no request waits for ever.
+/// Number of moves in whose time a request gains one block of distance, so that no request waits for ever.
 const PATIENCE: u64 = 4;
 
 /// Decides which luggage this robot brings.
@@ -227,7 +227,9 @@ impl SafeEventLuggage {
         let waits = !requests.open().is_empty() || requests.claimed().is_some();
         self.idle.note(waits && knowledge.job.is_none() && !knowledge.variables.asleep);
         let oldest = requests.open().first()?;
-        self.idle.is_in_vain(oldest.since, context).then_some(SafeLuggageSymptom::InVain(oldest.job))
+        self.idle
+            .is_in_vain(oldest.since, knowledge.energy.executions_of_move(), context)
+            .then_some(SafeLuggageSymptom::InVain(oldest.job))
     }
 
     /// State of the luggage that this robot is interested in; `None` while it waits for others to take their interest
@@ -250,7 +252,7 @@ impl SafeEventLuggage {
     fn warn(&mut self, job: &Job, why: Hindrance, knowledge: &RobotKnowledge, context: &mut Context<'_>) {
         let level = if std::mem::replace(&mut self.warned, true) { Level::Debug } else { Level::Warning };
         let Job { luggage, from, to } = *job;
-        let full = knowledge.battery.executions_when_full();
+        let full = knowledge.executions_when_full();
         let what = format_args!("cannot bring luggage {luggage} from {from} to {to}");
         match why {
             Hindrance::Others => context.log(level, format_args!("{what}: {}", why.words())),
@@ -281,9 +283,10 @@ fn judge(knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
 
 /// The request that suits this robot best, and its cause.
 fn look_for_luggage(knowledge: &RobotKnowledge, context: &Context<'_>) -> Option<(SafeLuggageSymptom, Cause)> {
-    let (now, period) = (context.now(), context.period().as_nanos().max(1));
+    let moving = u128::from(knowledge.energy.executions_of_move());
+    let (now, period) = (context.now(), (context.period().as_nanos() * moving).max(1));
     let (block, number) = (knowledge.block, knowledge.number);
-    let left = knowledge.battery.executions_left();
+    let left = knowledge.executions_left();
     let score = |request: &Request| {
         let credit = now.since(request.since).as_nanos() / period / u128::from(PATIENCE);
         i128::from(block.distance(request.job.from)) - i128::try_from(credit).unwrap_or(i128::MAX)
