@@ -51,8 +51,6 @@ pub(super) fn reported<'d>(
             .collect();
         let mended = one.suggestions.iter().map(|suggestion| &suggestion.description);
         let lines = mended.chain(&one.help).map(|help| format!("\n{help}"));
-        let unused = [&codes::UNUSED_PROPERTY, &codes::RENAME_UNUSED, &codes::RESTART_UNUSED];
-        let is_unused = unused.iter().any(|code| code.id == one.code.id);
         let shown = lsp_types::Diagnostic {
             range: places.range(one.location),
             severity: Some(match one.severity {
@@ -64,7 +62,7 @@ pub(super) fn reported<'d>(
             source: Some("saoms".to_owned()),
             message: format!("{}{}", one.message, lines.collect::<String>()),
             related_information: (!related.is_empty()).then_some(related),
-            tags: is_unused.then(|| vec![DiagnosticTag::UNNECESSARY]),
+            tags: codes::is_without_effect(one.code).then(|| vec![DiagnosticTag::UNNECESSARY]),
             ..lsp_types::Diagnostic::default()
         };
         let meaning = describe_code(one.code, one.rule);

@@ -82,17 +82,11 @@ pub fn check(
     let repeated = if severities.mentions(&codes::NOT_UNIQUE) { RepeatedValues::default() } else { repeated };
 
     // Services, references, promotions and wires.
-    rules::written::check(&fleet, report);
-    rules::contracts::check(&fleet, report);
-    rules::component_types::check(&fleet, report);
+    rules::check_written(&fleet, report);
     let promoted = wiring::promotion::check(&fleet, report);
     let wiring = wiring::check(&fleet, &promoted, options, report);
 
-    // The expensive rules: constructors, and rules of plugins over the whole fleet.
-    rules::constructors::check_all(&fleet, &checks, &repeated, options, report);
-    let rules = registry.rules().iter();
-    let rules = rules.filter(|rule| !options.without_plugin_code || rule.origin().is_none());
-    rules::plugin_rules::check(&fleet, &checks, &wiring, &repeated, rules, report);
+    rules::check_resolved(&fleet, (&checks, &wiring), &repeated, (registry, options), report);
 
     // Severities count at the end, and an error anywhere keeps the fleet from running.
     if options.assume_classes {

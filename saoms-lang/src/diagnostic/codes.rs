@@ -8,8 +8,32 @@ use saoms_api::rule::Severity::{Error, Note, Warning};
 
 pub use saoms_api::rule::Code;
 
+/// What the program has to know of a code beside its meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Nature {
+    /// Its errors are judgements on a fleet that could run: their severity can be lowered.
+    Judgement,
+    /// `saoms expand` leaves the fault in what it writes, so that a severity set for it is written, too.
+    OutlivesExpansion,
+    /// The wiring report alone finds it.
+    OfWiring,
+    /// It says that what it is at has no effect.
+    WithoutEffect,
+    /// It says that a part of the component, or of another element, that it is at is missing.
+    AbsentPart,
+    /// It says that a composite is in no file.
+    AbsentComposite,
+    /// It says that a component is nowhere in the fleet.
+    AbsentComponent,
+    /// It says that another name, or a user of it, is nowhere in the fleet.
+    AbsentName,
+}
+
+/// The rows of the table: `CONSTANT = id severity name (rule of SCA) [natures]: meaning;`, without those of rule and
+/// natures that there are not.
 macro_rules! codes {
-    ($($constant:ident = $id:literal $severity:ident $name:literal $(($rule:literal))? : $meaning:literal;)*) => {
+    ($($constant:ident = $id:literal $severity:ident $name:literal $(($rule:literal))? $([$($nature:ident),*])?
+        : $meaning:literal;)*) => {
         $(
             #[doc = $meaning]
             pub static $constant: Code = Code {
@@ -23,6 +47,9 @@ macro_rules! codes {
 
         /// Every code, in the order of the table.
         pub static ALL: &[&Code] = &[$(&$constant),*];
+
+        /// The natures of each code.
+        static NATURES: &[&[Nature]] = &[$(&[$($(Nature::$nature),*)?]),*];
     };
     (@rule) => { None };
     (@rule $rule:literal) => { Some($rule) };
@@ -58,16 +85,16 @@ codes! {
     UNKNOWN_ELEMENT = "S1004" Error "unknown-element" ("ASM13001"): "An element of SCA, or of SAOMS, that does not exist.";
     MISPLACED_ELEMENT = "S1005" Error "misplaced-element" ("ASM13001"): "An element that cannot stand where it stands.";
     REPEATED_ELEMENT = "S1006" Error "repeated-element" ("ASM13001"): "An element that can be given once is given again.";
-    UNKNOWN_ATTRIBUTE = "S1007" Error "unknown-attribute" ("ASM13001"): "An attribute that the element does not have.";
+    UNKNOWN_ATTRIBUTE = "S1007" Error "unknown-attribute" ("ASM13001") [Judgement]: "An attribute that the element does not have.";
     MISSING_ATTRIBUTE = "S1008" Error "missing-attribute" ("ASM13001"): "An attribute that the element has to have is not given.";
-    MISSING_TARGET_NAMESPACE = "S1009" Error "missing-target-namespace" ("ASM13001"): "A composite has no target namespace.";
-    MISSING_IMPLEMENTATION = "S1010" Error "missing-implementation" ("ASM13001"): "A component has no implementation.";
+    MISSING_TARGET_NAMESPACE = "S1009" Error "missing-target-namespace" ("ASM13001") [Judgement, OutlivesExpansion]: "A composite has no target namespace.";
+    MISSING_IMPLEMENTATION = "S1010" Error "missing-implementation" ("ASM13001") [AbsentPart]: "A component has no implementation.";
     ATTRIBUTE_VALUE = "S1011" Error "attribute-value" ("ASM13001"): "The value of an attribute is of the wrong form.";
-    MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001"): "There is text where none belongs.";
+    MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001") [Judgement]: "There is text where none belongs.";
     NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and what is in it is passed over.";
     NEWER_ATTRIBUTE = "S1014" Warning "newer-attribute": "A file of SCA 1.0 has an attribute of SCA 1.1.";
     // S20: names, composite properties, services, references and wires.
-    COMPOSITE_REPEATED = "S2001" Error "composite-repeated" ("ASM60001"): "Two composites of one namespace have one name.";
+    COMPOSITE_REPEATED = "S2001" Error "composite-repeated" ("ASM60001") [Judgement]: "Two composites of one namespace have one name.";
     COMPONENT_REPEATED = "S2002" Error "component-repeated" ("ASM50001"): "Two components have one name.";
     COMPOSITE_PART_REPEATED = "S2003" Error "composite-part-repeated": "A composite has two properties, services or references of one name.";
     CONTRACT_REPEATED = "S2004" Error "contract-repeated": "A component has two services or references of one name.";
@@ -77,81 +104,81 @@ codes! {
     MULTIPLICITY_WIDER = "S2008" Error "multiplicity-wider" ("ASM50009"): "The multiplicity of a reference allows what the class does not.";
     BINDING_NOT_SERVED = "S2009" Warning "binding-not-served": "A service or a reference has a binding that is not served.";
     URI_MALFORMED = "S2010" Error "uri-malformed": "A target, a source of a wire or a promotion has the wrong form.";
-    UNKNOWN_COMPONENT = "S2011" Error "unknown-component": "A target, a wire or a promotion names a component that does not exist.";
-    UNKNOWN_TARGET_SERVICE = "S2012" Error "unknown-target-service" ("ASM60047"): "A target names a service that the component does not have.";
-    UNKNOWN_BINDING = "S2013" Error "unknown-binding" ("ASM60050"): "A target names a binding that the service does not have.";
+    UNKNOWN_COMPONENT = "S2011" Error "unknown-component" [AbsentComponent]: "A target, a wire or a promotion names a component that does not exist.";
+    UNKNOWN_TARGET_SERVICE = "S2012" Error "unknown-target-service" ("ASM60047") [AbsentName]: "A target names a service that the component does not have.";
+    UNKNOWN_BINDING = "S2013" Error "unknown-binding" ("ASM60050") [AbsentName]: "A target names a binding that the service does not have.";
     TARGET_AMBIGUOUS = "S2014" Error "target-ambiguous" ("ASM60048"): "A target names a component with several fitting services.";
     WIRE_INTERFACE = "S2015" Error "wire-interface" ("ASM60043"): "A reference is wired to a service with another interface.";
-    UNKNOWN_WIRE_SOURCE = "S2016" Error "unknown-wire-source": "A wire starts from a reference that the component does not have.";
+    UNKNOWN_WIRE_SOURCE = "S2016" Error "unknown-wire-source" [AbsentName]: "A wire starts from a reference that the component does not have.";
     TOO_MANY_TARGETS = "S2017" Error "too-many-targets": "A reference has more targets than it takes.";
-    UNWIRED = "S2018" Error "unwired": "A reference that needs a target has none. In SCA 1.0 files a warning.";
+    UNWIRED = "S2018" Error "unwired" [OutlivesExpansion, AbsentName]: "A reference that needs a target has none. In SCA 1.0 files a warning.";
     AUTOWIRE_AMBIGUOUS = "S2019" Error "autowire-ambiguous" ("ASM60025"): "Autowire finds several services for a reference.";
-    CALL_CYCLE = "S2020" Error "call-cycle": "Components are wired so that a call comes back to its caller.";
-    UNKNOWN_PROMOTED = "S2021" Error "unknown-promoted": "A composite promotes what is not there.";
-    PROMOTED_UNWIRED = "S2022" Warning "promoted-unwired": "A composite that runs by itself promotes a reference, and nothing wires it.";
+    CALL_CYCLE = "S2020" Error "call-cycle" [Judgement, OutlivesExpansion]: "Components are wired so that a call comes back to its caller.";
+    UNKNOWN_PROMOTED = "S2021" Error "unknown-promoted" [AbsentName]: "A composite promotes what is not there.";
+    PROMOTED_UNWIRED = "S2022" Warning "promoted-unwired" [AbsentName]: "A composite that runs by itself promotes a reference, and nothing wires it.";
     SOURCE_MALFORMED = "S2023" Error "source-malformed": "The `source` of a property leads to no value.";
-    UNKNOWN_SOURCE = "S2024" Error "unknown-source": "The `source` of a property names a composite property that does not exist.";
-    COMPOSITE_PROPERTY_MISSING = "S2025" Error "composite-property-missing" ("ASM60034"): "A composite property that has to have a value has none.";
-    UNUSED_PROPERTY = "S2026" Warning "unused-property": "A composite property is used by no component.";
+    UNKNOWN_SOURCE = "S2024" Error "unknown-source" [AbsentName]: "The `source` of a property names a composite property that does not exist.";
+    COMPOSITE_PROPERTY_MISSING = "S2025" Error "composite-property-missing" ("ASM60034") [AbsentName]: "A composite property that has to have a value has none.";
+    UNUSED_PROPERTY = "S2026" Warning "unused-property" [WithoutEffect, AbsentName]: "A composite property is used by no component.";
     SETTING_MALFORMED = "S2027" Error "setting-malformed": "An option that sets a composite property has no name or no `=`.";
     SETTING_REPEATED = "S2028" Error "setting-repeated": "One composite property is set twice.";
-    UNKNOWN_SETTING = "S2029" Error "unknown-setting": "An option sets a composite property that does not exist.";
-    INCLUDE_NOT_FOUND = "S2030" Error "include-not-found" ("ASM60042"): "An include names a composite that is not found.";
-    COMPOSITE_NOT_FOUND = "S2031" Error "composite-not-found" ("ASM60030"): "A component is implemented by a composite that is not found.";
+    UNKNOWN_SETTING = "S2029" Error "unknown-setting" [AbsentName]: "An option sets a composite property that does not exist.";
+    INCLUDE_NOT_FOUND = "S2030" Error "include-not-found" ("ASM60042") [AbsentComposite]: "An include names a composite that is not found.";
+    COMPOSITE_NOT_FOUND = "S2031" Error "composite-not-found" ("ASM60030") [AbsentComposite]: "A component is implemented by a composite that is not found.";
     COMPOSITE_CIRCLE = "S2032" Error "composite-circle": "A composite includes itself or is implemented by itself, directly or through others.";
-    INCLUDED_TWICE = "S2033" Error "included-twice" ("ASM60031"): "A composite is included twice in one composite.";
-    INCLUDE_LOCAL = "S2034" Error "include-local" ("ASM60041"): "A composite that is `local` is included in one that is not.";
+    INCLUDED_TWICE = "S2033" Error "included-twice" ("ASM60031") [Judgement]: "A composite is included twice in one composite.";
+    INCLUDE_LOCAL = "S2034" Error "include-local" ("ASM60041") [Judgement]: "A composite that is `local` is included in one that is not.";
     FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites or replicas come to more components or wires, or sources to more values, than a fleet can have; or paths of sources look at too many elements.";
-    PROMOTED_MULTIPLICITY = "S2036" Error "promoted-multiplicity" ("ASM60011"): "A composite's reference allows numbers of targets that a reference it promotes does not.";
-    PROMOTED_FIXED = "S2037" Error "promoted-fixed" ("ASM50042"): "A reference for one target that must not be overridden is promoted.";
+    PROMOTED_MULTIPLICITY = "S2036" Error "promoted-multiplicity" ("ASM60011") [Judgement]: "A composite's reference allows numbers of targets that a reference it promotes does not.";
+    PROMOTED_FIXED = "S2037" Error "promoted-fixed" ("ASM50042") [Judgement]: "A reference for one target that must not be overridden is promoted.";
     WIRED_BY_IMPLEMENTATION = "S2038" Error "wired-by-implementation" ("ASM50013"): "A reference that its implementation wires has a target. In SCA 1.0 files a warning.";
-    TYPE_AND_ELEMENT = "S2039" Error "type-and-element": "A property has both a type and an element.";
-    BINDING_REPEATED = "S2040" Error "binding-repeated" ("ASM90002"): "A service or a reference has two bindings of one name.";
-    SERVICE_BINDING_URI = "S2041" Warning "service-binding-uri" ("ASM90005"): "A service's binding of SCA has a URI.";
-    COMPOSITE_VALUE_TYPE = "S2042" Error "composite-value-type" ("ASM50027"): "The value of a composite's property is not of its type.";
-    COMPONENT_TYPE_REPEATED = "S2043" Error "component-type-repeated": "A component type has two services, references or properties of one name. In SCA 1.0 files a warning.";
-    COMPONENT_TYPE_MISSING = "S2044" Error "component-type-missing" ("ASM40001"): "An implementation that says nothing by itself has no component type beside it.";
+    TYPE_AND_ELEMENT = "S2039" Error "type-and-element" [Judgement]: "A property has both a type and an element.";
+    BINDING_REPEATED = "S2040" Error "binding-repeated" ("ASM90002") [Judgement]: "A service or a reference has two bindings of one name.";
+    SERVICE_BINDING_URI = "S2041" Warning "service-binding-uri" ("ASM90005") [Judgement]: "A service's binding of SCA has a URI.";
+    COMPOSITE_VALUE_TYPE = "S2042" Error "composite-value-type" ("ASM50027") [Judgement]: "The value of a composite's property is not of its type.";
+    COMPONENT_TYPE_REPEATED = "S2043" Error "component-type-repeated" [Judgement]: "A component type has two services, references or properties of one name. In SCA 1.0 files a warning.";
+    COMPONENT_TYPE_MISSING = "S2044" Error "component-type-missing" ("ASM40001") [Judgement]: "An implementation that says nothing by itself has no component type beside it.";
     EXPRESSION = "S2045" Error "expression": "An expression of a replica or a condition is malformed, or has no value.";
-    REPLICAS = "S2046" Error "replicas": "What is said about the replicas of a component contradicts itself.";
+    REPLICAS = "S2046" Error "replicas" [AbsentPart]: "What is said about the replicas of a component contradicts itself.";
     OVERRIDES = "S2047" Error "overrides": "A table of overrides is malformed, or is about replicas that do not exist.";
     SEVERITY = "S2048" Error "severity": "A severity is set of a code that does not exist, to none, or twice.";
-    SEVERITY_UNUSED = "S2049" Warning "severity-unused": "A composite lowers a severity, and there is nothing that it changes; or an option sets one, and a composite another.";
-    UNKNOWN_TYPE = "S2050" Error "unknown-type": "A property has a type that XML Schema does not have.";
-    DEPLOYABLE_NOT_FOUND = "S2051" Error "deployable-not-found": "A contribution calls a composite deployable that it does not have.";
+    SEVERITY_UNUSED = "S2049" Warning "severity-unused" [AbsentName]: "A composite lowers a severity, and there is nothing that it changes; or an option sets one, and a composite another.";
+    UNKNOWN_TYPE = "S2050" Error "unknown-type" [Judgement]: "A property has a type that XML Schema does not have.";
+    DEPLOYABLE_NOT_FOUND = "S2051" Error "deployable-not-found" [AbsentComposite]: "A contribution calls a composite deployable that it does not have.";
     VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not hold them as SCA asks for.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways that exclude each other.";
-    EXCHANGE = "S2059" Warning "exchange": "A contribution exports a namespace of which it has nothing, or imports one that those around it do not export.";
+    EXCHANGE = "S2059" Warning "exchange" [AbsentComposite]: "A contribution exports a namespace of which it has nothing, or imports one that those around it do not export.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";
-    NOT_SUPPORTED_YET = "S3003" Warning "not-supported-yet": "A part of SCA or SAOMS that this version does not support yet.";
-    UNKNOWN_PROPERTY = "S3004" Error "unknown-property" ("ASM50037"): "A component is given a property that its class, composite or component type does not have.";
+    NOT_SUPPORTED_YET = "S3003" Warning "not-supported-yet" [OutlivesExpansion]: "A part of SCA or SAOMS that this version does not support yet.";
+    UNKNOWN_PROPERTY = "S3004" Error "unknown-property" ("ASM50037") [AbsentPart]: "A component is given a property that its class, composite or component type does not have.";
     PROPERTY_REPEATED = "S3005" Error "property-repeated" ("ASM50031"): "A property is given twice.";
-    PROPERTY_MISSING = "S3006" Error "property-missing" ("ASM40011"): "A property that needs a value has none.";
+    PROPERTY_MISSING = "S3006" Error "property-missing" ("ASM40011") [AbsentPart]: "A property that needs a value has none.";
     VALUE_TYPE = "S3007" Error "value-type": "A value is of the wrong type.";
     VALUE_RANGE = "S3008" Error "value-range": "A value is out of the range of the property.";
     VALUE_NOT_ALLOWED = "S3009" Error "value-not-allowed": "A value is not among those that the property allows.";
-    VALUE_EMPTY = "S3010" Error "value-empty": "A value is empty.";
+    VALUE_EMPTY = "S3010" Error "value-empty" [AbsentPart]: "A value is empty.";
     MANY_VALUES = "S3011" Error "many-values" ("ASM50032"): "A property that takes one value is given several.";
     VALUE_IN_TWO_WAYS = "S3012" Error "value-in-two-ways" ("ASM50033"): "A property is given a value in two ways at once.";
-    NOT_UNIQUE = "S3013" Error "not-unique": "Two components share a value that each needs for itself.";
-    CONSTRUCTION = "S3014" Error "construction": "The values of a component do not fit together, as its class sees it.";
+    NOT_UNIQUE = "S3013" Error "not-unique" [Judgement, OutlivesExpansion]: "Two components share a value that each needs for itself.";
+    CONSTRUCTION = "S3014" Error "construction" [AbsentPart]: "The values of a component do not fit together, as its class sees it.";
     LIBRARY = "S3015" Error "library": "The library that an implementation names is not found, cannot be used, or has no such class.";
     // S40: tasks and topics.
-    TASK_ID_SHARED = "S4001" Warning "task-id-shared": "Two tasks have one ID.";
+    TASK_ID_SHARED = "S4001" Warning "task-id-shared" [OutlivesExpansion]: "Two tasks have one ID.";
     TOPIC_RENAME = "S4002" Error "topic-rename": "A `topicRename` is malformed or contradicts itself.";
-    RENAME_UNUSED = "S4003" Warning "rename-unused": "A topic is renamed that the component does not use.";
+    RENAME_UNUSED = "S4003" Warning "rename-unused" [OutlivesExpansion, WithoutEffect]: "A topic is renamed that the component does not use.";
     USE_JMS = "S4004" Error "use-jms": "A component that publishes or subscribes has `useJMS` set to false.";
     BROKER_URL = "S4005" Error "broker-url": "The address of a message broker is malformed.";
-    CREDENTIALS = "S4006" Warning "credentials": "An account at a message broker is incomplete or not used.";
-    DEADLINE = "S4007" Warning "deadline": "A deadline is behind the next execution.";
-    RESTART_UNUSED = "S4008" Warning "restart-unused": "A setting of restarts has no effect, since there are none.";
+    CREDENTIALS = "S4006" Warning "credentials" [OutlivesExpansion, AbsentPart]: "An account at a message broker is incomplete or not used.";
+    DEADLINE = "S4007" Warning "deadline" [OutlivesExpansion]: "A deadline is behind the next execution.";
+    RESTART_UNUSED = "S4008" Warning "restart-unused" [OutlivesExpansion, WithoutEffect]: "A setting of restarts has no effect, since there are none.";
     TOPIC_MISMATCH = "S4009" Error "topic-mismatch": "Two components use one topic for different messages, or in different ways.";
-    TOPIC_UNREAD = "S4010" Note "topic-unread": "A topic is published that nobody reads. Told by `saoms check --wiring`.";
-    TOPIC_UNWRITTEN = "S4011" Warning "topic-unwritten": "A topic is read that nobody publishes. Told by `saoms check --wiring`.";
-    TOPIC_NEAR = "S4012" Warning "topic-near": "A topic has one end or one user alone, and there is another one with nearly its name. Told by `saoms check --wiring`.";
-    QUEUE = "S4013" Note "queue": "More messages can come between two executions of a reader than its queue takes. Told by `saoms check --wiring`.";
-    READER_FASTER = "S4014" Note "reader-faster": "A topic is read more often than anybody publishes it. Told by `saoms check --wiring`.";
+    TOPIC_UNREAD = "S4010" Note "topic-unread" [OfWiring, AbsentName]: "A topic is published that nobody reads. Told by `saoms check --wiring`.";
+    TOPIC_UNWRITTEN = "S4011" Warning "topic-unwritten" [OfWiring, AbsentName]: "A topic is read that nobody publishes. Told by `saoms check --wiring`.";
+    TOPIC_NEAR = "S4012" Warning "topic-near" [OfWiring, AbsentName]: "A topic has one end or one user alone, and there is another one with nearly its name. Told by `saoms check --wiring`.";
+    QUEUE = "S4013" Note "queue" [OfWiring]: "More messages can come between two executions of a reader than its queue takes. Told by `saoms check --wiring`.";
+    READER_FASTER = "S4014" Note "reader-faster" [OfWiring]: "A topic is read more often than anybody publishes it. Told by `saoms check --wiring`.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A loop is named that the component does not have.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "One loop of a component is given twice.";
@@ -165,61 +192,34 @@ codes! {
     LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "A loop is named, and nothing is said that changes it.";
 }
 
-/// The thing whose absence a diagnostic reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Absence {
-    /// A part of the component, or of another element, that the diagnostic is at.
-    Part,
-    /// A composite in any file.
-    Composite,
-    /// A component anywhere in the fleet.
-    Component,
-    /// Another name, or a user of it, anywhere in the fleet.
-    OtherName,
+/// The natures of a code of this table; `None` for that of a rule of a crate of components.
+pub(crate) fn natures(id: &str) -> Option<&'static [Nature]> {
+    let place = ALL.binary_search_by_key(&id, |code| code.id).ok()?;
+    Some(NATURES[place])
 }
 
-/// The kind of thing that is absent by a diagnostic of this code.
-pub(crate) fn absence(code: &Code) -> Option<Absence> {
-    const PARTS: [&Code; 7] = [
-        &PROPERTY_MISSING, &VALUE_EMPTY, &CONSTRUCTION, &CREDENTIALS, &UNKNOWN_PROPERTY, &MISSING_IMPLEMENTATION,
-        &REPLICAS,
-    ];
-    const COMPOSITES: [&Code; 4] = [&INCLUDE_NOT_FOUND, &COMPOSITE_NOT_FOUND, &DEPLOYABLE_NOT_FOUND, &EXCHANGE];
-    const OTHER_NAMES: [&Code; 14] = [
-        &UNKNOWN_TARGET_SERVICE, &UNKNOWN_BINDING, &UNKNOWN_WIRE_SOURCE, &UNKNOWN_PROMOTED, &UNKNOWN_SOURCE,
-        &UNKNOWN_SETTING, &UNUSED_PROPERTY, &UNWIRED, &PROMOTED_UNWIRED, &COMPOSITE_PROPERTY_MISSING, &SEVERITY_UNUSED,
-        &TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR,
-    ];
-    match code {
-        _ if PARTS.contains(&code) => Some(Absence::Part),
-        _ if COMPOSITES.contains(&code) => Some(Absence::Composite),
-        _ if code == &UNKNOWN_COMPONENT => Some(Absence::Component),
-        _ if OTHER_NAMES.contains(&code) => Some(Absence::OtherName),
-        _ => None,
-    }
+fn is(id: &str, nature: Nature) -> bool {
+    natures(id).is_some_and(|natures| natures.contains(&nature))
 }
 
 /// True if errors of a code are judgements on a fleet that could run: their severity can be lowered. So can that of
 /// every rule of a crate of components.
 pub fn is_judgement(code: &Code) -> bool {
-    const JUDGEMENTS: &[&Code] = &[
-        &UNKNOWN_ATTRIBUTE, &MISSING_TARGET_NAMESPACE, &MISPLACED_TEXT, &COMPOSITE_REPEATED, &CALL_CYCLE,
-        &INCLUDED_TWICE, &INCLUDE_LOCAL, &PROMOTED_MULTIPLICITY, &PROMOTED_FIXED, &TYPE_AND_ELEMENT, &BINDING_REPEATED,
-        &SERVICE_BINDING_URI, &COMPOSITE_VALUE_TYPE, &UNKNOWN_TYPE, &COMPONENT_TYPE_REPEATED, &COMPONENT_TYPE_MISSING,
-        &NOT_UNIQUE,
-    ];
-    JUDGEMENTS.contains(&code) || !ALL.contains(&code)
+    natures(code.id).is_none_or(|natures| natures.contains(&Nature::Judgement))
 }
 
-/// True if `saoms expand` leaves a fault of this code in what it writes, so that a severity set for it is written, too.
+/// True if `saoms expand` leaves a fault of this code in what it writes, as it does with those of every rule of a crate
+/// of components.
 pub(crate) fn outlives_expansion(code: &Code) -> bool {
-    [&MISSING_TARGET_NAMESPACE, &UNWIRED, &CALL_CYCLE, &NOT_UNIQUE].contains(&code)
-        || [&TASK_ID_SHARED, &RENAME_UNUSED, &CREDENTIALS, &DEADLINE, &RESTART_UNUSED, &NOT_SUPPORTED_YET]
-            .contains(&code)
-        || !ALL.contains(&code)
+    natures(code.id).is_none_or(|natures| natures.contains(&Nature::OutlivesExpansion))
 }
 
 /// True if a code is one of those that the wiring report adds.
-pub(crate) fn is_of_wiring(id: &str) -> bool {
-    [&TOPIC_UNREAD, &TOPIC_UNWRITTEN, &TOPIC_NEAR, &QUEUE, &READER_FASTER].into_iter().any(|code| code.id == id)
+pub fn is_of_wiring(id: &str) -> bool {
+    is(id, Nature::OfWiring)
+}
+
+/// True if a code says that what it is at has no effect.
+pub fn is_without_effect(code: &Code) -> bool {
+    is(code.id, Nature::WithoutEffect)
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::codes::Absence;
+use super::codes::{Nature, natures};
 use super::{Code, Diagnostic, Severity, codes};
 use crate::limits::{CODE_DIAGNOSTICS, FILE_DIAGNOSTICS};
 use crate::source::{FileId, Location};
@@ -70,14 +70,14 @@ impl Diagnostics {
             let before = self.damaged.range(..=(at.file, at.span.start)).next_back();
             before.is_some_and(|((file, _), end)| *file == at.file && at.span.end <= *end)
         };
-        let Some(absence) = codes::absence(code) else { return false };
-        let is_hidden = match absence {
-            Absence::Part => false,
-            Absence::Composite => self.hidden.composites,
-            Absence::Component => self.hidden.components,
-            Absence::OtherName => self.hidden.others,
-        };
-        is_hidden || is_inside()
+        let is_hidden = natures(code.id).into_iter().flatten().find_map(|nature| match nature {
+            Nature::AbsentPart => Some(false),
+            Nature::AbsentComposite => Some(self.hidden.composites),
+            Nature::AbsentComponent => Some(self.hidden.components),
+            Nature::AbsentName => Some(self.hidden.others),
+            _ => None,
+        });
+        is_hidden.is_some_and(|is_hidden| is_hidden || is_inside())
     }
 
     /// Adds one, unless it says only that something is missing where a fault of the text is the reason.

@@ -132,8 +132,7 @@ fn from_files(id: &str) -> (Vec<Diagnostic>, Sources) {
     files.extend(read(format!("{id}.inner.composite")));
     assert!(!files.is_empty(), "there is no example of {id}");
     let settings = fs::read_to_string(folder().join(format!("{id}.set"))).unwrap_or_default();
-    let wiring = WIRING.contains(&id);
-    checked_with(&files, asked_for, &settings.lines().collect::<Vec<_>>(), wiring)
+    checked_with(&files, asked_for, &settings.lines().collect::<Vec<_>>(), codes::is_of_wiring(id))
 }
 
 /// Checks `ID.composite` in its folder, where there are component types, with unknown classes taken as given.
@@ -172,9 +171,6 @@ fn by_file_name(sources: &Sources) -> Sources {
     }
     renamed
 }
-
-/// The codes that the wiring report adds.
-const WIRING: &[&str] = &["S4010", "S4011", "S4012", "S4013", "S4014"];
 
 fn checked(files: &[(String, String)], asked_for: usize, settings: &[&str]) -> (Vec<Diagnostic>, Sources) {
     checked_with(files, asked_for, settings, false)

@@ -245,6 +245,6 @@ fn severities_of_the_examples_outlive_their_expansion() {
             lost.push(code.id);
         }
     }
-    assert!(lost.is_empty(), "missing in `outlives_expansion`: {lost:?}");
+    assert!(lost.is_empty(), "they are of the nature `OutlivesExpansion`: {lost:?}");
     assert!(expanded.contains(&"S4007"), "{expanded:?}");
 }
