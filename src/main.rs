@@ -19,7 +19,7 @@ use saoms_components as _;
 enum Exit {
     /// Everything asked for was done.
     Done = 0,
-    /// The run failed, or what was to be written could not be, or was found not to be as asked.
+    /// The run failed or is incomplete, or what was to be written could not be, or was found not to be as asked.
     Failed = 1,
     /// The input is wrong and nothing was started.
     WrongInput = 2,

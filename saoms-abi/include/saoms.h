@@ -354,7 +354,9 @@ typedef struct SaomsHostFunctions {
     // Adds to a number of the run's report, such as `luggage.delivered`, which several components may share.
     void (*count)(void *state, struct SaomsBytes path, int64_t more);
     // Says that this component has work left (0), or that its work is done (1). The run ends by itself when at least
-    // one component voted and the work of all that voted is done.
+    // one component voted and the work of all that voted is done. 2 says that some work was given up, so that the run
+    // is incomplete, and nothing about what is left; a program that does not know it takes it for 1, until the
+    // component says 0 or 1.
     void (*vote)(void *state, uint32_t work);
     // Shows each of the component's loops to `visit`, which gets `visitor` as its first argument.
     void (*chosen_loops)(void *state, void *visitor, SaomsLoopVisitor visit);

@@ -99,7 +99,9 @@ pub struct HostFunctions {
     /// Adds to a number of the run's report, such as `luggage.delivered`, which several components may share.
     pub count: unsafe extern "C" fn(state: *mut c_void, path: Bytes, more: i64),
     /// Says that this component has work left (0), or that its work is done (1). The run ends by itself when at least
-    /// one component voted and the work of all that voted is done.
+    /// one component voted and the work of all that voted is done. 2 says that some work was given up, so that the run
+    /// is incomplete, and nothing about what is left; a program that does not know it takes it for 1, until the
+    /// component says 0 or 1.
     pub vote: unsafe extern "C" fn(state: *mut c_void, work: u32),
     /// Shows each of the component's loops to `visit`, which gets `visitor` as its first argument.
     pub chosen_loops: unsafe extern "C" fn(state: *mut c_void, visitor: *mut c_void, visit: LoopVisitor),

@@ -300,7 +300,7 @@ impl<'a> Context<'a> {
     }
 
     /// Says whether this component has work left. The run ends by itself when at least one component voted and all that
-    /// voted are [`Work::Done`].
+    /// voted `Open` or `Done` are [`Work::Done`].
     pub fn vote(&mut self, work: Work) {
         self.host.vote(work);
     }

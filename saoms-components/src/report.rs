@@ -8,6 +8,7 @@ submit! {
             "luggage.requested",
             "luggage.delivered",
             "luggage.open",
+            "luggage.given_up",
             "luggage.ignored",
             "collisions.vertex",
             "collisions.swap",
@@ -22,11 +23,15 @@ submit! {
 /// `1 of 1 pieces of luggage delivered, no collision, 0 stranded`; `None` if no luggage was requested.
 fn result(count: &Counts<'_>) -> Option<String> {
     let delivered = progress(count)?;
+    let given_up = match count("luggage.given_up") {
+        0 => String::new(),
+        several => format!(", {several} given up"),
+    };
     let collisions = match count("collisions.vertex") + count("collisions.swap") {
         0 => "no collision".to_owned(),
         several => counted(usize::try_from(several).unwrap_or_default(), "collision"),
     };
-    Some(format!("{delivered}, {collisions}, {} stranded", count("stranded")))
+    Some(format!("{delivered}{given_up}, {collisions}, {} stranded", count("stranded")))
 }
 
 /// `1 of 1 pieces of luggage delivered`; `None` if no luggage was requested.
@@ -50,6 +55,7 @@ mod tests {
             move |path: &str| match path {
                 "luggage.requested" => requested,
                 "luggage.delivered" => 3,
+                "luggage.given_up" => requested / 5,
                 "collisions.swap" => swaps,
                 "stranded" => 2,
                 _ => 0,
@@ -58,6 +64,7 @@ mod tests {
         let text = |requested, swaps| result(&counts(requested, swaps));
         assert_eq!(text(0, 1), None);
         assert_eq!(text(4, 0).unwrap(), "3 of 4 pieces of luggage delivered, no collision, 2 stranded");
+        assert_eq!(text(5, 0).unwrap(), "3 of 5 pieces of luggage delivered, 1 given up, no collision, 2 stranded");
         assert_eq!(text(4, 1).unwrap(), "3 of 4 pieces of luggage delivered, 1 collision, 2 stranded");
         assert_eq!(text(4, 5).unwrap(), "3 of 4 pieces of luggage delivered, 5 collisions, 2 stranded");
         assert_eq!(progress(&counts(4, 0)).unwrap(), "3 of 4 pieces of luggage delivered");

@@ -259,6 +259,11 @@ impl Bench {
         self.stage.work
     }
 
+    /// True if the component said, in any step, that work was given up.
+    pub fn gave_up(&self) -> bool {
+        self.stage.gave_up
+    }
+
     /// A value or count of the component in the report.
     pub fn report(&self, path: &str) -> Option<&ReportValue> {
         self.stage.report.iter().rev().find(|(known, _)| known == path).map(|(_, value)| value)

@@ -46,6 +46,7 @@ pub(crate) struct Stage {
     pub(crate) actions: Vec<(Time, Action)>,
     pub(crate) report: Vec<(String, ReportValue)>,
     pub(crate) work: Option<Work>,
+    pub(crate) gave_up: bool,
 }
 
 /// The component's name.
@@ -91,6 +92,7 @@ impl Stage {
             actions: Vec::new(),
             report: Vec::new(),
             work: None,
+            gave_up: false,
         }
     }
 
@@ -165,6 +167,7 @@ impl Stage {
                 Action::Report(line) => writeln!(text, "report: {line}"),
                 Action::Work(Work::Open) => writeln!(text, "has work left"),
                 Action::Work(Work::Done) => writeln!(text, "has no work left"),
+                Action::Work(Work::GivenUp) => writeln!(text, "gave up work"),
             };
         }
         text
@@ -339,8 +342,11 @@ impl Host for Stage {
     }
 
     fn vote(&mut self, work: Work) {
-        if self.work != Some(work) {
-            self.work = Some(work);
+        let is_new = match work {
+            Work::GivenUp => !std::mem::replace(&mut self.gave_up, true),
+            _ => self.work.replace(work) != Some(work),
+        };
+        if is_new {
             self.log_action(Action::Work(work));
         }
     }

@@ -25,7 +25,8 @@ use crate::Exit;
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done, also when --for elapsed with work left (the report says so)
-  1    the run failed: a component failed for good, a message was lost, a finished report or picture could not be written
+  1    the run failed: a component failed for good, a message was lost, a finished report or picture could not be written;
+       or it is incomplete: work was given up
   2    the input is wrong: a composite, a value, the command line, a place where no file can be; nothing was started
   130  ended by Ctrl-C";
 

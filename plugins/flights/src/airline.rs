@@ -74,6 +74,9 @@ impl Component for Airline {
             context.send(&self.flights, self.flight.clone())?;
         }
         for state in context.receive(&self.states).filter(|state| state.number == self.flight.number) {
+            if state.lost > 0 {
+                context.vote(Work::GivenUp);
+            }
             if state.open == 0 {
                 context.vote(Work::Done);
             }

@@ -207,8 +207,13 @@ unsafe extern "C" fn count(state: *mut c_void, path: Bytes, more: i64) {
 }
 
 unsafe extern "C" fn vote(state: *mut c_void, work: u32) {
+    let work = match work {
+        0 => Work::Open,
+        2 => Work::GivenUp,
+        _ => Work::Done,
+    };
     // SAFETY: callers pass the state of their handle.
-    unsafe { with_host(state, (), |host| host.vote(if work == 0 { Work::Open } else { Work::Done })) }
+    unsafe { with_host(state, (), |host| host.vote(work)) }
 }
 
 unsafe extern "C" fn enter_loop(state: *mut c_void, place: u32) {

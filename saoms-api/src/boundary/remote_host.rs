@@ -323,6 +323,7 @@ impl Host for RemoteHost<'_> {
         let work = match work {
             Work::Open => 0,
             Work::Done => 1,
+            Work::GivenUp => 2,
         };
         get!(self.vote, work);
     }

@@ -38,7 +38,8 @@ pub struct EnvironmentProperties {
 
 /// Plays a scenario: publishes its events at their times. Random values follow from the seed of the run.
 ///
-/// Votes that the run is done when the scenario is over and all its luggage is delivered or given up.
+/// Votes that the run is done when the scenario is over and all its luggage is delivered or given up, and that work was
+/// given up if any of it was.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.Environment",
@@ -146,8 +147,15 @@ impl Environment {
                 LuggageStage::GivenUp => 0,
                 _ => continue,
             };
-            if self.open.remove(&response.luggage) && !self.has_world {
+            if !self.open.remove(&response.luggage) {
+                continue;
+            }
+            if counted == 0 {
+                context.vote(Work::GivenUp);
+            }
+            if !self.has_world {
                 context.count("luggage.open", counted);
+                context.count("luggage.given_up", 1 + counted);
             }
         }
     }

@@ -1,4 +1,4 @@
-use saoms_api::{Cause, Class, Component, Context, Failure, Header, Level, Publisher, Subscription};
+use saoms_api::{Cause, Class, Component, Context, Failure, Header, Level, Publisher, Subscription, Work};
 
 use super::event_filter::EventFilter;
 use super::open_luggage::OpenLuggage;
@@ -96,6 +96,7 @@ impl Component for MasterEnvironment {
                 Level::Error,
                 format_args!("gives up luggage {luggage} from {from} to {to}: no robot can bring it"),
             );
+            context.vote(Work::GivenUp);
             context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
         }
         Ok(())

@@ -51,9 +51,12 @@ impl World {
         };
         match result {
             Ok(HandlingOutcome::Unknown) => return Ok(Progress::Running),
-            Ok(HandlingOutcome::Delivered) => {
+            Ok(HandlingOutcome::Delivered { given_up }) => {
                 context.count("luggage.delivered", 1);
                 context.count("luggage.open", -1);
+                if given_up {
+                    context.count("luggage.given_up", -1);
+                }
                 self.vote(context);
             }
             Ok(HandlingOutcome::Handled) => {}

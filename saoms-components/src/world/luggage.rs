@@ -40,8 +40,8 @@ enum PiecePosition {
 pub(super) enum HandlingOutcome {
     /// The piece is on the robot, or on a block that is not its destination.
     Handled,
-    /// The piece is at its destination.
-    Delivered,
+    /// The piece is at its destination; it may have been given up before.
+    Delivered { given_up: bool },
     /// No request for the piece has arrived yet.
     Unknown,
 }
@@ -55,14 +55,12 @@ impl Stock {
         true
     }
 
-    /// Gives up a piece.
-    pub(super) fn give_up(&mut self, luggage: u32) {
-        if let Some(piece) = self.pieces.get_mut(&luggage)
-            && piece.is_open()
-        {
-            piece.given_up = true;
-            self.open -= 1;
-        }
+    /// Gives up a piece; `false` if it is not open.
+    pub(super) fn give_up(&mut self, luggage: u32) -> bool {
+        let Some(piece) = self.pieces.get_mut(&luggage).filter(|piece| piece.is_open()) else { return false };
+        piece.given_up = true;
+        self.open -= 1;
+        true
     }
 
     /// Called after all messages of a period are handled: pieces that stay unknown for a whole period do not exist.
@@ -118,7 +116,7 @@ impl Stock {
             self.open -= 1;
         }
         piece.place = PiecePosition::Delivered;
-        Ok(HandlingOutcome::Delivered)
+        Ok(HandlingOutcome::Delivered { given_up: piece.given_up })
     }
 
     /// Puts all pieces that a robot carries on a block.

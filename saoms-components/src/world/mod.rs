@@ -26,8 +26,8 @@ use referee::Referee;
 ///
 /// Robots whose reference `world` leads here drive simulated hardware: their actions take the time that the properties
 /// set, and succeed only where they are possible. The world counts deliveries and collisions. A robot that breaks down
-/// stays where it is, with its luggage, which another robot beside it can take over. The run is done when all luggage
-/// is delivered or given up.
+/// stays where it is, with its luggage, which another robot beside it can take over. The run ends when all luggage
+/// is delivered or given up; it is incomplete if any was given up.
 #[derive(Debug, Class)]
 #[class(
     name = "saoms.World",
@@ -73,7 +73,9 @@ impl Component for World {
         self.collisions = context.publish(&COLLISION)?;
         let area = context.publish(&AREA)?;
         context.send(&area, self.referee.map().into())?;
-        for section in ["luggage.delivered", "luggage.open", "collisions.vertex", "collisions.swap", "stranded"] {
+        for section in [
+            "luggage.delivered", "luggage.open", "luggage.given_up", "collisions.vertex", "collisions.swap", "stranded",
+        ] {
             context.count(section, 0);
         }
         Ok(())
@@ -101,8 +103,9 @@ impl Component for World {
             if !self.validator.accepts(response, header, Some(self.referee.map()), context) {
                 continue;
             }
-            if response.stage == LuggageStage::GivenUp {
-                self.stock.give_up(response.luggage);
+            if response.stage == LuggageStage::GivenUp && self.stock.give_up(response.luggage) {
+                context.count("luggage.given_up", 1);
+                context.vote(Work::GivenUp);
             }
         }
         self.stock.settle();

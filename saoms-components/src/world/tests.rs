@@ -121,7 +121,7 @@ fn luggage_is_delivered_once_and_only_by_who_carries_it() {
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
     assert_eq!(stock.deposit(7, 1, block(0, 0)), Ok(HandlingOutcome::Handled), "it lies on the way");
     assert_eq!(stock.collect(7, 2, block(0, 0), |_| false), Ok(HandlingOutcome::Handled));
-    assert_eq!(stock.deposit(7, 2, to), Ok(HandlingOutcome::Delivered));
+    assert_eq!(stock.deposit(7, 2, to), Ok(HandlingOutcome::Delivered { given_up: false }));
     assert!(stock.is_settled());
     assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is delivered already".into()));
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));
@@ -135,7 +135,7 @@ fn luggage_on_a_robot_that_is_out_of_order_is_collected_where_that_stands() {
     assert_eq!(stock.collect(7, 2, here, |other| other == 3), Err("luggage 7 is on robot 1".into()));
     assert_eq!(stock.collect(7, 2, here, |other| other == 1), Ok(HandlingOutcome::Handled));
     assert_eq!(stock.deposit(7, 1, block(2, 0)), Err("it does not carry luggage 7".into()));
-    assert_eq!(stock.deposit(7, 2, block(2, 0)), Ok(HandlingOutcome::Delivered));
+    assert_eq!(stock.deposit(7, 2, block(2, 0)), Ok(HandlingOutcome::Delivered { given_up: false }));
 }
 
 #[test]
@@ -176,12 +176,11 @@ fn luggage_that_is_given_up_is_no_open_work() {
     let mut stock = Stock::default();
     let (from, to) = (block(1, 0), block(2, 0));
     assert!(stock.add(7, from, to) && stock.add(8, from, to) && !stock.add(8, to, from));
-    stock.give_up(7);
-    stock.give_up(7);
+    assert!(stock.give_up(7) && !stock.give_up(7) && !stock.give_up(9));
     assert!(!stock.is_settled());
-    stock.give_up(8);
+    assert!(stock.give_up(8));
     assert!(stock.is_settled());
     assert_eq!(stock.collect(7, 1, from, |_| false), Ok(HandlingOutcome::Handled), "it can be brought all the same");
-    assert_eq!(stock.deposit(7, 1, to), Ok(HandlingOutcome::Delivered));
-    assert!(stock.is_settled());
+    assert_eq!(stock.deposit(7, 1, to), Ok(HandlingOutcome::Delivered { given_up: true }));
+    assert!(stock.is_settled() && !stock.give_up(7));
 }

@@ -379,6 +379,9 @@ impl Host for View<'_> {
     }
 
     fn vote(&mut self, work: Work) {
-        self.seat_mut().vote = Some(work);
+        // What is given up says nothing about what is left.
+        if work != Work::GivenUp {
+            self.seat_mut().vote = Some(work);
+        }
     }
 }

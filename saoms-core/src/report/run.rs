@@ -91,6 +91,9 @@ pub struct Votes {
     pub done: u64,
     /// The names of the components that voted that work is left.
     pub open: Vec<String>,
+    /// The names of the components that voted that work was given up.
+    #[serde(default)]
+    pub given_up: Vec<String>,
 }
 
 /// Outcome of a run.
@@ -102,7 +105,7 @@ pub struct Outcome {
     pub reasons: Vec<String>,
 }
 
-/// Status of an ended run.
+/// Status of an ended run: of those that hold, the last one in this list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunStatus {
@@ -110,6 +113,8 @@ pub enum RunStatus {
     Done,
     /// The time given for the run was over.
     Elapsed,
+    /// Work was given up, whatever ended the run.
+    Incomplete,
     /// A component or observer failed for good, whatever ended the run.
     Failed,
     /// The run was interrupted, as by Ctrl-C.

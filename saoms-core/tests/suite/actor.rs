@@ -265,6 +265,7 @@ impl Ends {
             "cancelled" => context.info(format_args!("cancelled {}", context.cancelled())),
             "done" => context.vote(Work::Done),
             "open" => context.vote(Work::Open),
+            "gave-up" => context.vote(Work::GivenUp),
             "count" => context.count(rest.split(' ').next().unwrap_or(""), number()),
             "report" => context.report(rest.split(' ').next().unwrap_or(""), number()),
             "ask" => match self.peer.echo(context, rest.to_owned()) {

@@ -28,6 +28,31 @@ fn who_sees_work_again_takes_its_vote_back() {
 }
 
 #[test]
+fn a_run_in_which_work_was_given_up_is_incomplete_whatever_ends_it() {
+    for (fleet, end) in [
+        ("A actor period=10 each=[0: open; 1: gave-up; 3: done]", "0.03 s"),
+        ("A actor period=10 each=[0: open; 1: gave-up]", "0.05 s"),
+        // Who only says that, has no vote about what is left.
+        ("A actor period=10 each=[1: gave-up]\nB actor period=10 each=[0: open; 3: done]", "0.03 s"),
+        ("A actor period=10 each=[gave-up]", "0.05 s"),
+    ] {
+        check(fleet, 50, &format!("Incomplete after {end}\n- work was given up, as told by `A`"));
+    }
+    check(
+        "A actor period=10 each=[0: open; 1: gave-up; 2: fail now]",
+        50,
+        "[0.020 s] A: failed: now
+         Failed after 0.02 s
+         - component `A` failed: now
+         - component `A`, which could say when the work is done, is gone",
+    );
+    let (report, _) = run("A actor period=10 each=[0: done; 0: gave-up]\nB actor", simulated(50));
+    let votes = json!({"done": 1, "open": [], "given_up": ["A"]});
+    assert_eq!(serde_json::to_value(&report.votes).unwrap(), votes);
+    assert_eq!(serde_json::to_value(report.outcome.status).unwrap(), json!("incomplete"));
+}
+
+#[test]
 fn a_vote_in_initialize_counts_when_the_fleet_has_started() {
     check("A actor first=[done] each=[log never]", 1000, "Done after 0 s");
 }
@@ -153,7 +178,7 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
                  "deadline_misses": 0, "slow": 0, "restarts": 0, "replaced": 0, "failures": 0, "dropped": 0, "messages": {"sent": 0, "received": 0}},
             ],
             "journal": {"records": 0, "overwritten": 0, "lost": 0, "loops": [], "entries": []},
-            "votes": {"done": 1, "open": []},
+            "votes": {"done": 1, "open": [], "given_up": []},
             "outcome": {"status": "done", "reasons": []},
             "trace_hash": report.trace_hash,
         })

@@ -181,7 +181,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     match outcome.status {
         RunStatus::Done | RunStatus::Elapsed => Exit::Done,
-        RunStatus::Failed => Exit::Failed,
+        RunStatus::Incomplete | RunStatus::Failed => Exit::Failed,
         RunStatus::Interrupted => Exit::Interrupted,
     }
 }

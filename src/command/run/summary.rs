@@ -32,6 +32,7 @@ pub(crate) fn outcome(report: &RunReport) -> String {
     let how = match report.outcome.status {
         RunStatus::Done => "done",
         RunStatus::Elapsed => "time is over",
+        RunStatus::Incomplete => "incomplete",
         RunStatus::Failed => "failed",
         RunStatus::Interrupted => "interrupted",
     };

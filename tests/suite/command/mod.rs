@@ -7,6 +7,7 @@ mod fmt;
 mod graph;
 mod new;
 mod operation;
+mod outcomes;
 mod outputs;
 mod paths;
 mod schema;

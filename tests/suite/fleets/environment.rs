@@ -89,19 +89,20 @@ fn impossible_events_are_ignored_and_the_run_ends_by_itself() {
     let scenario = "<property name=\"scenario\">at 1s luggage (1,0) to (4,3); at 3s luggage (1,1) to (4,1)</property>";
     let report = Fleet::of_text(fleet(scenario, prankster)).run(1, HOUR);
     assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
-    let luggage = json!({"requested": 3, "delivered": 3, "open": 0, "ignored": 5});
+    let luggage = json!({"requested": 3, "delivered": 3, "open": 0, "given_up": 0, "ignored": 5});
     assert_eq!(section(&report, "luggage"), &luggage);
     assert_eq!(section(&report, "faults"), &json!({"ignored": 2}));
     assert!(report.components.iter().all(|component| component.failures == 0));
 }
 
 #[test]
-fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends() {
+fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends_incomplete() {
     let scenario =
         "at 1s luggage (1,0) to (4,3); at 2s breakdown 1; at 2s breakdown Robot2; at 3s luggage (1,1) to (4,1)";
     let report = Fleet::of_text(with_scenario(scenario)).run(1, HOUR);
-    assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
-    let luggage = json!({"requested": 2, "delivered": 0, "open": 2, "ignored": 0});
+    assert_eq!(report.outcome.status, RunStatus::Incomplete, "{:?}", report.outcome);
+    assert_eq!(report.votes.given_up, ["World", "Master", "Environment"]);
+    let luggage = json!({"requested": 2, "delivered": 0, "open": 2, "given_up": 2, "ignored": 0});
     assert_eq!(section(&report, "luggage"), &luggage);
     assert_eq!(section(&report, "robots")["broken"], json!(2));
 }
@@ -111,7 +112,7 @@ fn a_scenario_is_drawn_from_the_seed_within_the_map() {
     let fleet = Fleet::of_text(with_scenario("from 1s every 1s..4s 20 times luggage random to (3,0)..(4,3)"));
     let report = fleet.run(5, HOUR);
     assert_eq!(report.outcome.status, RunStatus::Done, "{:?}", report.outcome);
-    let luggage = json!({"requested": 20, "delivered": 20, "open": 0, "ignored": 0});
+    let luggage = json!({"requested": 20, "delivered": 20, "open": 0, "given_up": 0, "ignored": 0});
     assert_eq!(section(&report, "luggage"), &luggage);
     assert_eq!(report.trace_hash, fleet.run(5, HOUR).trace_hash);
     assert_ne!(report.trace_hash, fleet.run(6, HOUR).trace_hash);

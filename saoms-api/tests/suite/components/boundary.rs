@@ -115,6 +115,7 @@ impl Component for Busy {
             ]),
         );
         context.count("a.c", -3);
+        context.vote(Work::GivenUp);
         context.vote(Work::Done);
         context.effect(record!("drove {way} blocks to {to}, {done}", way = 3, to = (1, -2), done = true));
         Ok(())

@@ -95,7 +95,7 @@ impl Engine {
         let slot = &mut self.slots[number as usize];
         if slot.state != SlotState::Abandoned {
             slot.state = SlotState::Removed;
-            (slot.entry, slot.pending, slot.vote) = (NEVER, PendingRequest::None, None);
+            (slot.entry, slot.pending, slot.sees_work) = (NEVER, PendingRequest::None, None);
         }
     }
 

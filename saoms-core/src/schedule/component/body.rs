@@ -2,12 +2,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use saoms_api::host::{DynComponent, Invocation, SharedMessage};
-use saoms_api::{CallError, Cause, Chance, Context, Failure, Work};
+use saoms_api::{CallError, Cause, Chance, Context, Failure};
 
 use super::host::ComponentHost;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
+use crate::schedule::engine::votes::Ballot;
 use crate::schedule::shared::Shared;
 use saoms_api::host::contain::contained;
 use saoms_lang::assembly::ComponentSpec;
@@ -35,7 +36,7 @@ pub(crate) struct Part {
     pub(crate) outbox: Vec<(TopicId, SharedMessage)>,
     pub(crate) chance: Chance,
     pub(crate) cancelled: Arc<AtomicBool>,
-    pub(crate) vote: Option<Work>,
+    pub(crate) vote: Option<Ballot>,
     /// In virtual time, the time at which the present code runs.
     pub(crate) now: u64,
     pub(crate) due: u64,

@@ -348,7 +348,7 @@ impl Host for ComponentHost<'_> {
     }
 
     fn vote(&mut self, work: Work) {
-        self.part.vote = Some(work);
+        self.part.vote.get_or_insert_default().mark(work);
     }
 }
 

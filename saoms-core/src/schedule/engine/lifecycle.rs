@@ -217,7 +217,7 @@ impl Engine {
         if self.phase != RunPhase::Running {
             return;
         }
-        let voted = self.slots[index as usize].vote.is_some();
+        let voted = self.slots[index as usize].sees_work.is_some();
         self.forget_vote(index, now);
         if voted && self.votes.voters == 0 {
             let name = &self.slots[index as usize].name;

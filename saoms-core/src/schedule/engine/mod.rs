@@ -9,7 +9,7 @@ pub(super) mod queue;
 mod report;
 pub(super) mod slot;
 pub(super) mod trace;
-mod votes;
+pub(super) mod votes;
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;

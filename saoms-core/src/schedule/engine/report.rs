@@ -1,8 +1,12 @@
 use super::Engine;
 use super::ending::EndCause;
+use super::slot::Slot;
 use super::trace::Trace;
 use crate::journal::Journal;
 use crate::report::{ComponentReport, LatenessSummary, MessageCounts, Outcome, RunReport, RunStatus, Sections, Votes};
+
+/// Maximum number of components that a reason names; the votes name all.
+const REASON_NAMES: usize = 3;
 
 impl Engine {
     /// The report of a run that has ended.
@@ -53,8 +57,22 @@ impl Engine {
     }
 
     fn votes_report(&self) -> Votes {
-        let open = self.slots.iter().filter(|slot| slot.vote == Some(saoms_api::Work::Open));
-        Votes { done: self.votes.done as u64, open: open.map(|slot| slot.name.to_string()).collect() }
+        let names = |has_voted: fn(&Slot) -> bool| {
+            self.slots.iter().filter(|slot| has_voted(slot)).map(|slot| slot.name.to_string()).collect()
+        };
+        Votes {
+            done: self.votes.done as u64,
+            open: names(|slot| slot.sees_work == Some(true)),
+            given_up: names(|slot| slot.gave_up),
+        }
+    }
+
+    fn given_up_reason(&self) -> String {
+        let mut names = self.slots.iter().filter(|slot| slot.gave_up).map(|slot| format!("`{}`", slot.name));
+        let shown: Vec<String> = names.by_ref().take(REASON_NAMES).collect();
+        let more = names.count();
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("work was given up, as told by {}{more}", shown.join(", "))
     }
 
     fn outcome(&self) -> Outcome {
@@ -62,6 +80,10 @@ impl Engine {
         let status = match self.cause {
             Some(EndCause::Interrupted) => RunStatus::Interrupted,
             _ if !reasons.is_empty() => RunStatus::Failed,
+            _ if self.slots.iter().any(|slot| slot.gave_up) => {
+                reasons.push(self.given_up_reason());
+                RunStatus::Incomplete
+            }
             Some(EndCause::Elapsed) => RunStatus::Elapsed,
             Some(EndCause::Idle) => {
                 reasons.push("no component is scheduled, and in virtual time nothing else happens".to_owned());

@@ -2,8 +2,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use saoms_api::Work;
-
 use super::overrun::{self, Decision};
 use crate::journal::Ring;
 use crate::report::Lateness;
@@ -45,7 +43,10 @@ pub(crate) struct Slot {
     pub(crate) dropping: bool,
     pub(crate) isolation: Isolation,
     pub(crate) policy: TaskPolicy,
-    pub(crate) vote: Option<Work>,
+    /// True if it sees work left; `None` if it did not vote.
+    pub(crate) sees_work: Option<bool>,
+    /// True if it said that work was given up.
+    pub(crate) gave_up: bool,
     pub(crate) statistics: Statistics,
     pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
@@ -201,7 +202,8 @@ impl Slot {
             dropping: false,
             isolation: Isolation::default(),
             policy,
-            vote: None,
+            sees_work: None,
+            gave_up: false,
             statistics: Statistics::default(),
             journal: Ring::default(),
             overrun_failure: None,

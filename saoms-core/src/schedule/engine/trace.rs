@@ -21,6 +21,7 @@ pub(crate) enum TraceStep {
     Left = 2,
     Failed = 3,
     Voted = 4,
+    GaveUp = 5,
 }
 
 impl Trace {

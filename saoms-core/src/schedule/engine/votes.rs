@@ -11,23 +11,47 @@ pub(crate) struct VoteTally {
     pub(crate) done: usize,
 }
 
+/// Votes of a component in one execution or call.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Ballot {
+    /// True if work is left, `Some` if the component said so or the contrary; the newest word counts.
+    left: Option<bool>,
+    /// True if some work was given up.
+    gave_up: bool,
+}
+
+impl Ballot {
+    pub(crate) fn mark(&mut self, work: Work) {
+        match work {
+            Work::Open => self.left = Some(true),
+            Work::Done => self.left = Some(false),
+            Work::GivenUp => self.gave_up = true,
+        }
+    }
+}
+
 impl Engine {
     /// Records a component's vote about the work that is left, and ends the run if none is left.
-    pub(crate) fn vote(&mut self, index: u32, vote: Work, now: u64) {
-        self.note_vote(index, vote, now);
+    pub(crate) fn vote(&mut self, index: u32, ballot: Ballot, now: u64) {
+        self.note_vote(index, ballot, now);
         self.end_if_done(now);
     }
 
     /// Records a component's vote about the work that is left.
-    pub(crate) fn note_vote(&mut self, index: u32, vote: Work, now: u64) {
-        let before = self.slots[index as usize].vote.replace(vote);
-        if before == Some(vote) {
+    pub(crate) fn note_vote(&mut self, index: u32, ballot: Ballot, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        if ballot.gave_up && !std::mem::replace(&mut slot.gave_up, true) {
+            self.step(now, index, TraceStep::GaveUp);
+        }
+        let Some(left) = ballot.left else { return };
+        let before = self.slots[index as usize].sees_work.replace(left);
+        if before == Some(left) {
             return;
         }
         self.votes.voters += usize::from(before.is_none());
-        match vote {
-            Work::Done => self.votes.done += 1,
-            Work::Open => self.votes.done -= usize::from(before.is_some()),
+        match left {
+            false => self.votes.done += 1,
+            true => self.votes.done -= usize::from(before.is_some()),
         }
         self.step(now, index, TraceStep::Voted);
     }
@@ -44,9 +68,9 @@ impl Engine {
         if self.phase != RunPhase::Running {
             return;
         }
-        if let Some(vote) = self.slots[index as usize].vote.take() {
+        if let Some(left) = self.slots[index as usize].sees_work.take() {
             self.votes.voters -= 1;
-            self.votes.done -= usize::from(vote == Work::Done);
+            self.votes.done -= usize::from(!left);
             self.end_if_done(now);
         }
     }

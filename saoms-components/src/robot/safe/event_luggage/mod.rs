@@ -2,7 +2,7 @@
 
 mod records;
 
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subscription};
+use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subscription, Work};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
@@ -183,6 +183,7 @@ impl Loop for SafeEventLuggage {
                 // A loaded robot is of no use until another one helps.
                 (knowledge.relieved, knowledge.is_loaded) = (true, true);
                 context.count("assistance", 1);
+                context.vote(Work::GivenUp);
                 let (Job { luggage, to, .. }, why) = (job, why.words());
                 context.log(
                     Level::Error,
