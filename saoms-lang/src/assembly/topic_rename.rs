@@ -6,6 +6,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use crate::limits::TEXT_FAULTS;
 use saoms_api::PropertyField;
 use saoms_api::host::declaration::{PropertyKind, PropertyShape, Rule};
 use saoms_api::host::{PropertyValue, SmolStr};
@@ -156,14 +157,11 @@ fn trimmed<'a>(text: &'a str, range: &Range<usize>) -> Name<'a> {
     Name { text: piece, at: start..start + piece.len() }
 }
 
-/// Behind so many faults in one text no more contradictions are looked for.
-const MOST_FAULTS: usize = 1000;
-
 /// Names renamed twice, chains, and names that are renamed to themselves.
 fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<Fault>) {
     let mut first: HashMap<&str, &Pair<'_>> = HashMap::with_capacity(pairs.len());
     for pair in pairs {
-        if faults.len() >= MOST_FAULTS {
+        if faults.len() >= TEXT_FAULTS {
             return;
         }
         if let Some(earlier) = first.get(pair.old.text) {
@@ -177,7 +175,7 @@ fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<Fault>) {
         }
     }
     for pair in pairs {
-        if faults.len() >= MOST_FAULTS {
+        if faults.len() >= TEXT_FAULTS {
             return;
         }
         let Some(next) = first.get(pair.new.text) else { continue };

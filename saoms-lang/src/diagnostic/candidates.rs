@@ -1,6 +1,6 @@
 //! Budgets for the search of the name that was meant.
 
-use crate::limits::CANDIDATES;
+use crate::limits::{Budget, CANDIDATES};
 
 /// Lists that are not longer are searched in any case.
 const FEW: usize = 100;
@@ -8,30 +8,23 @@ const FEW: usize = 100;
 /// Counts the right names that are looked at for wrong ones: where nearly all names are wrong every search goes through
 /// all right ones, and a check must take time that grows with its files, and not with their square.
 #[derive(Debug)]
-pub(crate) struct Candidates {
-    left: usize,
-}
+pub(crate) struct Candidates(Budget);
 
 impl Default for Candidates {
     fn default() -> Self {
-        Self { left: CANDIDATES }
+        Self(Budget::of(CANDIDATES))
     }
 }
 
 impl Candidates {
     /// True if a list of so many names is searched; they are counted then.
     pub(crate) fn admit(&mut self, count: usize) -> bool {
-        if count <= FEW {
-            return true;
-        }
-        let left = self.left.checked_sub(count);
-        self.left = left.unwrap_or(0);
-        left.is_some()
+        count <= FEW || self.0.spend(count as u64)
     }
 
     /// The length of a list up to which it is searched: the rest need not be counted.
     pub(crate) fn telling(&self) -> usize {
-        self.left.max(FEW) + 1
+        usize::try_from(self.0.left()).unwrap_or(usize::MAX).max(FEW) + 1
     }
 }
 
@@ -43,7 +36,7 @@ mod tests {
     fn long_lists_are_searched_so_often_that_they_have_a_million_names_together() {
         let mut candidates = Candidates::default();
         let admitted = (0..10_000).filter(|_| candidates.admit(1000)).count();
-        assert_eq!(admitted, CANDIDATES / 1000);
+        assert_eq!(admitted as u64, CANDIDATES / 1000);
         assert!(!candidates.admit(FEW + 1) && candidates.admit(FEW), "short ones always");
         assert_eq!(candidates.telling(), FEW + 1);
     }

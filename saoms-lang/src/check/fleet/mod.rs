@@ -4,7 +4,6 @@ pub(crate) mod classes;
 pub(crate) mod names;
 pub(crate) mod similar_names;
 
-use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
@@ -14,6 +13,7 @@ use crate::check::fleet::classes::ClassIndex;
 use crate::check::unfolding::expression_scope::Names;
 use crate::check::unfolding::replica::Instance;
 use crate::expression::has_expression;
+use crate::limits::Budget;
 use crate::model::{ComponentElement, Composite, Contribution, ReferenceElement, ServiceElement, WireElement};
 use crate::source::{FileId, Location};
 use crate::syntax::ElementId;
@@ -43,7 +43,7 @@ pub(crate) struct Fleet<'a> {
     /// The scopes of expressions in units that have any.
     pub(crate) names: Vec<Option<Rc<Names>>>,
     /// The rest of the elements that paths of sources may look at.
-    pub(crate) elements_left: Rc<Cell<u64>>,
+    pub(crate) elements: Rc<Budget>,
 }
 
 /// Components that can be wired to each other.

@@ -12,6 +12,7 @@ use crate::diagnostic::{
     Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest_equal, quoted,
 };
 use crate::expression::has_expression;
+use crate::limits::{LISTED_NAMES, MERGED_DIAGNOSTICS, REMEMBERED_DIAGNOSTICS};
 use crate::source::{FileId, Location, Sources, Span, Text};
 use crate::syntax::SourceMap;
 
@@ -52,12 +53,6 @@ struct ReplicaDiagnostic {
     /// Of how many more than the first.
     more: usize,
 }
-
-/// Limit of diagnostics about replicas that are kept together; further ones are told as they come.
-const MOST_COPIES: usize = 2000;
-
-/// Limit of diagnostics that are remembered.
-const REMEMBERED: usize = 20_000;
 
 impl<'a> Report<'a> {
     pub(crate) fn new(sources: &'a Sources, diagnostics: &'a mut Diagnostics) -> Self {
@@ -189,7 +184,7 @@ impl<'a> Report<'a> {
             }
             return;
         }
-        if self.copies.len() >= MOST_COPIES {
+        if self.copies.len() >= MERGED_DIAGNOSTICS {
             return self.diagnostics.push(one);
         }
         let own = one.location;
@@ -210,7 +205,7 @@ impl<'a> Report<'a> {
         if let Some(copy) = &self.copy {
             return self.push_copy(diagnostic, copy.clone());
         }
-        if self.said.len() >= REMEMBERED || self.said.insert(said(&diagnostic)) {
+        if self.said.len() >= REMEMBERED_DIAGNOSTICS || self.said.insert(said(&diagnostic)) {
             self.diagnostics.push(diagnostic);
         }
     }
@@ -323,11 +318,10 @@ impl Parts {
     }
 }
 
-/// Names for a line of help: `a`, `b` and `c`, at most thirty of them.
+/// Names for a line of help: `a`, `b` and `c`, so many of them.
 pub(crate) fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
-    const MOST: usize = 30;
     let mut names = names.into_iter();
-    let shown: Vec<String> = names.by_ref().take(MOST).map(quoted).collect();
+    let shown: Vec<String> = names.by_ref().take(LISTED_NAMES).map(quoted).collect();
     let more = names.count();
     match (&shown[..], more) {
         ([], _) => "none".to_owned(),

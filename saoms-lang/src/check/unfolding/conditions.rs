@@ -5,17 +5,15 @@
 use std::rc::Rc;
 
 use crate::check::fleet::Unit;
+use crate::check::unfolding::Unfolding;
 use crate::check::unfolding::expression_scope::Names;
 use crate::check::unfolding::replica::{Instance, all_complex_texts};
 use crate::check::unfolding::replica_plan::{condition, report_faults};
-use crate::check::unfolding::{MOST_MEMBERS, Unfolding};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::expression::{ExpressionFault, boolean, parse, render};
+use crate::limits::{COMPONENTS, CONDITION_ROUNDS};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Origin};
 use crate::source::{Location, Text};
-
-/// Rounds in which conditions are evaluated again with the properties of what others include.
-const MOST_ROUNDS: usize = 100;
 
 /// Composites in the order in which their properties count.
 struct Included<'a> {
@@ -78,7 +76,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         let mut included = Included { contribution: self.fleet.contribution, all: vec![main], open: Vec::new() };
         included.follow_all(0);
         let mut absent: Vec<&'a Include> = Vec::new();
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..CONDITION_ROUNDS {
             let open = std::mem::take(&mut included.open);
             let (count, before) = (open.len(), included.all.len());
             if open.is_empty() {
@@ -185,9 +183,9 @@ impl<'a> Unfolding<'a, '_, '_> {
 
     /// True if the fleet is as large as one can be. That is reported.
     pub(crate) fn is_beyond(&mut self, component: &ComponentElement) -> bool {
-        let is_beyond = self.fleet.members.len() >= MOST_MEMBERS;
+        let is_beyond = self.fleet.members.len() >= COMPONENTS;
         if is_beyond {
-            let message = format!("replicas and composites in them come to more than {MOST_MEMBERS} components");
+            let message = format!("replicas and composites in them come to more than {COMPONENTS} components");
             let help = "replicas of composites with replicas multiply: is this what is meant?";
             self.too_large(component.name.location, message, help);
         }

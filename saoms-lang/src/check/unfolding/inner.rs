@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::{MOST_DEEP, MOST_MEMBERS, Unfolding};
+use super::Unfolding;
 use crate::check::fleet::{Kind, Scope, names};
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::limits::{COMPONENTS, COMPOSITE_DEPTH};
 use crate::model::{Composite, Contribution, Link, Naming};
 
 /// Composites of one circle that are named.
@@ -21,7 +22,7 @@ fn size(contribution: &Contribution, place: usize, deep: usize, known: &mut Hash
     let mut size = composite.components.len();
     for naming in composite.namings() {
         if let Some(Link::To(inner)) = contribution.link(naming.origin)
-            && deep <= MOST_DEEP
+            && deep <= COMPOSITE_DEPTH
         {
             size = size.saturating_add(self::size(contribution, *inner, deep + 1, known));
         }
@@ -53,14 +54,14 @@ impl<'a> Unfolding<'a, '_, '_> {
     }
 
     fn is_full(&mut self, place: usize, naming: Naming<'a>) -> bool {
-        let is_too_deep = self.open.len() > MOST_DEEP;
+        let is_too_deep = self.open.len() > COMPOSITE_DEPTH;
         let more = size(self.fleet.contribution, place, self.open.len(), &mut self.sizes);
-        if !is_too_deep && self.fleet.members.len().saturating_add(more) <= MOST_MEMBERS {
+        if !is_too_deep && self.fleet.members.len().saturating_add(more) <= COMPONENTS {
             return false;
         }
         let message = match is_too_deep {
-            true => format!("composites are inside each other more than {MOST_DEEP} deep"),
-            false => format!("inner composites come to more than {MOST_MEMBERS} components"),
+            true => format!("composites are inside each other more than {COMPOSITE_DEPTH} deep"),
+            false => format!("inner composites come to more than {COMPONENTS} components"),
         };
         let help = "a composite inside a composite multiplies: is this what is meant?";
         self.too_large(naming.name.location, message, help);

@@ -11,7 +11,6 @@ pub(crate) mod replica;
 pub(crate) mod replica_expansion;
 pub(crate) mod replica_plan;
 
-use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
@@ -21,16 +20,11 @@ use crate::check::report::Report;
 use crate::check::report::severities::Severities;
 use crate::check::unfolding::append_list::{AppendList, Appender};
 use crate::check::unfolding::replica::Replica;
-use crate::check::unfolding::replica_plan::{MOST_REPLICAS, Plan};
+use crate::check::unfolding::replica_plan::Plan;
 use crate::check::values::parameters::Parameters;
-use crate::check::values::shared_values::MOST_LOOKED_AT;
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::limits::{Budget, PATH_ELEMENTS, REPLICAS};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
-
-/// Components that inner composites may come to: a few lines of text can name a composite of composites of composites.
-pub(crate) const MOST_MEMBERS: usize = 1_000_000;
-/// Composites inside each other.
-const MOST_DEEP: usize = 250;
 
 /// Collects the components and checks that names are unique.
 pub(crate) fn unfold<'a>(
@@ -41,7 +35,7 @@ pub(crate) fn unfold<'a>(
     report: &mut Report<'_>,
 ) -> Fleet<'a> {
     let asked_for = contribution.asked_for();
-    let elements_left = Rc::new(Cell::new(MOST_LOOKED_AT));
+    let elements = Rc::new(Budget::of(PATH_ELEMENTS));
     let fleet = Fleet {
         contribution,
         scopes: vec![Scope::default()],
@@ -54,7 +48,7 @@ pub(crate) fn unfold<'a>(
         conditional: HashMap::new(),
         is_misread: severities.is_misread(report.diagnostics()),
         names: Vec::new(),
-        elements_left: Rc::clone(&elements_left),
+        elements: Rc::clone(&elements),
     };
     let mut unfolding = Unfolding {
         fleet,
@@ -65,8 +59,8 @@ pub(crate) fn unfold<'a>(
         lowers_attributes: severities.mentions(&codes::UNKNOWN_ATTRIBUTE),
         sizes: HashMap::new(),
         replicas: replicas.end(),
-        replicas_left: MOST_REPLICAS,
-        parameters: Parameters::new(options, &elements_left).unbounded(),
+        replicas_left: Budget::of(REPLICAS),
+        parameters: Parameters::new(options, &elements).unbounded(),
     };
     let again = names::composites(asked_for, unfolding.report);
     let included = included(contribution);
@@ -122,7 +116,7 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     /// Numbers of components in composites, by the places of these, as far as they were asked for.
     sizes: HashMap<usize, usize>,
     pub(crate) replicas: Appender<'a, Replica>,
-    pub(crate) replicas_left: u64,
+    pub(crate) replicas_left: Budget,
     /// The properties for what expressions take while composites are unfolded. Their faults are told later, when the
     /// properties of the whole fleet are found.
     pub(crate) parameters: Parameters<'a>,

@@ -23,9 +23,14 @@ impl<'a> Unfolding<'a, '_, '_> {
             return self.member(component, component, None, presence);
         };
         let names = self.names(unit);
-        let Some(plan) =
-            Plan::of(component, replicas, document, &names, (self.replicas_left, self.lowers_attributes), self.report)
-        else {
+        let Some(plan) = Plan::of(
+            component,
+            replicas,
+            document,
+            &names,
+            (self.replicas_left.left(), self.lowers_attributes),
+            self.report,
+        ) else {
             return self.unplanned(component, replicas, &names);
         };
         let (is_empty, index) = (plan.left.is_empty(), plan.first);
@@ -45,7 +50,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });
             return self.member(component, made, Some(instance), Presence::Absent);
         }
-        self.replicas_left -= plan.cost;
+        self.replicas_left.spend(plan.cost);
         if let Some(open) = self.open.last_mut() {
             open.plan = Some(plan);
         }

@@ -13,15 +13,10 @@ use crate::expression::{
     self, Expression, ExpressionError, ExpressionFault, ExpressionValue, INDEX, boolean, integer, parse, pattern,
     render,
 };
+use crate::limits::{REPLICA_BYTES, REPLICAS};
 use crate::model::{ComponentElement, Property, Replicas, Row, Table};
 use crate::source::{Location, Text};
 use crate::syntax::{Document, escaped};
-
-/// Replicas of a fleet in all: a slip of the finger must not take all memory.
-pub(crate) const MOST_REPLICAS: u64 = 100_000;
-
-/// Bytes that a replica may be written with and count as one; longer ones count as several.
-const BYTES: u64 = 2560;
 
 /// The replicas of a component that are still to be made.
 pub(crate) struct Plan<'a> {
@@ -71,22 +66,22 @@ impl<'a> Plan<'a> {
         let is_named = has_index(component, names, report);
         let (count, from) = (count?, from?);
         let span = component.origin.element(document).span();
-        let cost = count.unsigned_abs().saturating_mul(1 + u64::from(span.end - span.start) / BYTES);
+        let cost = count.unsigned_abs().saturating_mul(1 + u64::from(span.end - span.start) / REPLICA_BYTES);
         let (message, help) = match from.checked_add(count) {
             _ if count < 0 => {
                 (format!("there cannot be {count} replicas"), "the number of replicas is 0 or more".to_owned())
             }
             _ if count.unsigned_abs() > left => {
                 let message = match left {
-                    MOST_REPLICAS => format!("{count} replicas are more than a fleet can have"),
+                    REPLICAS => format!("{count} replicas are more than a fleet can have"),
                     _ => format!("with {count} replicas here there are more than a fleet can have"),
                 };
-                (message, format!("a fleet has at most {MOST_REPLICAS} replicas"))
+                (message, format!("a fleet has at most {REPLICAS} replicas"))
             }
             _ if cost > left => (
                 format!("{count} replicas are more than a fleet can have of one that is so long"),
                 format!(
-                    "a replica of more than {BYTES} bytes counts as several, and a fleet has at most {MOST_REPLICAS}: put long values into a property that all take as `source`"
+                    "a replica of more than {REPLICA_BYTES} bytes counts as several, and a fleet has at most {REPLICAS}: put long values into a property that all take as `source`"
                 ),
             ),
             None => ("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`".to_owned()),

@@ -10,11 +10,11 @@ use std::collections::HashSet;
 use std::ops::Range;
 
 use super::raw::{Piece, Raw};
-use super::shared_values::MOST_LOOKED_AT;
 use super::type_name::local;
 use crate::check::report::list;
 use crate::check::unfolding::replica::Instance;
 use crate::diagnostic::{nearest, quoted};
+use crate::limits::{LISTED_PARTS, PATH_ELEMENTS, SEARCHED_PARTS};
 use crate::source::Text;
 use crate::syntax::{Attribute, Element};
 
@@ -26,10 +26,6 @@ pub(crate) const POSITION: &str = "position()";
 
 /// The forms of steps, for help.
 pub(crate) const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
-
-/// Parts that are looked at for what could have been meant, and names of them that are told.
-const MOST_MEANT: usize = 1_000;
-const MOST_TOLD: usize = 50;
 
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum FaultKind {
@@ -63,7 +59,7 @@ impl Fault {
 
     /// The fault of a step where paths have looked at too many elements.
     pub(crate) fn too_many(step: Range<usize>) -> Self {
-        let message = format!("paths of sources look at more than {MOST_LOOKED_AT} elements");
+        let message = format!("paths of sources look at more than {PATH_ELEMENTS} elements");
         Self { kind: FaultKind::TooMany, ..Self::new(step, message) }
     }
 
@@ -241,7 +237,7 @@ impl<'p> Test<'p> {
         let Some(name) = of.strip_prefix('@') else {
             return Fault::new(at, format!("no part here has {} as its part {}", quoted(value), quoted(of)));
         };
-        let values = named.iter().take(MOST_MEANT).filter_map(|one| attribute(*one, name)).take(MOST_TOLD);
+        let values = named.iter().take(SEARCHED_PARTS).filter_map(|one| attribute(*one, name)).take(LISTED_PARTS);
         let values: Vec<_> = values.map(|one| one.value()).collect();
         let known = match values.is_empty() {
             true => "none has it".to_owned(),
@@ -307,7 +303,7 @@ pub(crate) fn attribute<'a>(element: Element<'a>, name: &str) -> Option<Attribut
 /// The different names among some.
 fn different<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
     let mut seen = HashSet::new();
-    names.take(MOST_MEANT).filter(|name| seen.insert(*name)).take(MOST_TOLD).collect()
+    names.take(SEARCHED_PARTS).filter(|name| seen.insert(*name)).take(LISTED_PARTS).collect()
 }
 
 fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> Fault {

@@ -8,17 +8,9 @@ use std::rc::Rc;
 
 use super::path::{Fault, POSITION, Predicate, Test, attribute, ends, no_step, one_of, steps};
 use super::raw::{Piece, Raw};
+use crate::limits::{Budget, PATH_STEPS, TABLE_ELEMENTS};
 use crate::model::Property;
 use crate::syntax::Element;
-
-/// Elements that the steps of all paths of a fleet may look at, those that take longer counted several times.
-pub(crate) const MOST_LOOKED_AT: u64 = 200_000_000;
-
-/// Elements in the tables that are kept for one value.
-const MOST_KEPT: usize = 1_000_000;
-
-/// Steps of one path.
-const MOST_STEPS: usize = 100;
 
 /// Elements that a step to any depth, and a new table, count for: they take so much longer for each.
 const DEEP: usize = 10;
@@ -79,8 +71,8 @@ impl<'a> SharedValues<'a> {
         Rc::try_unwrap(self).map_or_else(|shared| shared.raw.clone(), |own| own.raw)
     }
 
-    /// The values that a path leads to, as components take them. `left` is how many elements paths may still look at.
-    pub(crate) fn led_to(self: Rc<Self>, path: &str, property: &Property, left: &Cell<u64>) -> Result<Rc<Self>, Fault> {
+    /// The values that a path leads to, as components take them. `budget` is of the elements that paths look at.
+    pub(crate) fn led_to(self: Rc<Self>, path: &str, property: &Property, budget: &Budget) -> Result<Rc<Self>, Fault> {
         let values = &self.raw.0;
         if values.is_empty() {
             // What has no value has no parts either.
@@ -96,10 +88,10 @@ impl<'a> SharedValues<'a> {
             [(_, "text()")] => self.raw.0.iter().all(|piece| matches!(piece, Piece::Text(_))),
             _ => false,
         };
-        if let Some((at, _)) = all.get(MOST_STEPS) {
-            return Err(Fault::new(at.clone(), format!("a path has at most {MOST_STEPS} steps")));
+        if let Some((at, _)) = all.get(PATH_STEPS) {
+            return Err(Fault::new(at.clone(), format!("a path has at most {PATH_STEPS} steps")));
         }
-        Ok(Self::new(if is_all { Raw(values.to_vec()) } else { self.walk(values, path, &all, left)? }))
+        Ok(Self::new(if is_all { Raw(values.to_vec()) } else { self.walk(values, path, &all, budget)? }))
     }
 
     /// The parts of some of the values that the steps of a path lead to.
@@ -108,12 +100,12 @@ impl<'a> SharedValues<'a> {
         values: &[Piece<'a>],
         path: &str,
         all: &[(Range<usize>, &str)],
-        left: &Cell<u64>,
+        budget: &Budget,
     ) -> Result<Raw<'a>, Fault> {
         let instance = values.iter().find_map(Piece::instance);
         let mut steps = all.iter();
         // Once the limit is reached, no path is walked any more.
-        look_at(0, &all[0].0, left)?;
+        look_at(0, &all[0].0, budget)?;
         // From the last step on of which it is known where it leads.
         let known = (1..=all.len()).rev().find_map(|count| Some((count, self.known(path, &all[count - 1])?)));
         let mut level = match known {
@@ -121,21 +113,21 @@ impl<'a> SharedValues<'a> {
                 steps = all[count..].iter();
                 Level { around: found, ..Level::default() }
             }
-            None => Level::start(values, path, &all[0], left)?,
+            None => Level::start(values, path, &all[0], budget)?,
         };
         while let Some((at, step)) = steps.next() {
             let is_last = steps.len() == 0;
             if step.is_empty() && !is_last && !level.is_deep {
-                level = level.deep(at, left)?;
+                level = level.deep(at, budget)?;
                 continue;
             }
-            look_at(level.around.len(), at, left)?;
+            look_at(level.around.len(), at, budget)?;
             if let Some(end) = ends(&level.around, (at.clone(), step), is_last, instance) {
                 return end;
             }
             let test = Test::of(step).ok_or_else(|| no_step(step, at.clone()))?;
             let here: Vec<Element<'a>> = level.here().collect();
-            look_at(here.len(), at, left)?;
+            look_at(here.len(), at, budget)?;
             let named: Vec<Element<'a>> = here.iter().copied().filter(|one| test.is_of_name(*one)).collect();
             let mut found = match test.predicate.as_ref().map(Predicate::asked) {
                 None => named.clone(),
@@ -146,10 +138,10 @@ impl<'a> SharedValues<'a> {
                     if let Some(table) = tables.get(&key) {
                         table.get(&*value).cloned().unwrap_or_default()
                     } else {
-                        look_at(TABLE * named.len(), at, left)?;
+                        look_at(TABLE * named.len(), at, budget)?;
                         let table = by_value(&named, of);
                         let found = table.get(&*value).cloned().unwrap_or_default();
-                        if self.kept.get() + named.len() <= MOST_KEPT {
+                        if self.kept.get() + named.len() <= TABLE_ELEMENTS {
                             self.kept.set(self.kept.get() + named.len());
                             tables.insert(key, table);
                         }
@@ -182,9 +174,8 @@ fn key(path: &str, at: &Range<usize>, test: &Test<'_>, of: &str) -> String {
 }
 
 /// Counts elements that the step at these bytes is to look at.
-fn look_at(count: usize, at: &Range<usize>, left: &Cell<u64>) -> Result<(), Fault> {
-    left.set(left.get().saturating_sub(count as u64));
-    if left.get() == 0 { Err(Fault::too_many(at.clone())) } else { Ok(()) }
+fn look_at(count: usize, at: &Range<usize>, budget: &Budget) -> Result<(), Fault> {
+    if budget.spend(count as u64) { Ok(()) } else { Err(Fault::too_many(at.clone())) }
 }
 
 /// Elements by the values that they have of a part, of an attribute such as `@id`, or by their places.
@@ -222,7 +213,7 @@ impl<'a> Level<'a> {
         values: &[Piece<'a>],
         path: &str,
         (at, first): &(Range<usize>, &str),
-        left: &Cell<u64>,
+        budget: &Budget,
     ) -> Result<Self, Fault> {
         let elements: Vec<&[Element<'a>]> = values.iter().filter_map(Piece::elements).collect();
         let top = elements.concat();
@@ -239,7 +230,7 @@ impl<'a> Level<'a> {
                 Some(test) => !top.iter().any(|one| test.is_of_name(*one)) && inside.any(|one| test.is_of_name(one)),
                 None => first.starts_with('@') || *first == "text()",
             };
-        look_at(looked_at, at, left)?;
+        look_at(looked_at, at, budget)?;
         Ok(match is_inside {
             true => Self { around: top, ..Self::default() },
             false => Self { top, ..Self::default() },
@@ -252,12 +243,12 @@ impl<'a> Level<'a> {
     }
 
     /// All that is inside, to any depth: siblings beside each other.
-    fn deep(self, at: &Range<usize>, left: &Cell<u64>) -> Result<Self, Fault> {
+    fn deep(self, at: &Range<usize>, budget: &Budget) -> Result<Self, Fault> {
         let mut waiting = [&self.around[..], &self.top].concat();
         let (mut around, mut seen) = (Vec::new(), HashSet::new());
         while let Some(one) = waiting.pop() {
             if seen.insert(one.id()) {
-                look_at(DEEP, at, left)?;
+                look_at(DEEP, at, budget)?;
                 around.push(one);
                 waiting.extend(one.children());
             }

@@ -3,7 +3,7 @@
 use super::Wires;
 use super::promotion::ReferenceId;
 use super::target::{Provider, Target, target, uri};
-use super::uri::{parts, spread};
+use super::uri::{has_room, parts, spread};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -124,7 +124,7 @@ impl<'f> Wires<'f, '_> {
         ends: &mut Ends,
         report: &mut Report<'_>,
     ) {
-        if !self.room.take(text, scope, self.fleet, report) {
+        if !has_room(&self.ends_left, text, scope, self.fleet, report) {
             ends.is_unknown = true;
             return;
         }

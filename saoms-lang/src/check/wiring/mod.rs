@@ -29,9 +29,9 @@ use crate::check::wiring::ends::{End, Ends};
 use crate::check::wiring::promotion::{Promoted, ReferenceId};
 use crate::check::wiring::target::{Provider, target};
 use crate::check::wiring::unwired::DanglingNames;
-use crate::check::wiring::uri::WireBudget;
 use crate::check::wiring::wire::{Wire, wires};
 use crate::diagnostic::Severity;
+use crate::limits::{Budget, WIRE_ENDS};
 use crate::registry::ReferenceDeclaration;
 use crate::source::Location;
 
@@ -41,10 +41,10 @@ pub(crate) type Wiring = Vec<Vec<Option<Vec<Provider>>>>;
 
 /// Resolves all targets and wires, and checks what they come to.
 pub(crate) fn check(fleet: &Fleet<'_>, promoted: &Promoted<'_>, options: &Options, report: &mut Report<'_>) -> Wiring {
-    let room = WireBudget::default();
-    let (wires, dangling) = wires(fleet, options, &room, report);
+    let ends_left = Budget::of(WIRE_ENDS);
+    let (wires, dangling) = wires(fleet, options, &ends_left, report);
     let autowire = Autowire::default();
-    let mut all = Wires { fleet, options, promoted, wires, dangling, autowire, room };
+    let mut all = Wires { fleet, options, promoted, wires, dangling, autowire, ends_left };
     let mut circles = CallCycles::default();
     let mut wiring = Wiring::with_capacity(fleet.members.len());
     for member in 0..fleet.members.len() {
@@ -75,7 +75,7 @@ struct Wires<'f, 'a> {
     wires: BTreeMap<ReferenceId<'f>, Vec<Wire<'f>>>,
     dangling: DanglingNames<'f>,
     autowire: Autowire<'f>,
-    room: WireBudget,
+    ends_left: Budget,
 }
 
 impl<'f, 'a> Wires<'f, 'a> {

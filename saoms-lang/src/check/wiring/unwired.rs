@@ -10,6 +10,7 @@ use crate::check::fleet::Fleet;
 use crate::check::report::Report;
 use crate::check::rules::multiplicity::of_class;
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
+use crate::limits::DANGLING_NAMES;
 use crate::model::{Multiplicity, ReferenceElement};
 use crate::registry::ReferenceDeclaration;
 use crate::source::Text;
@@ -93,9 +94,6 @@ impl Wires<'_, '_> {
     }
 }
 
-/// Names of components that do not exist that are looked at, of each scope: a file full of them means nothing by each.
-const MOST_LOST: usize = 100;
-
 /// The sources of wires and what references promote, where they lead nowhere, which is reported.
 #[derive(Default)]
 pub(crate) struct DanglingNames<'f> {
@@ -120,7 +118,7 @@ impl<'f> DanglingNames<'f> {
             return;
         }
         let lost = self.lost.entry(scope).or_default();
-        if lost.len() < MOST_LOST {
+        if lost.len() < DANGLING_NAMES {
             lost.insert(component);
         }
     }

@@ -1,7 +1,6 @@
 //! URIs such as `Robot001/move`, and the components that they name.
 
 use std::borrow::Cow;
-use std::cell::Cell;
 use std::ops::Range;
 
 use super::misread_uri::{inside, misread, unknown_component};
@@ -9,6 +8,7 @@ use super::offer::Side;
 use crate::check::fleet::Fleet;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::limits::{Budget, WIRE_ENDS};
 use crate::source::Text;
 
 /// The component of a URI, and the name behind it.
@@ -143,28 +143,14 @@ pub(crate) fn is_address(text: &str) -> bool {
     scheme.len() < text.len() && !scheme.contains('/') && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
 }
 
-/// Ends of wires that groups of replicas may come to: a group that calls a group has as many as the product of both.
-const MOST_ENDS: usize = 1_000_000;
-
-/// The number of them so far.
-#[derive(Default)]
-pub(crate) struct WireBudget(Cell<usize>);
-
-impl WireBudget {
-    /// True if there may be as many more as this target or source stands for. That there are too many is reported,
-    /// once.
-    pub(crate) fn take(&self, text: &Text, scope: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
-        let Some(group) = fleet.group(scope, parts(text).0) else { return true };
-        let before = self.0.get();
-        self.0.set(before.saturating_add(group.len()));
-        if self.0.get() < MOST_ENDS {
-            return true;
-        }
-        if before < MOST_ENDS {
-            let message = format!("groups of replicas come to more than {MOST_ENDS} ends of wires");
-            let help = "each replica of a group that calls a group has a wire to each of that: is this what is meant?";
-            report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message).help(help));
-        }
-        false
+/// True if the budget of ends of wires has room for those of this target or source. That it has none is reported, once.
+pub(crate) fn has_room(budget: &Budget, text: &Text, scope: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
+    let Some(group) = fleet.group(scope, parts(text).0) else { return true };
+    let has_room = budget.spend(group.len() as u64);
+    if !has_room && budget.is_to_report() {
+        let message = format!("groups of replicas come to more than {WIRE_ENDS} ends of wires");
+        let help = "each replica of a group that calls a group has a wire to each of that: is this what is meant?";
+        report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message).help(help));
     }
+    has_room
 }

@@ -6,11 +6,12 @@ use super::offer::{Offer, Side};
 use super::promotion::ReferenceId;
 use super::target::target;
 use super::unwired::DanglingNames;
-use super::uri::{Uri, WireBudget, parts, spread};
+use super::uri::{Uri, has_room, parts, spread};
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::options::Options;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
+use crate::limits::Budget;
 use crate::source::Text;
 use crate::syntax::escaped;
 
@@ -27,7 +28,7 @@ pub(crate) struct Wire<'f> {
 pub(crate) fn wires<'f>(
     fleet: &'f Fleet<'_>,
     options: &Options,
-    room: &WireBudget,
+    ends_left: &Budget,
     report: &mut Report<'_>,
 ) -> (BTreeMap<ReferenceId<'f>, Vec<Wire<'f>>>, DanglingNames<'f>) {
     let mut all: BTreeMap<ReferenceId<'f>, Vec<Wire<'f>>> = BTreeMap::new();
@@ -58,7 +59,7 @@ pub(crate) fn wires<'f>(
                 all.entry(from).or_default().push(Wire { target: source, scope, is_replacing });
                 continue;
             }
-            if !room.take(source, scope, fleet, report) {
+            if !has_room(ends_left, source, scope, fleet, report) {
                 continue;
             }
             for (one, _) in spread(source, scope, fleet) {

@@ -3,7 +3,6 @@
 mod outside;
 mod sources;
 
-use std::cell::Cell;
 use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 
@@ -18,6 +17,7 @@ use crate::check::values::raw::{Raw, beside_source, raw};
 use crate::check::values::shared_values::{Answer, SharedValues};
 use crate::check::values::value_type::{Typed, check_match};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
+use crate::limits::{Budget, MISSPELT_NAMES, SOURCE_BYTES, SOURCE_VALUES};
 use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
@@ -29,37 +29,9 @@ pub(crate) struct Parameters<'a> {
     options: &'a Options,
     values: Budget,
     text: Budget,
-    /// The rest of the elements that paths of sources may look at.
-    elements_left: Rc<Cell<u64>>,
-    /// True if it is told that they look at too many.
-    is_told_of_elements: bool,
+    /// The elements that paths of sources look at.
+    elements: Rc<Budget>,
 }
-
-/// Limits of what sources lead to in all: each component that takes a value has it.
-struct Budget {
-    left: usize,
-    most: &'static str,
-    help: &'static str,
-}
-
-impl Budget {
-    /// Takes a part of it. That it is used up is reported once.
-    fn spend(&mut self, cost: usize, at: Location, report: &mut Report<'_>) -> Result<(), ()> {
-        let before = self.left;
-        self.left = before.saturating_sub(cost);
-        if self.left > 0 {
-            return Ok(());
-        }
-        if before > 0 {
-            let message = format!("sources come to more than {}", self.most);
-            report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message).help(self.help));
-        }
-        Err(())
-    }
-}
-
-/// Unknown names of a component that are looked at for one that is meant: each of very many means nothing.
-const MOST_MISSPELT: usize = 100;
 
 /// The properties of one composite, those of what it includes among them.
 #[derive(Default)]
@@ -121,7 +93,7 @@ impl<'a> ValueSite<'a> {
 impl<'a> Parameters<'a> {
     /// Collects the properties and gives them what counts in place of their own values.
     pub(crate) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
-        let mut parameters = Self::new(options, &fleet.elements_left);
+        let mut parameters = Self::new(options, &fleet.elements);
         for (place, unit) in fleet.units.iter().enumerate() {
             let owner = fleet.scopes[unit.scope].owner.map(|owner| &fleet.members[owner]);
             parameters.declare(place, (&unit.composites, unit.is_absent), owner, report);
@@ -133,28 +105,19 @@ impl<'a> Parameters<'a> {
     }
 
     /// Those of no composite yet.
-    pub(crate) fn new(options: &'a Options, elements_left: &Rc<Cell<u64>>) -> Self {
+    pub(crate) fn new(options: &'a Options, elements: &Rc<Budget>) -> Self {
         Self {
             units: Vec::new(),
             options,
-            values: Budget {
-                left: 4_000_000,
-                most: "4000000 values",
-                help: "each component that takes all values of a property has each of them: is this what is meant?",
-            },
-            text: Budget {
-                left: 64 << 20,
-                most: "64 MB of text",
-                help: "each component that takes a long text has it: is this what is meant?",
-            },
-            elements_left: Rc::clone(elements_left),
-            is_told_of_elements: false,
+            values: Budget::of(SOURCE_VALUES),
+            text: Budget::of(SOURCE_BYTES),
+            elements: Rc::clone(elements),
         }
     }
 
     /// The same without bounds on the number and length of values, where whoever has bounds finds them as well.
     pub(crate) fn unbounded(mut self) -> Self {
-        (self.values.left, self.text.left) = (usize::MAX, usize::MAX);
+        (self.values, self.text) = (Budget::of(u64::MAX), Budget::of(u64::MAX));
         self
     }
 
@@ -327,10 +290,20 @@ impl<'a> Parameters<'a> {
     pub(crate) fn resolve(&mut self, unit: usize, source: &Text, report: &mut Report<'_>) -> Answer<'a> {
         let whole = self.follow(unit, source, report)?;
         // One value is no list.
-        let count = Some(whole.raw.0.len()).filter(|count| *count > 1);
-        self.values.spend(count.unwrap_or_default(), source.location, report)?;
-        self.text.spend(whole.raw.bytes(), source.location, report)?;
-        Ok(whole)
+        let count = Some(whole.raw.0.len()).filter(|count| *count > 1).unwrap_or_default();
+        let exceeded = [
+            (&self.values, count, "4000000 values", "takes all values of a property has each of them"),
+            (&self.text, whole.raw.bytes(), "64 MB of text", "takes a long text has it"),
+        ]
+        .into_iter()
+        .find(|(budget, cost, ..)| !budget.spend(*cost as u64));
+        let Some((budget, _, most, has)) = exceeded else { return Ok(whole) };
+        if budget.is_to_report() {
+            let message = format!("sources come to more than {most}");
+            let help = format!("each component that {has}: is this what is meant?");
+            report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message).help(help));
+        }
+        Err(())
     }
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
@@ -400,5 +373,5 @@ fn declared<'a>(composites: &[&'a Composite], is_absent: bool, report: &mut Repo
 /// True if the component that a composite implements gives this property under a misspelt name, which is reported.
 pub(crate) fn is_misspelt(name: &str, owner: &ComponentElement, is_declared: impl Fn(&str) -> bool) -> bool {
     let unknown = owner.properties.iter().filter(|given| !is_declared(&given.name));
-    unknown.take(MOST_MISSPELT).any(|given| nearest(&given.name, [name]).is_some())
+    unknown.take(MISSPELT_NAMES).any(|given| nearest(&given.name, [name]).is_some())
 }

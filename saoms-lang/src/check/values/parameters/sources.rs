@@ -65,7 +65,7 @@ impl<'a> Parameters<'a> {
         let Some(path) = path else { return self.taken_whole(place, name, report) };
         let whole = self.whole(place, name, report)?;
         let property = self.units[place].by_name[name].property;
-        let found = whole.led_to(path, property, &self.elements_left);
+        let found = whole.led_to(path, property, &self.elements);
         found.map_err(|fault| self.malformed(source, name.len() + 1, fault, report))
     }
 
@@ -170,7 +170,7 @@ impl<'a> Parameters<'a> {
         let step = start + step.start..start + step.end;
         let at = report.part(source, step.clone());
         if kind == FaultKind::TooMany {
-            if !std::mem::replace(&mut self.is_told_of_elements, true) {
+            if self.elements.is_to_report() {
                 let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message);
                 report.push(one.help("ask for parts by their names, by an attribute or by a place, without `//`"));
             }
