@@ -14,12 +14,15 @@ mod run;
 mod schema;
 mod why;
 
+use std::io::{self, Write};
 use std::path::Path;
+use std::process;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::Exit;
+use crate::output::{has_failed, printed};
 
 /// Exit codes of the subcommands that take a fleet.
 const EXIT_CODES: &str = "\
@@ -85,6 +88,11 @@ fn parsed() -> Arguments {
             let tip = format!("to run a composite, write `saoms run {word}`");
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
-        error.exit()
+        if error.use_stderr() {
+            error.exit();
+        }
+        // Help and version.
+        printed(|_| error.print().and_then(|()| io::stdout().flush()));
+        process::exit(if has_failed() { Exit::Failed } else { Exit::Done } as i32)
     })
 }

@@ -10,7 +10,9 @@ mod standard;
 pub(crate) use outputs::{Asked, Outputs, Refused};
 pub(crate) use place::{Place, Sink};
 pub(crate) use replace::replace;
-pub(crate) use standard::{eprint, eprint_json, has_failed, print, print_json};
+pub(crate) use standard::{
+    eprint, eprint_json, has_failed, limit_patience, print, print_json, printed, wait_for_no_reader,
+};
 
 /// `1 error`, `2 errors`.
 pub(crate) fn counted(number: usize, noun: &str) -> String {

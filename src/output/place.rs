@@ -99,6 +99,12 @@ impl Place {
         }
     }
 
+    /// True if standard output is a pipe or a socket, whose reader can go away.
+    pub(crate) fn is_standard_output_read() -> bool {
+        let about = fs::metadata("/proc/self/fd/1").map(|about| about.file_type());
+        about.is_ok_and(|about| about.is_fifo() || about.is_socket())
+    }
+
     /// Tries whether a file can be written, whole or as it grows, without a trace: what is there stays as it is. What is
     /// no file, [`open`](Self::open) tries.
     pub(super) fn try_out(&self, grows: bool) -> io::Result<()> {

@@ -2,17 +2,42 @@
 //! is one.
 
 use std::fmt::Display;
-use std::io::{self, BufWriter, ErrorKind, StdoutLock, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::os::fd::{AsFd, AsRawFd};
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+use std::sync::{LazyLock, Mutex, PoisonError};
+use std::time::Duration;
 
 use serde::Serialize;
+
+/// Standard output without a buffer; `None` where the system has no descriptor left.
+static STANDARD: LazyLock<Mutex<Option<File>>> =
+    LazyLock::new(|| Mutex::new(io::stdout().as_fd().try_clone_to_owned().ok().map(File::from)));
 
 /// True once something could not be written to standard output.
 static HAS_FAILED: AtomicBool = AtomicBool::new(false);
 
+/// True once a reader took nothing for longer than the patience lasted: it gets no lines with gaps between them.
+static IS_GIVEN_UP: AtomicBool = AtomicBool::new(false);
+
+/// The milliseconds for which a reader that reads nothing is waited for; below 0 without end.
+static PATIENCE: AtomicI32 = AtomicI32::new(-1);
+
+/// The milliseconds between two looks at the patience.
+const LOOK: i32 = 100;
+
+/// The bytes that a pipe with any room takes at once (`PIPE_BUF`).
+const PIECE: usize = 4096;
+
 /// True if something could not be written to standard output, which was told.
 pub(crate) fn has_failed() -> bool {
     HAS_FAILED.load(Ordering::SeqCst)
+}
+
+/// From now on waits no longer than this for a reader of standard output that reads nothing: it counts as gone then.
+pub(crate) fn limit_patience(patience: Duration) {
+    PATIENCE.store(i32::try_from(patience.as_millis()).unwrap_or(i32::MAX), Ordering::SeqCst);
 }
 
 /// Writes a value to standard output, piece by piece.
@@ -26,9 +51,20 @@ pub(crate) fn print_json(value: &impl Serialize) {
 }
 
 /// Writes to standard output. The first failure is told; from then on [`has_failed`].
-pub(crate) fn printed(write: impl FnOnce(&mut BufWriter<StdoutLock<'static>>) -> io::Result<()>) {
-    let mut output = BufWriter::new(io::stdout().lock());
-    let Err(error) = write(&mut output).and_then(|()| output.flush()) else { return };
+pub(crate) fn printed(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
+    let mut standard = STANDARD.lock().unwrap_or_else(PoisonError::into_inner);
+    let written = match &mut *standard {
+        None => Err(io::Error::from_raw_os_error(libc::EMFILE)),
+        Some(file) => {
+            let mut output = BufWriter::with_capacity(PIECE, Patient(file));
+            let written = write(&mut output).and_then(|()| output.flush());
+            // What could not be written is not tried again.
+            drop(output.into_parts());
+            written
+        }
+    };
+    drop(standard);
+    let Err(error) = written else { return };
     if error.kind() == ErrorKind::BrokenPipe || HAS_FAILED.swap(true, Ordering::SeqCst) {
         return;
     }
@@ -39,6 +75,48 @@ pub(crate) fn printed(write: impl FnOnce(&mut BufWriter<StdoutLock<'static>>) ->
         _ => "",
     };
     eprint(&format!("error: standard output cannot be written: {error}{help}\n"));
+}
+
+/// Standard output that is written when there is room.
+struct Patient<'a>(&'a mut File);
+
+impl Write for Patient<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        while !IS_GIVEN_UP.load(Ordering::SeqCst) {
+            let patience = PATIENCE.load(Ordering::SeqCst);
+            if wait(self.0, libc::POLLOUT, if patience < 0 { LOOK } else { patience })? {
+                return self.0.write(&bytes[..bytes.len().min(PIECE)]);
+            }
+            IS_GIVEN_UP.store(patience >= 0, Ordering::SeqCst);
+        }
+        Err(ErrorKind::BrokenPipe.into())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Waits until nobody reads standard output any more, where that is a pipe or a socket.
+///
+/// # Errors
+/// The system cannot tell.
+pub(crate) fn wait_for_no_reader() -> io::Result<()> {
+    wait(&io::stdout(), 0, -1).map(drop)
+}
+
+/// Waits for one of these events, an error or the end of a descriptor, so many milliseconds at most.
+fn wait(descriptor: &impl AsRawFd, events: i16, milliseconds: i32) -> io::Result<bool> {
+    loop {
+        let mut asked = libc::pollfd { fd: descriptor.as_raw_fd(), events, revents: 0 };
+        // SAFETY: the pointer leads to one structure that lives until the call returns.
+        let found = unsafe { libc::poll(&raw mut asked, 1, milliseconds) };
+        match io::Error::last_os_error() {
+            error if found < 0 && error.kind() != ErrorKind::Interrupted => return Err(error),
+            _ if found < 0 => {}
+            _ => return Ok(found > 0),
+        }
+    }
 }
 
 /// Writes a value to standard error, piece by piece.
@@ -54,7 +132,7 @@ pub(crate) fn eprint_json(value: &impl Serialize) {
     let _ = json(&mut output, value).and_then(|()| output.flush());
 }
 
-fn json(output: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+fn json(output: &mut (impl Write + ?Sized), value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *output, value)?;
     output.write_all(b"\n")
 }

@@ -1,6 +1,7 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
 mod console;
+mod ending;
 mod events;
 mod outputs;
 mod picture_file;
@@ -9,22 +10,19 @@ mod report_file;
 mod status_line;
 mod summary;
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use saoms_api::extension::PictureRegistration;
 use saoms_core::observe::Observer;
 use saoms_core::report::RunStatus;
-use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings};
+use saoms_core::schedule::{ClockKind, RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::INPUT;
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
 
 use super::EXIT_CODES;
 use crate::Exit;
@@ -32,8 +30,9 @@ use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
 use crate::output::{counted, eprint, eprint_json, print_json};
 use console::Console;
+use ending::{Signalled, end_without_reader};
 use events::Events;
-use outputs::RunFiles;
+use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
 use report_file::ReportFile;
@@ -149,6 +148,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     let Some(files_written) = RunFiles::of(arguments, read) else { return Exit::WrongInput };
     let RunFiles { report, picture, journal } = files_written;
+    // With a file, somebody wants the whole run, seen or not.
+    let is_standard = |one: &Option<Output>| one.as_ref().is_none_or(Output::is_standard);
+    let only_prints = journal.is_none() && is_standard(&report) && is_standard(&picture);
+    let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some());
     let report = report.map(|output| Arc::new(ReportFile { output }));
     let picture = picture.zip(paths);
     let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths)));
@@ -158,7 +161,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
-    let signals = Signals::new([SIGINT, SIGTERM]);
+    let signals = Signalled::new();
     let watched = arguments.reload.then(|| Watched::of(&assembly));
     let fleet = match RunningFleet::start(assembly, settings(arguments), observers) {
         Ok(fleet) => fleet,
@@ -167,7 +170,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
             return Exit::Failed;
         }
     };
-    end_on_signals(signals, fleet.handle());
+    let is_signalled = signals.end(fleet.handle(), arguments.grace);
+    if needs_reader {
+        end_without_reader(fleet.handle());
+    }
     let reload = watched.map(|watched| Reload::start(&files, &watched, fleet.handle()));
     if let Some(events) = events {
         events.play(fleet.handle(), arguments.virtual_time);
@@ -182,7 +188,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     match outcome.status {
         RunStatus::Done | RunStatus::Elapsed => Exit::Done,
         RunStatus::Incomplete | RunStatus::Failed => Exit::Failed,
-        RunStatus::Interrupted => Exit::Interrupted,
+        RunStatus::Interrupted if is_signalled.load(Ordering::SeqCst) => Exit::Interrupted,
+        // Its reader has seen enough.
+        RunStatus::Interrupted => Exit::Done,
     }
 }
 
@@ -224,23 +232,4 @@ fn settings(arguments: &RunArguments) -> Settings {
 fn title(arguments: &RunArguments) -> String {
     let names = arguments.fleet.files.iter().filter_map(|path| path.file_stem());
     names.map(|name| name.to_string_lossy()).collect::<Vec<_>>().join(", ")
-}
-
-/// The first Ctrl-C ends every component through its shutdown, a second one ends the process at once.
-fn end_on_signals(signals: io::Result<Signals>, stop: Handle) {
-    let spawned = signals.and_then(|mut signals| {
-        thread::Builder::new().name("signals".to_owned()).spawn(move || {
-            let mut seen = false;
-            for _ in signals.forever() {
-                if seen {
-                    std::process::exit(Exit::Interrupted as i32);
-                }
-                seen = true;
-                stop.stop();
-            }
-        })
-    });
-    if let Err(error) = spawned {
-        eprint(&format!("warning: Ctrl-C will end the process without a report: {error}\n"));
-    }
 }

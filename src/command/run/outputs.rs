@@ -77,6 +77,11 @@ impl Output {
         }
     }
 
+    /// True if it goes to standard output.
+    pub(super) fn is_standard(&self) -> bool {
+        matches!(self.sink, Sink::Standard)
+    }
+
     /// True if it could not be written.
     pub(super) fn has_failed(&self) -> bool {
         self.has_failed.load(Ordering::Relaxed)

@@ -1,6 +1,7 @@
 //! The command as a user meets it.
 
 mod contributions;
+mod ending;
 mod events;
 mod explain;
 mod fmt;
