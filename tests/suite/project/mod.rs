@@ -2,6 +2,7 @@
 
 mod architecture;
 mod editors;
+mod messages;
 mod pages;
 mod programs;
 mod readme;

@@ -1,0 +1,120 @@
+//! `docs/messages.md`: the topics of the classes that ship, with the fields of their messages, made from their
+//! declarations.
+//!
+//! `UPDATE_EXPECT=1 cargo test --test suite messages` writes the page anew.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+use expect_test::expect_file;
+use saoms_components as _;
+use saoms_lang::registry::{ClassTopic, Registry};
+use serde_json::Value;
+
+const HEAD: &str = "\
+# Messages
+
+The topics of the classes that ship, under their names before any `topicRename`, and the fields of their messages. A state
+topic keeps the newest message of each publisher, or of each key; an event topic loses none. A plugin in Rust has the same
+messages from `saoms_components::messages`; another one declares them with these names and types. `saoms check --wiring`
+shows the topics of a fleet. What each field means is in the Rust docs of that module (`cargo doc --open`). This page is
+generated from the declarations of the classes.
+";
+
+/// A topic, and the classes and loops at its ends.
+struct Ends<'r> {
+    topic: &'r ClassTopic,
+    publishers: BTreeSet<&'r str>,
+    readers: BTreeSet<&'r str>,
+}
+
+#[test]
+fn messages_are_documented() {
+    let registry = Registry::linked().unwrap();
+    let mut topics: BTreeMap<&str, Ends<'_>> = BTreeMap::new();
+    let mut add = |name, publishes, subscribes| {
+        for (all, publishes) in [(publishes, true), (subscribes, false)] {
+            let all: &[ClassTopic] = all;
+            for topic in all {
+                let new = || Ends { topic, publishers: BTreeSet::new(), readers: BTreeSet::new() };
+                let ends = topics.entry(&topic.name).or_insert_with(new);
+                if publishes {
+                    ends.publishers.insert(name)
+                } else {
+                    ends.readers.insert(name)
+                };
+            }
+        }
+    };
+    let ships = |name: &str| name.starts_with("saoms.");
+    for class in registry.iter().filter(|class| !class.is_alias() && ships(class.name())) {
+        let declaration = class.declaration();
+        add(class.name(), &declaration.publishes, &declaration.subscribes);
+    }
+    for one in registry.loops().filter(|one| ships(one.name())) {
+        add(one.name(), &one.declaration().publishes, &one.declaration().subscribes);
+    }
+    let (mut page, mut types) = (HEAD.to_owned(), BTreeMap::new());
+    for ends in topics.values() {
+        page += &section(ends, &mut types);
+    }
+    page += "\n## Types\n";
+    // The fields of a type can be of further types.
+    let mut written = BTreeSet::new();
+    while let Some((name, schema)) = types.pop_first() {
+        if written.insert(name.clone()) {
+            let _ = write!(page, "\n### {name}\n\n{}", fields(&schema, &mut types));
+        }
+    }
+    expect_file!["../../../docs/messages.md"].assert_eq(&page);
+}
+
+fn section(ends: &Ends<'_>, types: &mut BTreeMap<String, Value>) -> String {
+    let Ends { topic, publishers, readers } = ends;
+    let list = |names: &BTreeSet<&str>| match names.len() {
+        0 => "nothing that ships".to_owned(),
+        _ => names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
+    };
+    let key = topic.schema["key"].as_str().map_or_else(String::new, |key| format!(", one for each `{key}`"));
+    format!(
+        "\n## {}\n\n{} topic of `{}`{key}. Published by {}; read by {}.\n\n{}",
+        topic.name,
+        if topic.kind == saoms_api::host::TopicKind::State { "State" } else { "Event" },
+        topic.message,
+        list(publishers),
+        list(readers),
+        fields(&topic.schema, types)
+    )
+}
+
+/// A table of the fields of a message or a type. Types of fields are noted.
+fn fields(schema: &Value, types: &mut BTreeMap<String, Value>) -> String {
+    let mut table = "| field | type |\n| --- | --- |\n".to_owned();
+    for field in schema["fields"].as_array().unwrap() {
+        let _ = writeln!(table, "| `{}` | {} |", field["name"].as_str().unwrap(), type_name(&field["type"], types));
+    }
+    table
+}
+
+fn type_name(of: &Value, types: &mut BTreeMap<String, Value>) -> String {
+    if let Some(name) = of.as_str() {
+        return format!("`{name}`");
+    }
+    if let Some(values) = of["values"].as_object() {
+        let mut values: Vec<(i64, &str)> =
+            values.iter().map(|(name, number)| (number.as_i64().unwrap(), &**name)).collect();
+        values.sort_unstable();
+        let values: Vec<String> = values.iter().map(|(number, name)| format!("`{name}` {number}")).collect();
+        return format!("`{}`: {}", of["enumeration"].as_str().unwrap(), values.join(", "));
+    }
+    if let Some(name) = of["name"].as_str() {
+        types.insert(name.to_owned(), of.clone());
+        return format!("[{name}](#{})", name.to_lowercase());
+    }
+    for (key, words) in [("sequence", "list of"), ("optional", "optional")] {
+        if let Some(inner) = of.get(key) {
+            return format!("{words} {}", type_name(inner, types));
+        }
+    }
+    panic!("a type without a name: {of}")
+}
