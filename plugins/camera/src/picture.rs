@@ -11,7 +11,7 @@ pub(crate) const ROBOT: u8 = 255;
 /// A picture of a robot's camera: a square of blocks around the robot, seen from above.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(key = "robot")]
-pub struct Snapshot {
+pub struct CameraPicture {
     /// Number of the robot.
     pub robot: u32,
     /// Block in the middle, the position of the robot.
@@ -23,18 +23,18 @@ pub struct Snapshot {
 }
 
 /// The newest picture of each robot.
-pub const CAMERA: Topic<Snapshot> = Topic::state("CAMERATOPIC");
+pub const CAMERA: Topic<CameraPicture> = Topic::state("CAMERATOPIC");
 
-impl Snapshot {
+impl CameraPicture {
     /// Takes a picture of `reach` blocks in each direction.
-    pub(crate) fn take(robot: u32, block: Block, reach: u32, brightness: impl Fn(Block) -> u8) -> Snapshot {
+    pub(crate) fn take(robot: u32, block: Block, reach: u32, brightness: impl Fn(Block) -> u8) -> CameraPicture {
         let size = 2 * reach + 1;
         let at = |pixel: u32| {
             let shift = |place: u32| i32::try_from(place).unwrap_or(0) - i32::try_from(reach).unwrap_or(0);
             Block::new(block.x + shift(pixel % size), block.y + shift(pixel / size))
         };
         let pixels = (0..size * size).map(|pixel| brightness(at(pixel))).collect();
-        Snapshot { robot, block, size, pixels }
+        CameraPicture { robot, block, size, pixels }
     }
 
     /// Number of other robots in the picture, which may come from any sender and so have any content.
@@ -55,7 +55,7 @@ mod tests {
             (_, y) if y < 0 => WALL,
             _ => FLOOR,
         };
-        let picture = Snapshot::take(7, Block::new(4, 0), 1, brightness);
+        let picture = CameraPicture::take(7, Block::new(4, 0), 1, brightness);
         assert_eq!(picture.pixels, [WALL, WALL, WALL, FLOOR, ROBOT, FLOOR, FLOOR, FLOOR, ROBOT]);
         assert_eq!((picture.size, picture.others()), (3, 1));
     }

@@ -1,7 +1,7 @@
 use saoms_api::{Class, Component, Context, Failure, Properties, Publisher, Saved};
 use saoms_components::robot::{Robot, RobotProperties};
 
-use crate::picture::{CAMERA, FLOOR, ROBOT, Snapshot, WALL};
+use crate::picture::{CAMERA, CameraPicture, FLOOR, ROBOT, WALL};
 
 /// Properties of a robot with a camera.
 #[derive(Debug, Properties)]
@@ -32,7 +32,7 @@ pub struct CameraRobot {
     robot: Robot,
     reach: u32,
     every: u64,
-    camera: Publisher<Snapshot>,
+    camera: Publisher<CameraPicture>,
 }
 
 impl Component for CameraRobot {
@@ -74,9 +74,9 @@ impl Component for CameraRobot {
 
 impl CameraRobot {
     /// The place for the calls of a real camera: this one draws the knowledge of the robot.
-    fn snapshot(&self) -> Snapshot {
+    fn snapshot(&self) -> CameraPicture {
         let robot = self.robot.knowledge();
-        Snapshot::take(robot.number, robot.block, self.reach, |block| {
+        CameraPicture::take(robot.number, robot.block, self.reach, |block| {
             if block == robot.block || robot.lists.peers.on(block).is_some() {
                 ROBOT
             } else if robot.routes.is_free(block) {

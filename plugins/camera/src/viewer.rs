@@ -1,6 +1,6 @@
 use saoms_api::{Class, Component, Context, Failure, Properties, Subscription};
 
-use crate::picture::{CAMERA, Snapshot};
+use crate::picture::{CAMERA, CameraPicture};
 
 /// Properties of a viewer.
 #[derive(Debug, Properties)]
@@ -10,12 +10,12 @@ pub struct ViewerProperties {
     others: usize,
 }
 
-/// Looks at the pictures of all cameras, and counts them in the report.
+/// A viewer of the pictures of all cameras, which it counts in the report.
 #[derive(Debug, Class)]
 #[class(name = "camera.Viewer", periodic, subscribes(CAMERA))]
 pub struct Viewer {
     others: usize,
-    camera: Subscription<Snapshot>,
+    camera: Subscription<CameraPicture>,
 }
 
 impl Component for Viewer {

@@ -23,7 +23,7 @@ pub struct AirlineProperties {
     at: Duration,
 }
 
-/// Announces a flight, and waits until its luggage is on board.
+/// An airline, which announces a flight and waits until its luggage is on board.
 #[derive(Debug, Class)]
 #[class(name = "flights.Airline", periodic, publishes(FLIGHT), subscribes(FLIGHT_STATE))]
 pub struct Airline {

@@ -1,6 +1,6 @@
 //! A master of the environment that also handles flights: listing 6.13 of the manual.
 //!
-//! [`MasterEnvironment`] wraps the master that ships, and does everything that it does. In addition it subscribes to
+//! [`FlightMaster`] wraps the master that ships, and does everything that it does. In addition it subscribes to
 //! [`Flight`]s on a topic of its own, turns each into requests for luggage, and publishes their progress on another
 //! topic.
 
@@ -10,9 +10,9 @@ mod messages;
 mod open;
 
 pub use airline::{Airline, AirlineProperties};
-pub use master::{MasterEnvironment, MasterEnvironmentProperties};
+pub use master::{FlightMaster, FlightMasterProperties};
 pub use messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
 
 saoms_api::plugin! {
-    classes: [MasterEnvironment, Airline],
+    classes: [FlightMaster, Airline],
 }

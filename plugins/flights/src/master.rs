@@ -7,16 +7,16 @@ use crate::open::Flights;
 
 /// Properties of the master.
 #[derive(Debug, Properties)]
-pub struct MasterEnvironmentProperties {
+pub struct FlightMasterProperties {
     /// First number of the luggage of flights; other luggage must have lower numbers.
     #[property(default = 1000, range = 1..)]
     first_luggage: u32,
 }
 
-/// Distributes the events of the environment, and requests the luggage of flights.
+/// A master that distributes the events of the environment, and requests the luggage of flights.
 #[derive(Debug, Class)]
 #[class(name = "flights.MasterEnvironment", periodic, subscribes(FLIGHT), publishes(ENVIRONMENT, FLIGHT_STATE))]
-pub struct MasterEnvironment {
+pub struct FlightMaster {
     #[extends]
     master: master::MasterEnvironment,
     flights: Flights,
@@ -26,11 +26,11 @@ pub struct MasterEnvironment {
     states: Publisher<FlightState>,
 }
 
-impl Component for MasterEnvironment {
-    type Properties = MasterEnvironmentProperties;
+impl Component for FlightMaster {
+    type Properties = FlightMasterProperties;
 
-    fn new(properties: MasterEnvironmentProperties) -> Result<Self, Failure> {
-        Ok(MasterEnvironment {
+    fn new(properties: FlightMasterProperties) -> Result<Self, Failure> {
+        Ok(FlightMaster {
             master: master::MasterEnvironment::new(())?,
             flights: Flights::new(properties.first_luggage),
             announced: Subscription::default(),
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn a_flight_becomes_requests_for_luggage() -> Result<(), Failure> {
-        let mut master = Bench::of::<MasterEnvironment>(&[("firstLuggage", "50")])?;
+        let mut master = Bench::of::<FlightMaster>(&[("firstLuggage", "50")])?;
         master.start()?;
         master.deliver(&FLIGHT, flight());
         master.execute()?;
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn it_is_still_a_master_of_the_environment() -> Result<(), Failure> {
-        let mut master = Bench::of::<MasterEnvironment>(&[])?;
+        let mut master = Bench::of::<FlightMaster>(&[])?;
         master.start()?;
         let landing = ExceptionalEvent { pieces: 4, ..ExceptionalEvent::default() };
         master.deliver(&ENVIRONMENT, landing.clone().into());
@@ -128,6 +128,6 @@ mod tests {
 
     #[test]
     fn it_keeps_what_every_component_keeps() {
-        saoms_testkit::comply::<MasterEnvironment>(&[]);
+        saoms_testkit::comply::<FlightMaster>(&[]);
     }
 }

@@ -62,7 +62,7 @@ pub(crate) struct Pair<'a> {
 
 /// The fault of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Fault {
+pub(crate) struct RenameFault {
     /// The bytes at fault.
     pub(crate) at: Range<usize>,
     /// The message.
@@ -72,14 +72,14 @@ pub(crate) struct Fault {
 }
 
 /// The pairs of `text`, and all that is wrong with it.
-pub(crate) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
+pub(crate) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<RenameFault>) {
     let (pairs, mut faults) = read(text);
     contradictions(&pairs, &mut faults);
     (pairs, faults)
 }
 
 /// The pairs of `text`, and what are none.
-pub(crate) fn read(text: &str) -> (Vec<Pair<'_>>, Vec<Fault>) {
+pub(crate) fn read(text: &str) -> (Vec<Pair<'_>>, Vec<RenameFault>) {
     let mut pairs = Vec::new();
     let mut faults = Vec::new();
     if text.trim().is_empty() {
@@ -129,7 +129,7 @@ fn pair<'a>(
     whole: &Range<usize>,
     text: &'a str,
     pairs: &mut Vec<Pair<'a>>,
-    faults: &mut Vec<Fault>,
+    faults: &mut Vec<RenameFault>,
 ) {
     let found: Vec<Name<'a>> = names.iter().map(|range| trimmed(text, range)).collect();
     let count = found.iter().filter(|name| !name.text.is_empty()).count();
@@ -142,7 +142,7 @@ fn pair<'a>(
                 1 => format!("a pair with one name, `{}`", piece.text),
                 _ => format!("{count} names where a pair has two"),
             };
-            faults.push(Fault { at: piece.at, message, other: None });
+            faults.push(RenameFault { at: piece.at, message, other: None });
         }
     }
 }
@@ -158,14 +158,14 @@ fn trimmed<'a>(text: &'a str, range: &Range<usize>) -> Name<'a> {
 }
 
 /// Names renamed twice, chains, and names that are renamed to themselves.
-fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<Fault>) {
+fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<RenameFault>) {
     let mut first: HashMap<&str, &Pair<'_>> = HashMap::with_capacity(pairs.len());
     for pair in pairs {
         if faults.len() >= TEXT_FAULTS {
             return;
         }
         if let Some(earlier) = first.get(pair.old.text) {
-            faults.push(Fault {
+            faults.push(RenameFault {
                 at: pair.old.at.clone(),
                 message: format!("topic `{}` is renamed twice", pair.old.text),
                 other: Some((earlier.old.at.clone(), "first here")),
@@ -180,14 +180,14 @@ fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<Fault>) {
         }
         let Some(next) = first.get(pair.new.text) else { continue };
         if pair.old.text == pair.new.text {
-            faults.push(Fault {
+            faults.push(RenameFault {
                 at: pair.new.at.clone(),
                 message: format!("topic `{}` is renamed to its own name", pair.old.text),
                 other: None,
             });
         } else {
             let (old, new, last) = (pair.old.text, pair.new.text, next.new.text);
-            faults.push(Fault {
+            faults.push(RenameFault {
                 at: pair.new.at.clone(),
                 message: format!("a chain: `{old}` is renamed to `{new}`, and `{new}` to `{last}`"),
                 other: Some((next.old.at.clone(), "renamed again here")),

@@ -101,7 +101,7 @@ fn the_wheels_that_wear_out_are_loaded() {
 fn what_the_examples_offer_is_listed_without_running_them() {
     for (package, name, expected) in [
         ("saoms_camera", "camera.Robot", "extends saoms.Robot"),
-        ("saoms_camera", "camera.Robot", "CAMERATOPIC (state topic of Snapshot)"),
+        ("saoms_camera", "camera.Robot", "CAMERATOPIC (state topic of CameraPicture)"),
         ("saoms_camera", "camera.Robot", "CollisionMS          saoms.CollisionMS"),
         ("saoms_flights", "flights.MasterEnvironment", "extends saoms.MasterEnvironment"),
         ("saoms_drive", "drive.Drive", "hardware: saoms.Hardware"),

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// The fault of an address.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Fault {
+pub(crate) struct AddressFault {
     /// The bytes at fault.
     pub(crate) at: Range<usize>,
     pub(crate) message: String,
@@ -15,11 +15,11 @@ pub(crate) struct Fault {
 
 /// The fault of `text` as an address: a host name, an IPv4 address, or an IPv6 address in brackets, then a colon and a
 /// port from 1 to 65535.
-pub(crate) fn fault(text: &str) -> Option<Fault> {
-    let at = |at: Range<usize>, message: String| Some(Fault { at, message, instead: None });
+pub(crate) fn fault(text: &str) -> Option<AddressFault> {
+    let at = |at: Range<usize>, message: String| Some(AddressFault { at, message, instead: None });
     if let Some(scheme) = text.find("://") {
         let message = format!("`{}` is more than host and port", &text[..scheme + 3]);
-        return Some(Fault { at: 0..scheme + 3, message, instead: Some(String::new()) });
+        return Some(AddressFault { at: 0..scheme + 3, message, instead: Some(String::new()) });
     }
     let bracket = text.starts_with('[').then(|| text.find(']')).flatten();
     let colon = match bracket {
@@ -40,7 +40,7 @@ pub(crate) fn fault(text: &str) -> Option<Fault> {
     } else if host.contains(':') {
         let message = format!("`{host}` is no host: an IPv6 address stands in brackets");
         let instead = host.parse::<Ipv6Addr>().is_ok().then(|| format!("[{host}]"));
-        return Some(Fault { at: 0..colon, message, instead });
+        return Some(AddressFault { at: 0..colon, message, instead });
     } else if let Some(found) = host.find(|c: char| !(c.is_ascii_alphanumeric() || "-._".contains(c))) {
         let character = host[found..].chars().next().unwrap_or(' ');
         return at(

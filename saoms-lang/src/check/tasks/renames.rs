@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-use crate::assembly::topic_rename::{self, Fault};
+use crate::assembly::topic_rename::{self, RenameFault};
 use crate::check::fleet::Fleet;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::report::{Parts, Report, replacing};
@@ -88,7 +88,7 @@ impl Renames {
     }
 }
 
-fn wrong(fault: Fault, text: &str, parts: &Parts) -> Diagnostic {
+fn wrong(fault: RenameFault, text: &str, parts: &Parts) -> Diagnostic {
     let at = parts.part(fault.at.clone());
     let one = Diagnostic::new(&codes::TOPIC_RENAME, at, format!("bad `topicRename`: {}", fault.message));
     if let Some((other, what)) = fault.other {

@@ -28,8 +28,8 @@ pub(crate) const POSITION: &str = "position()";
 pub(crate) const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
 
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum FaultKind {
-    /// The path leads nowhere.
+pub(crate) enum PathFaultKind {
+    /// The path is unresolved.
     Wrong,
     /// It is an XPath that is no path: another program may understand it.
     Unknown,
@@ -38,29 +38,29 @@ pub(crate) enum FaultKind {
 }
 
 /// A fault of a path.
-pub(crate) struct Fault {
+pub(crate) struct PathFault {
     /// Its bytes.
     pub(crate) step: Range<usize>,
     pub(crate) message: String,
-    pub(crate) kind: FaultKind,
+    pub(crate) kind: PathFaultKind,
     /// A name in the step, and the one that is probably meant by it.
     pub(crate) instead: Option<(String, String)>,
 }
 
-impl Fault {
+impl PathFault {
     pub(crate) fn new(step: Range<usize>, message: impl Into<String>) -> Self {
-        Self { step, message: message.into(), kind: FaultKind::Wrong, instead: None }
+        Self { step, message: message.into(), kind: PathFaultKind::Wrong, instead: None }
     }
 
     /// The fault of what another program may understand.
     pub(crate) fn unknown(step: Range<usize>, message: impl Into<String>) -> Self {
-        Self { kind: FaultKind::Unknown, ..Self::new(step, message) }
+        Self { kind: PathFaultKind::Unknown, ..Self::new(step, message) }
     }
 
     /// The fault of a step where paths have looked at too many elements.
     pub(crate) fn too_many(step: Range<usize>) -> Self {
         let message = format!("paths of sources look at more than {PATH_ELEMENTS} elements");
-        Self { kind: FaultKind::TooMany, ..Self::new(step, message) }
+        Self { kind: PathFaultKind::TooMany, ..Self::new(step, message) }
     }
 
     /// With the name among those that there are which is nearly this one.
@@ -79,14 +79,14 @@ pub(crate) fn expression(source: &str) -> Option<(&str, Option<&str>)> {
 }
 
 /// The place of the value that `[2]` behind the name means, of so many; `None` where the path starts from all of them.
-pub(crate) fn one_of(count: usize, path: &str) -> Result<Option<usize>, Fault> {
+pub(crate) fn one_of(count: usize, path: &str) -> Result<Option<usize>, PathFault> {
     let Some((at, step)) = steps(path).next().filter(|(_, step)| !step.is_empty()) else { return Ok(None) };
     let Some(Predicate::Position(wanted)) = predicate(step) else {
-        return Err(Fault::unknown(at, NO_STEP));
+        return Err(PathFault::unknown(at, NO_STEP));
     };
     match wanted.of(count) {
         Some(place) => Ok(Some(place)),
-        None => Err(Fault::new(at, format!("the property has {}", counted(count, "value")))),
+        None => Err(PathFault::new(at, format!("the property has {}", counted(count, "value")))),
     }
 }
 
@@ -96,12 +96,12 @@ pub(crate) fn ends<'a>(
     (at, step): (Range<usize>, &str),
     is_last: bool,
     instance: Option<&'a Instance>,
-) -> Option<Result<Raw<'a>, Fault>> {
+) -> Option<Result<Raw<'a>, PathFault>> {
     let raw = |texts: Vec<Text>| Raw(texts.into_iter().map(|text| Piece::text(text, instance)).collect());
     if let Some(name) = step.strip_prefix('@').filter(|name| is_name(name)) {
         let found = around.iter().filter_map(|one| Some(attribute(*one, name)?.trimmed())).collect::<Vec<_>>();
         return Some(match is_last {
-            false => Err(Fault::new(at, "an attribute has no parts")),
+            false => Err(PathFault::new(at, "an attribute has no parts")),
             true if found.is_empty() => Err(no_attribute(at, name, around)),
             true => Ok(raw(found)),
         });
@@ -109,22 +109,22 @@ pub(crate) fn ends<'a>(
     if step == "text()" {
         let found = around.iter().filter_map(|one| one.trimmed_text()).collect::<Vec<_>>();
         return Some(match is_last {
-            false => Err(Fault::new(at, "a text has no parts")),
-            true if found.is_empty() => Err(Fault::new(at, "there is no text here")),
+            false => Err(PathFault::new(at, "a text has no parts")),
+            true if found.is_empty() => Err(PathFault::new(at, "there is no text here")),
             true => Ok(raw(found)),
         });
     }
     let is_missing = step.is_empty();
     let step = at.start.saturating_sub(1)..at.end;
-    is_missing.then(|| Err(Fault::new(step, format!("a step is missing: {FORMS}"))))
+    is_missing.then(|| Err(PathFault::new(step, format!("a step is missing: {FORMS}"))))
 }
 
 /// The fault of a step that is of no form that is understood here.
-pub(crate) fn no_step(step: &str, at: Range<usize>) -> Fault {
+pub(crate) fn no_step(step: &str, at: Range<usize>) -> PathFault {
     if step.matches('[').count() > step.matches(']').count() {
-        return Fault::unknown(at, "a `]` is missing at the end of this step");
+        return PathFault::unknown(at, "a `]` is missing at the end of this step");
     }
-    Fault::unknown(at, NO_STEP)
+    PathFault::unknown(at, NO_STEP)
 }
 
 /// The steps of what follows the name with their bytes, between each `/` that is not within quotation marks.
@@ -220,7 +220,7 @@ impl<'p> Test<'p> {
     }
 
     /// The reason why the step at these bytes leads to none of these elements, of which some have its name.
-    pub(crate) fn fault(&self, at: Range<usize>, all: &[Element<'_>], named: &[Element<'_>]) -> Fault {
+    pub(crate) fn fault(&self, at: Range<usize>, all: &[Element<'_>], named: &[Element<'_>]) -> PathFault {
         if named.is_empty() {
             let known = different(all.iter().map(|one| one.local_name()));
             let asked = self.name.map_or(String::new(), |name| format!(" {}", quoted(name)));
@@ -229,13 +229,13 @@ impl<'p> Test<'p> {
                 false => format!("there is no part{asked}; the parts are {}", list(known.iter().copied())),
             };
             let message = message + self.of_values();
-            return Fault::new(at, message).near(self.name.unwrap_or_default(), known);
+            return PathFault::new(at, message).near(self.name.unwrap_or_default(), known);
         }
         let Some(Predicate::Value { of, value }) = self.predicate else {
-            return Fault::new(at, self.no_place(named));
+            return PathFault::new(at, self.no_place(named));
         };
         let Some(name) = of.strip_prefix('@') else {
-            return Fault::new(at, format!("no part here has {} as its part {}", quoted(value), quoted(of)));
+            return PathFault::new(at, format!("no part here has {} as its part {}", quoted(value), quoted(of)));
         };
         let values = named.iter().take(SEARCHED_PARTS).filter_map(|one| attribute(*one, name)).take(LISTED_PARTS);
         let values: Vec<_> = values.map(|one| one.value()).collect();
@@ -244,7 +244,7 @@ impl<'p> Test<'p> {
             false => format!("its values are {}", list(values.iter().map(|value| &**value))),
         };
         let message = format!("no part here has {} as its {}: {known}", quoted(value), quoted(name));
-        Fault::new(at, message).near(value, values.iter().map(|value| &**value))
+        PathFault::new(at, message).near(value, values.iter().map(|value| &**value))
     }
 
     /// The message for a path into `<value>` elements: a variable is the values, not the elements around them.
@@ -306,13 +306,13 @@ fn different<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
     names.take(SEARCHED_PARTS).filter(|name| seen.insert(*name)).take(LISTED_PARTS).collect()
 }
 
-fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> Fault {
+fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> PathFault {
     let known = different(around.iter().flat_map(|one| one.attributes()).map(Attribute::local_name));
     let said = match known.is_empty() {
         true => "there are none here".to_owned(),
         false => format!("the attributes are {}", list(known.iter().copied())),
     };
-    Fault::new(at, format!("there is no attribute {}; {said}", quoted(name))).near(local(name), known)
+    PathFault::new(at, format!("there is no attribute {}; {said}", quoted(name))).near(local(name), known)
 }
 
 /// True if it can be the name of an element or an attribute, as far as that tells it from other steps.

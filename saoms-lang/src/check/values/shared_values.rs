@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::rc::Rc;
 
-use super::path::{Fault, POSITION, Predicate, Test, attribute, ends, no_step, one_of, steps};
+use super::path::{POSITION, PathFault, Predicate, Test, attribute, ends, no_step, one_of, steps};
 use super::raw::{Piece, Raw};
 use crate::limits::{Budget, PATH_STEPS, TABLE_ELEMENTS};
 use crate::model::Property;
@@ -72,7 +72,12 @@ impl<'a> SharedValues<'a> {
     }
 
     /// The values that a path leads to, as components take them. `budget` is of the elements that paths look at.
-    pub(crate) fn led_to(self: Rc<Self>, path: &str, property: &Property, budget: &Budget) -> Result<Rc<Self>, Fault> {
+    pub(crate) fn led_to(
+        self: Rc<Self>,
+        path: &str,
+        property: &Property,
+        budget: &Budget,
+    ) -> Result<Rc<Self>, PathFault> {
         let values = &self.raw.0;
         if values.is_empty() {
             // What has no value has no parts either.
@@ -89,7 +94,7 @@ impl<'a> SharedValues<'a> {
             _ => false,
         };
         if let Some((at, _)) = all.get(PATH_STEPS) {
-            return Err(Fault::new(at.clone(), format!("a path has at most {PATH_STEPS} steps")));
+            return Err(PathFault::new(at.clone(), format!("a path has at most {PATH_STEPS} steps")));
         }
         Ok(Self::new(if is_all { Raw(values.to_vec()) } else { self.walk(values, path, &all, budget)? }))
     }
@@ -101,7 +106,7 @@ impl<'a> SharedValues<'a> {
         path: &str,
         all: &[(Range<usize>, &str)],
         budget: &Budget,
-    ) -> Result<Raw<'a>, Fault> {
+    ) -> Result<Raw<'a>, PathFault> {
         let instance = values.iter().find_map(Piece::instance);
         let mut steps = all.iter();
         // Once the limit is reached, no path is walked any more.
@@ -174,8 +179,8 @@ fn key(path: &str, at: &Range<usize>, test: &Test<'_>, of: &str) -> String {
 }
 
 /// Counts elements that the step at these bytes is to look at.
-fn look_at(count: usize, at: &Range<usize>, budget: &Budget) -> Result<(), Fault> {
-    if budget.spend(count as u64) { Ok(()) } else { Err(Fault::too_many(at.clone())) }
+fn look_at(count: usize, at: &Range<usize>, budget: &Budget) -> Result<(), PathFault> {
+    if budget.spend(count as u64) { Ok(()) } else { Err(PathFault::too_many(at.clone())) }
 }
 
 /// Elements by the values that they have of a part, of an attribute such as `@id`, or by their places.
@@ -214,13 +219,13 @@ impl<'a> Level<'a> {
         path: &str,
         (at, first): &(Range<usize>, &str),
         budget: &Budget,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, PathFault> {
         let elements: Vec<&[Element<'a>]> = values.iter().filter_map(Piece::elements).collect();
         let top = elements.concat();
         if top.is_empty() {
             let of_values = Test::of(first).map_or("", |test| test.of_values());
             let message = format!("the property has a simple value: there are no parts in it{of_values}");
-            return Err(Fault::new(0..path.len(), message));
+            return Err(PathFault::new(0..path.len(), message));
         }
         let mut looked_at = top.len();
         let mut inside = top.iter().flat_map(|one| one.children()).inspect(|_| looked_at += 1);
@@ -243,7 +248,7 @@ impl<'a> Level<'a> {
     }
 
     /// All that is inside, to any depth: siblings beside each other.
-    fn deep(self, at: &Range<usize>, budget: &Budget) -> Result<Self, Fault> {
+    fn deep(self, at: &Range<usize>, budget: &Budget) -> Result<Self, PathFault> {
         let mut waiting = [&self.around[..], &self.top].concat();
         let (mut around, mut seen) = (Vec::new(), HashSet::new());
         while let Some(one) = waiting.pop() {

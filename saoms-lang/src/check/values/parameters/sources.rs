@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::{Given, Parameters};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
-use crate::check::values::path::{FORMS, Fault, FaultKind, expression};
+use crate::check::values::path::{FORMS, PathFault, PathFaultKind, expression};
 use crate::check::values::raw::{Piece, Raw, raw};
 use crate::check::values::shared_values::{Answer, SharedValues};
 use crate::check::values::value_type::Typed;
@@ -151,7 +151,7 @@ impl<'a> Parameters<'a> {
         unit.has_wrong_source = true;
         if source.contains(['$', '(']) {
             let fault = braced(source).unwrap_or_else(|| {
-                Fault::unknown(0..source.len(), format!("{} is no path from a property", quoted(source)))
+                PathFault::unknown(0..source.len(), format!("{} is no path from a property", quoted(source)))
             });
             return self.malformed(source, 0, fault, report);
         }
@@ -165,11 +165,11 @@ impl<'a> Parameters<'a> {
     }
 
     /// Reports a fault of a `source`, whose bytes count from a place in it. Another program may understand any XPath.
-    fn malformed(&mut self, source: &Text, start: usize, fault: Fault, report: &mut Report<'_>) {
-        let Fault { step, message, kind, instead } = fault;
+    fn malformed(&mut self, source: &Text, start: usize, fault: PathFault, report: &mut Report<'_>) {
+        let PathFault { step, message, kind, instead } = fault;
         let step = start + step.start..start + step.end;
         let at = report.part(source, step.clone());
-        if kind == FaultKind::TooMany {
+        if kind == PathFaultKind::TooMany {
             if self.elements.is_to_report() {
                 let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message);
                 report.push(one.help("ask for parts by their names, by an attribute or by a place, without `//`"));
@@ -184,7 +184,7 @@ impl<'a> Parameters<'a> {
             let place = report.part(source, place..place + name.len());
             one = one.suggest(replacing(&name, &meant), place, escaped(&meant));
         }
-        if kind == FaultKind::Unknown {
+        if kind == PathFaultKind::Unknown {
             one = match self.options.assume_classes {
                 true => one.severity(Severity::Warning).help("another program may understand it: it is taken as given"),
                 false => one.help(format!(
@@ -197,11 +197,11 @@ impl<'a> Parameters<'a> {
 }
 
 /// The fault of `${name}`, as where texts are made of others.
-fn braced(source: &str) -> Option<Fault> {
+fn braced(source: &str) -> Option<PathFault> {
     let (name, _) = source.strip_prefix("${")?.split_once('}')?;
     let written = format!("${{{name}}}");
-    let fault = Fault::unknown(0..written.len(), "names of properties stand without braces here");
-    is_name(name.trim()).then(|| Fault { instead: Some((written, format!("${}", name.trim()))), ..fault })
+    let fault = PathFault::unknown(0..written.len(), "names of properties stand without braces here");
+    is_name(name.trim()).then(|| PathFault { instead: Some((written, format!("${}", name.trim()))), ..fault })
 }
 
 /// True if it can be the name of a property, as far as that tells it from other parts of a path.
