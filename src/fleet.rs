@@ -27,7 +27,7 @@ pub(crate) fn project(arguments: &FleetArguments) -> Project {
 /// Takes a step with a project and the classes of a command line.
 ///
 /// # Errors
-/// A plugin cannot be used, which was told.
+/// A plugin cannot be used, which was reported.
 pub(crate) fn compiled<T>(
     arguments: &FleetArguments,
     step: impl FnOnce(Project, &CommandClasses<'_>) -> Compilation<T>,

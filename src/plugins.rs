@@ -25,7 +25,7 @@ impl<'a> CommandClasses<'a> {
     /// The classes linked in, with plugins as the arguments say.
     ///
     /// # Errors
-    /// The linked classes contradict each other, which is a fault of this build and not of the user: it was told.
+    /// The linked classes contradict each other, which is a fault of this build and not of the user: it was reported.
     pub(crate) fn new(arguments: &'a PluginArguments) -> Result<Self, Exit> {
         match Registry::linked() {
             Ok(linked) => Ok(Self { arguments, linked }),
@@ -51,7 +51,7 @@ pub(crate) fn files_read(arguments: &PluginArguments) -> Vec<PathBuf> {
 /// The registry of a command without composites.
 ///
 /// # Errors
-/// A plugin cannot be used, which was told.
+/// A plugin cannot be used, which was reported.
 pub(crate) fn registry(arguments: &PluginArguments) -> Result<Registry, Exit> {
     let Classes { registry, problems, .. } = CommandClasses::new(arguments)?.classes(&[]);
     usable(&problems)?;

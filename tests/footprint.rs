@@ -1,7 +1,7 @@
 //! Whatever a file holds, no command takes more than 16 MB and 20 times its size for it.
 //!
-//! What is measured is the memory of the whole process at its peak, beyond that of the same command with an empty
-//! composite: what the program itself takes differs from build to build.
+//! Measured is the memory of the whole process at its peak, beyond that of the same command with an empty composite:
+//! what the program itself takes differs from build to build.
 
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "helpers of tests, outside test functions")]
@@ -9,10 +9,10 @@
 use std::fs;
 use std::process::{Command, Stdio};
 
-/// What the 16 MB leave beside the program itself.
+/// The part of the 16 MB beside the program itself.
 const ROOM: usize = 4_500_000;
 
-/// What a command takes at its peak, in bytes.
+/// The memory of a command at its peak, in bytes.
 #[expect(clippy::zombie_processes, reason = "it is waited for in the way that says what it took")]
 fn peak(arguments: &[&str], text: &str) -> usize {
     let folder = tempfile::tempdir().unwrap();
@@ -23,7 +23,7 @@ fn peak(arguments: &[&str], text: &str) -> usize {
     let child = command.spawn().unwrap();
     let pid = libc::pid_t::try_from(child.id()).unwrap();
     let mut status = 0;
-    // SAFETY: both pointers are to memory of their types, and nobody else waits for this child.
+    // SAFETY: both pointers are to memory of their types, and no other thread waits for this child.
     let usage = unsafe {
         let mut usage: libc::rusage = std::mem::zeroed();
         assert_eq!(libc::wait4(pid, &raw mut status, 0, &raw mut usage), pid);

@@ -130,7 +130,7 @@ fn checked(path: &Path, assumes: bool) -> Outcome<Measured> {
 /// The processor time of all processes that this one started and that have ended, in seconds: their own, and that of
 /// the system for them.
 fn children() -> io::Result<(f64, f64)> {
-    // SAFETY: numbers of which all zeros are some.
+    // SAFETY: integers alone, for which all zeros are valid.
     let mut usage: libc::rusage = unsafe { std::mem::zeroed() };
     // SAFETY: `usage` is a valid place for the one value that the call writes.
     if unsafe { libc::getrusage(libc::RUSAGE_CHILDREN, &raw mut usage) } != 0 {

@@ -53,7 +53,7 @@ pub(crate) fn executed(due: Instant) {
     }
 }
 
-/// Fixes the window for tasks of which the first is due at `start`.
+/// Fixes the window for tasks when the first is due at `start`.
 pub(crate) fn open(plan: &Plan, start: Instant) {
     let begin = start + plan.warm_up;
     WINDOW.get_or_init(|| Window { start: begin, end: begin + plan.measured });

@@ -138,8 +138,8 @@ typedef struct SaomsSink {
     void (*put)(void *state, struct SaomsBytes bytes);
 } SaomsSink;
 
-// Makes a component or a loop from the values that the composite gives, which it may refuse with findings. The checker
-// makes components that never run, so it does no work, opens nothing and sends nothing.
+// The function that makes a component or a loop from the values of the composite, which it may refuse with findings.
+// The checker makes components that never run, so it does no work, opens nothing and sends nothing.
 typedef SaomsStatus (*SaomsConstruct)(const struct SaomsPropertyView *values,
                                       size_t value_count,
                                       void **made,
@@ -175,7 +175,7 @@ typedef struct SaomsReportView {
     size_t child_count;
 } SaomsReportView;
 
-// Sees a loop of a component: its name, its class, its values and their number.
+// The visitor of a component's loops, called with a name, a class, values and their number.
 typedef void (*SaomsLoopVisitor)(void *visitor,
                                  struct SaomsBytes name,
                                  struct SaomsBytes class_name,
@@ -441,10 +441,10 @@ typedef struct SaomsComponentTable {
                          struct SaomsSink error);
     // Frees the component.
     void (*destroy)(void *component);
-    // Puts the state that a component of a new build goes on with, when that takes its place in a running fleet;
-    // nothing where it begins anew. `FAILED`: it cannot be replaced now. May be null: there is nothing to go on with.
+    // Puts the state from which a component of a new build continues, when that takes its place in a running fleet;
+    // nothing where it begins anew. `FAILED`: it cannot be replaced now. May be null: there is no state.
     SaomsStatus (*save)(void *component, struct SaomsSink saved, struct SaomsSink error);
-    // Goes on with the state that a component of an earlier build put, after `initialize`. May be null: it cannot.
+    // Continues from the state that a component of an earlier build put, after `initialize`. May be null: it cannot.
     SaomsStatus (*restore)(void *component, struct SaomsBytes saved, struct SaomsSink error);
 } SaomsComponentTable;
 

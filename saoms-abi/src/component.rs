@@ -2,8 +2,8 @@ use core::ffi::c_void;
 
 use crate::{Bytes, FindingSink, HostHandle, PropertyView, Sink, Status};
 
-/// Makes a component or a loop from the values that the composite gives, which it may refuse with findings. The checker
-/// makes components that never run, so it does no work, opens nothing and sends nothing.
+/// The function that makes a component or a loop from the values of the composite, which it may refuse with findings.
+/// The checker makes components that never run, so it does no work, opens nothing and sends nothing.
 pub type Construct = unsafe extern "C" fn(
     values: *const PropertyView,
     value_count: usize,
@@ -57,9 +57,9 @@ pub struct ComponentTable {
     ) -> Status,
     /// Frees the component.
     pub destroy: unsafe extern "C" fn(component: *mut c_void),
-    /// Puts the state that a component of a new build goes on with, when that takes its place in a running fleet;
-    /// nothing where it begins anew. `FAILED`: it cannot be replaced now. May be null: there is nothing to go on with.
+    /// Puts the state from which a component of a new build continues, when that takes its place in a running fleet;
+    /// nothing where it begins anew. `FAILED`: it cannot be replaced now. May be null: there is no state.
     pub save: Option<unsafe extern "C" fn(component: *mut c_void, saved: Sink, error: Sink) -> Status>,
-    /// Goes on with the state that a component of an earlier build put, after `initialize`. May be null: it cannot.
+    /// Continues from the state that a component of an earlier build put, after `initialize`. May be null: it cannot.
     pub restore: Option<unsafe extern "C" fn(component: *mut c_void, saved: Bytes, error: Sink) -> Status>,
 }

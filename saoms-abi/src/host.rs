@@ -123,7 +123,7 @@ pub struct HostFunctions {
         unsafe extern "C" fn(state: *mut c_void, entry: Bytes, before: *const ValueView, after: *const ValueView),
 }
 
-/// Sees a loop of a component: its name, its class, its values and their number.
+/// The visitor of a component's loops, called with a name, a class, values and their number.
 pub type LoopVisitor = unsafe extern "C" fn(
     visitor: *mut c_void,
     name: Bytes,

@@ -16,7 +16,7 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 ///
 /// # Failures
 /// An `Err` and a panic from `initialize`, `execute` or `shutdown` are the same to the host: the component has failed,
-/// the report says so, and its `restart` policy decides. Other components go on.
+/// the report says so, and its `restart` policy decides. Other components continue.
 ///
 /// # Blocking
 /// `execute` must not wait for anything. An execution beyond the watchdog's budget is reported, and from then on the
@@ -135,7 +135,7 @@ pub trait Component: Send + Sized + 'static {
     /// Goes on where an earlier build was. Not called where that saved nothing.
     ///
     /// # Errors
-    /// It cannot go on with that: the earlier one stays.
+    /// It cannot continue from that state: the earlier one stays.
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         let _ = saved;
         Err("the earlier build saved its state, and this one does not implement `restore`".into())

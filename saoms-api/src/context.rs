@@ -227,7 +227,7 @@ impl<'a> Context<'a> {
     /// other component caused, or what it makes of a message that it named with [`because`](Context::because). The
     /// findings of loops are written automatically.
     ///
-    /// Each call is a record: write what happens, and not in each execution what goes on.
+    /// Each call is a record: write changes, and not the state in each execution.
     pub fn symptom(&mut self, record: Record) {
         self.host.journal(Phase::Symptom, &record);
     }

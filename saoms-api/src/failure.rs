@@ -2,7 +2,7 @@ use std::fmt;
 
 use crate::Finding;
 
-/// The reason why a component cannot go on, in words for the person who runs the fleet.
+/// The reason why a component cannot continue, in words for the person who runs the fleet.
 ///
 /// The host adds the component's name and the time. What happens next is the `restart` policy of the composite.
 #[derive(Clone, Debug, PartialEq, Eq)]

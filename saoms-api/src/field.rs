@@ -17,7 +17,8 @@ pub trait Field: Sized + 'static {
     /// The least number of bytes that a value takes, at least 1. A sequence that claims more elements than the bytes
     /// left can hold is refused before anything is allocated.
     const LEAST_SIZE: usize;
-    /// The name of the [`Value`] that stands for one, as declarations of entries say it; empty for a type without.
+    /// The name of the kind of [`Value`] that represents one, as declarations of entries say it; empty for a type
+    /// without.
     const VALUE: &'static str = "";
 
     /// Appends the value.
@@ -35,7 +36,7 @@ pub trait Field: Sized + 'static {
         None
     }
 
-    /// Of a single value; `None` where it does not stand for one of this type.
+    /// The field of a single value; `None` where the value represents none of this type.
     fn of_value(value: Value) -> Option<Self> {
         let _ = value;
         None

@@ -79,7 +79,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// A finding at a place; the message tells the found and the expected value.
+    /// A finding at a place; the message names the found and the expected value.
     pub fn new(place: Place, message: impl Into<String>) -> Finding {
         Finding { place, message: message.into(), help: Vec::new(), instead: None, others: Vec::new(), severity: None }
     }

@@ -1,7 +1,7 @@
 use crate::host::{DynComponent, LoopRegistration, PropertyValue, SmolStr};
 use crate::{Class, Failure, Properties};
 
-/// Makes a component from the values of its properties.
+/// The function that makes a component from the values of its properties.
 type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
 
 /// Registration of a class: its declaration as text, and its constructor. `#[derive(Class)]` submits one for every

@@ -91,8 +91,8 @@ mod tests {
     fn what_another_build_saved_is_read_only_if_it_means_the_same() {
         let saved = Saved::from_bytes(Saved::of(&Before { blocks: 7 }).bytes().to_vec());
         assert_eq!(saved.read::<Before>().unwrap(), Some(Before { blocks: 7 }));
-        let told = saved.read::<After>().unwrap_err().to_string();
-        assert!(told.contains("the earlier build saved") && told.contains("uint32"), "{told}");
+        let message = saved.read::<After>().unwrap_err().to_string();
+        assert!(message.contains("the earlier build saved") && message.contains("uint32"), "{message}");
         for length in 1..saved.bytes().len() {
             assert!(Saved::from_bytes(saved.bytes()[..length].to_vec()).read::<Before>().is_err());
         }

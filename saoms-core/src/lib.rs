@@ -1,5 +1,5 @@
-//! From an [`Assembly`](saoms_lang::assembly::Assembly) to its run: plugins, the plan, the bus, the scheduler, the
-//! journal and the report.
+//! The run of an [`Assembly`](saoms_lang::assembly::Assembly): plugins, the plan, the bus, the scheduler, the journal
+//! and the report.
 
 pub mod assemble;
 pub mod bus;

@@ -159,7 +159,7 @@ impl<'a> Entry<'a> {
         })
     }
 
-    /// Number of entries that it stands for.
+    /// Number of entries that it declares.
     fn count(&self) -> TokenStream {
         let of = self.of;
         match self.flatten {

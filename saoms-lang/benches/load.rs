@@ -1,4 +1,4 @@
-//! How fast a composite is read: `cargo bench -p saoms-lang --bench load -- [MEGABYTES] [KIND]`.
+//! Speed of reading a composite: `cargo bench -p saoms-lang --bench load -- [MEGABYTES] [KIND]`.
 //!
 //! For each kind of text it prints the megabytes per second of one core for roxmltree's tree, for ours, and for the
 //! model with all checks of the vocabulary (memory given back included), the best of five, and the peak memory of the

@@ -115,7 +115,7 @@ pub(crate) const CODE_DIAGNOSTICS: u32 = 1000;
 pub(crate) const FILE_DIAGNOSTICS: u32 = 2000;
 /// Right names that are looked at for all wrong ones of a check together.
 pub(crate) const CANDIDATES: u64 = 1_000_000;
-/// Names that lead nowhere of which it is said where they were looked for.
+/// Unresolved names whose search path is listed.
 pub(crate) const EXPLAINED_NAMES: usize = 1000;
 /// Unknown properties of a component that are compared with a name that is missing.
 pub(crate) const MISSPELT_NAMES: usize = 100;

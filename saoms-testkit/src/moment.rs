@@ -120,7 +120,7 @@ impl<'r> Expect<'r> {
     /// Checks that no event has these words.
     ///
     /// # Panics
-    /// When it did, and when records of the run were overwritten, so that nobody knows.
+    /// When it did, and when records of the run were overwritten, so that it is unknown.
     #[track_caller]
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn never_to(self, words: &str) {
@@ -134,7 +134,7 @@ impl<'r> Expect<'r> {
     /// Number of events with these words.
     ///
     /// # Panics
-    /// When records of the run were overwritten, so that nobody knows.
+    /// When records of the run were overwritten, so that their number is unknown.
     #[track_caller]
     pub fn count(self, words: &str) -> usize {
         self.all_known();

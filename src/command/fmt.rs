@@ -89,7 +89,7 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
 enum Outcome {
     /// It is, or was, formatted.
     Formatted,
-    /// It is not, and nobody wants it to be.
+    /// It is not, and `--check` writes nothing.
     Unformatted,
     /// It could not be written.
     NotWritten(io::Error),

@@ -1,4 +1,4 @@
-//! Checks on a thread of their own, when nobody has typed for a moment.
+//! Checks on a thread of their own, after a short pause in typing.
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -51,7 +51,7 @@ enum FileKind {
     Values,
 }
 
-/// Checks what is asked for.
+/// The checker of the editor's documents.
 #[derive(Debug)]
 pub(super) struct Checker {
     pub(super) registries: Arc<Registries>,
@@ -62,7 +62,7 @@ pub(super) struct Checker {
 }
 
 impl Checker {
-    /// Takes jobs until nobody can send any; of several that wait only the newest.
+    /// Takes jobs until all senders are gone; of several that wait only the newest.
     pub(super) fn run(mut self, jobs: &Receiver<Job>, done: impl Fn(Outcome)) {
         while let Ok(mut job) = jobs.recv() {
             loop {

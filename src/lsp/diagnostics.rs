@@ -82,7 +82,7 @@ pub(super) fn reported<'d>(
     })
 }
 
-/// Translates the places of a check.
+/// Translator of the places of a check.
 struct Places<'s> {
     sources: &'s Sources,
     lines: HashMap<FileId, LineIndex>,

@@ -84,7 +84,7 @@ impl Registries {
         registry
     }
 
-    /// Faults of plugins that nobody asked for before.
+    /// Faults of plugins since the last call.
     pub(super) fn new_problems(&self) -> Vec<PluginFault> {
         std::mem::take(&mut self.known.lock().unwrap_or_else(PoisonError::into_inner).problems)
     }

@@ -136,7 +136,7 @@ impl<W: Write> Server<W> {
                     }
                     self.notified(notification)
                 }
-                // Answers of the editor to what it was told to watch.
+                // Answers of the editor to the request to watch files.
                 Event::Incoming(Incoming::Message(Message::Response(_))) => Ok(()),
             };
             // An editor that cannot be written to is gone.
@@ -311,7 +311,7 @@ fn read<N: notice::Notification>(notification: Notification) -> Option<N::Params
 where
     N::Params: DeserializeOwned,
 {
-    // Nobody waits for an answer to a notification, so nobody can be told that it is malformed.
+    // A notification has no answer, so a malformed one cannot be reported.
     serde_json::from_value(notification.params).ok()
 }
 

@@ -60,7 +60,7 @@ fn every_file_as_it_is() {
     FILES.iter().for_each(|bytes| holds(bytes));
 }
 
-/// How many cases of each kind are tried; `PROPTEST_CASES` in the environment says another number.
+/// The number of cases of each kind; `PROPTEST_CASES` in the environment gives another one.
 fn cases() -> u32 {
     std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(60)
 }
@@ -111,7 +111,7 @@ proptest! {
     }
 }
 
-/// What values and expressions are made of.
+/// Parts of values and expressions.
 const PIECES: &[&str] = &[
     "at ",
     "then ",
@@ -187,7 +187,7 @@ fn a_journal_with_parts_missing() {
     }
 }
 
-/// What could take the square of its size, or the stack.
+/// Inputs that could take time quadratic in their size, or exhaust the stack.
 #[test]
 fn large_and_deep_files() {
     let composite = |content: &str| {

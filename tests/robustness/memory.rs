@@ -1,6 +1,6 @@
 //! Whatever a file holds, reading and checking it takes at most 16 MB, 20 times its size, and 4 kB for each component.
 //!
-//! What is counted is what is allocated, at its peak, by the thread that does it.
+//! Counted are the bytes allocated at the peak, by the thread of the check.
 
 use std::fs;
 use std::io::{self, Write as _};
@@ -84,7 +84,7 @@ fn same(part: &'static str) -> impl Fn(usize) -> String {
 const SCENARIO: &str = "<component name='E'><implementation.java class='saoms.Environment'/>\
     <property name='ID'>E</property><property name='period'>1s</property><property name='scenario'>";
 
-/// What takes the most for its size.
+/// Inputs that take the most memory for their size.
 #[test]
 fn files_made_to_take_much() {
     const SIZE: usize = 1_000_000;
@@ -102,7 +102,7 @@ fn files_made_to_take_much() {
 /// Memory that a component may take beside 20 times its text, in bytes.
 const COMPONENT: usize = 4_000;
 
-/// Where nothing is wrong, the 16 MB are not needed: what holds here holds for fleets of any size.
+/// Without faults the 16 MB are not needed: the limit here holds for fleets of any size.
 #[test]
 fn fleets_by_their_size_alone() {
     const SIZE: usize = 300_000;
@@ -144,7 +144,7 @@ fn files_of_one_kind_by_their_size() {
     }
 }
 
-/// What is inside one attribute.
+/// Contents of one attribute.
 #[test]
 fn lists_as_long_as_they_can_be() {
     const SIZE: usize = 2_100_000;
@@ -152,7 +152,7 @@ fn lists_as_long_as_they_can_be() {
     holds("targets", composite(SIZE, target, same("a "), "'/></component>").as_bytes());
 }
 
-/// What a picture shows of a component does not depend on how many others there are of its class.
+/// The size of a component's picture does not depend on the number of others of its class.
 #[test]
 fn pictures_by_the_size_of_their_fleet() {
     const SIZE: usize = 300_000;
@@ -176,7 +176,7 @@ fn pictures_by_the_size_of_their_fleet() {
     }
 }
 
-/// What could take the square of its size.
+/// Inputs that could take memory quadratic in their size.
 #[test]
 fn files_with_very_many_of_one_kind() {
     const SIZE: usize = 50_000;

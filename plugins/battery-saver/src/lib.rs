@@ -33,7 +33,7 @@ impl Default for Discharge {
     }
 }
 
-/// Learns the battery level at which a robot has to charge, so that its battery is never discharged deeply.
+/// A loop that learns the battery level at which a robot has to charge, so that its battery is never discharged deeply.
 #[derive(Debug, LoopClass)]
 #[looping(name = "saver.BatterySaver", senses("battery", "inCharge"), effects("chargeAt"), entries(Discharge))]
 pub struct BatterySaver {

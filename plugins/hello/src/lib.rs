@@ -10,7 +10,7 @@ pub struct GreeterProperties {
     name: String,
 }
 
-/// Logs a greeting in each period.
+/// A greeter, which logs a greeting in each period.
 #[derive(Debug, Class)]
 #[class(name = "hello.Greeter", periodic)]
 pub struct Greeter {

@@ -109,7 +109,7 @@ pub const fn fits(knowledge: Option<&str>, of: &str) -> bool {
     }
 }
 
-/// Makes a loop from the values of its properties.
+/// The function that makes a loop from the values of its properties.
 type Construct = fn(&[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
 
 /// Registration of a loop: its declaration as text, and its constructor. `#[derive(LoopClass)]` submits one for every

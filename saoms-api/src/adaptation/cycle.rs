@@ -6,7 +6,7 @@ use crate::{Context, Failure, Knowledge, LoopClass, Properties, Recordable};
 /// In each execution of its component, after all loops have [monitored](Loop::monitor), each loop in its order
 /// [analyzes](Loop::analyze); where it finds a symptom it [plans](Loop::plan), and where it comes to a decision it
 /// [executes](Loop::execute). The host writes symptom and decision to the journal, and what entries of the knowledge
-/// changed; an effect beyond that is told with [`Context::effect`].
+/// changed; an effect beyond that is reported with [`Context::effect`].
 ///
 /// A loop that has to do with topics asks for them in [`initialize`](Loop::initialize), as a component does.
 pub trait Loop: Send + Sized + 'static {
@@ -102,7 +102,7 @@ pub trait DynLoop: Send {
     /// As there.
     fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
     /// [Analyzes](Loop::analyze), [plans](Loop::plan) and [executes](Loop::execute) as far as there is reason to. The
-    /// snapshot serves to tell what plan and execution changed.
+    /// snapshot shows what plan and execution changed.
     ///
     /// # Errors
     /// As there, and where the loop changes an effector that it does not declare.

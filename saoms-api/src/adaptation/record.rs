@@ -180,7 +180,7 @@ pub enum Phase {
     Effect,
 }
 
-/// The number of a record in the run's journal, for what follows from it; the default one stands for no record.
+/// The number of a record in the run's journal, for what follows from it; the default one means no record.
 ///
 /// A message carries the cause that its sender had ([`Header::cause`](crate::Header)); a loop that acts on it says so
 /// with [`Context::because`](crate::Context::because). So a chain leads from an act of a robot back to the message that

@@ -22,7 +22,7 @@ impl ContextState {
     /// next time.
     ///
     /// # Safety
-    /// The handle is that of a call that goes on.
+    /// The handle is that of an active call.
     #[inline]
     pub(super) unsafe fn with<E: From<Failure>>(
         &mut self,

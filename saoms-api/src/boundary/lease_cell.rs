@@ -21,7 +21,7 @@ use super::host::HOST_FUNCTIONS;
 /// freed, and says which thread may use it now. Only a thread itself stores its own token, so the comparison needs no
 /// order.
 pub(super) struct LeaseCell {
-    /// The token of the thread whose call goes on; 0: no thread may use the cell.
+    /// The token of the thread with the active call; 0: no thread may use the cell.
     pub(super) holder: AtomicUsize,
     /// The number of refused uses.
     pub(super) misuses: AtomicU32,

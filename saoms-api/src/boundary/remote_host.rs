@@ -33,7 +33,7 @@ const CONSOLE: u32 = LEVELS.len() as u32;
 
 impl<'a> RemoteHost<'a> {
     /// # Safety
-    /// The handle, its functions and its state are those of a call that goes on for as long as the link is used.
+    /// The handle, its functions and its state belong to a call that lasts for as long as the link is used.
     pub(super) unsafe fn new(
         handle: &'a HostHandle,
         buffer: &'a mut Vec<u8>,
@@ -52,7 +52,7 @@ impl<'a> RemoteHost<'a> {
     ) -> Result<u32, Failure> {
         let view = topic_view(topic);
         let (mut index, mut error) = (u32::MAX, Buffer::default());
-        // SAFETY: the handle is that of a call that goes on; everything is lent for this call.
+        // SAFETY: the handle is that of an active call; everything is lent for this call.
         let status = unsafe { ask(self.handle.state, &raw const view, &raw mut index, sink(&mut error)) };
         outcome(status, &error.bytes).map(|()| index)
     }
@@ -60,7 +60,7 @@ impl<'a> RemoteHost<'a> {
     /// A loop of the host, or of another library.
     fn made_by_host(&self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
         let (mut given, mut error) = (MaybeUninit::<LoopInstance>::uninit(), Buffer::default());
-        // SAFETY: the handle is that of a call that goes on; when it answers that all is well, the host has given a
+        // SAFETY: the handle is that of an active call; when it answers that all is well, the host has given a
         // loop away.
         unsafe {
             let make = self.functions.chosen_loop;
@@ -71,7 +71,7 @@ impl<'a> RemoteHost<'a> {
     }
 
     fn write(&mut self, level: u32, line: fmt::Arguments<'_>) {
-        // SAFETY: the handle is that of a call that goes on.
+        // SAFETY: the handle is that of an active call.
         if unsafe { (self.functions.listens)(self.handle.state, level) } == 0 {
             return;
         }
@@ -79,7 +79,7 @@ impl<'a> RemoteHost<'a> {
         let mut text = Text(self.buffer);
         // A `Vec` takes everything; only the formatting of the line itself can fail, and then its beginning is shown.
         let _ = text.write_fmt(line);
-        // SAFETY: the handle is that of a call that goes on; the line is lent to it.
+        // SAFETY: the handle is that of an active call; the line is lent to it.
         unsafe { (self.functions.log)(self.handle.state, level, Bytes::lend(self.buffer)) }
     }
 }
@@ -91,7 +91,7 @@ impl<'a> RemoteHost<'a> {
 /// The program is older than the library.
 ///
 /// # Safety
-/// The handle is that of a call that goes on.
+/// The handle is that of an active call.
 pub(super) unsafe fn check_size(handle: &HostHandle) -> Result<(), Failure> {
     // SAFETY: as the caller promises; the table begins with its size.
     let size = unsafe { (*handle.functions).size };
@@ -140,7 +140,7 @@ impl fmt::Write for Text<'_> {
 
 macro_rules! get {
     ($link:ident.$function:ident $(, $argument:expr)*) => {
-        // SAFETY: the handle is that of a call that goes on.
+        // SAFETY: the handle is that of an active call.
         unsafe { ($link.functions.$function)($link.handle.state $(, $argument)*) }
     };
 }
@@ -239,7 +239,7 @@ impl Host for RemoteHost<'_> {
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
         let mut chosen: Vec<Result<ChosenLoop, Failure>> = Vec::new();
-        // SAFETY: the handle is that of a call that goes on; `visit_loop` gets the list that it expects.
+        // SAFETY: the handle is that of an active call; `visit_loop` gets the list that it expects.
         unsafe { (self.functions.chosen_loops)(self.handle.state, (&raw mut chosen).cast(), visit_loop) }
         (0..)
             .zip(chosen)

@@ -3,7 +3,7 @@ use std::ops::Range;
 use crate::Time;
 use crate::host::TopicDeclaration;
 
-/// A language of events from outside the fleet, of which `saoms run --events` reads lines.
+/// A language of events from outside the fleet: `saoms run --events` reads lines of it.
 ///
 /// Each event becomes a message on the topic of the language.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Extensions that a crate of components adds to the program beside classes, loops and rules.
 //!
-//! A crate knows its domain; the program does not. The crate registers with [`submit!`] what only it can tell, and the
-//! program shows it:
+//! A crate knows its domain; the program does not. The crate registers its knowledge of the domain with [`submit!`],
+//! and the program shows it:
 //!
 //! - [`RunSummary`]: the counts of a report and their meaning, in reports and on the console,
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),

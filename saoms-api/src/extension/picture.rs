@@ -12,7 +12,7 @@ pub trait RunPicture: Send {
     /// of a run come in the order in which they were sent.
     fn message(&mut self, topic: &str, component: &Arc<str>, message: &SharedMessage);
 
-    /// The picture as an SVG document, under a title and a line that tells how the run ended.
+    /// The picture as an SVG document, under a title and a line about the end of the run.
     fn draw(&self, title: &str, outcome: &str) -> String;
 }
 

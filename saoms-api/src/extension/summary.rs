@@ -6,7 +6,7 @@ pub struct RunSummary {
     pub counts: &'static [&'static str],
     /// The result of a run, beside how it ended; `None` where the counts say nothing.
     pub result: fn(&Counts<'_>) -> Option<String>,
-    /// The progress of a run that goes on; `None` where the counts say nothing.
+    /// The progress of a run that has not ended; `None` where the counts say nothing.
     pub progress: fn(&Counts<'_>) -> Option<String>,
     /// The components that say when the work is done, as advice to who runs a fleet without any: `a world and a
     /// scenario`.

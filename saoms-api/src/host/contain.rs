@@ -37,7 +37,7 @@ pub(crate) fn contained_or<T, R>(
 ) -> R {
     // Looked up once: in a library that takes a call. It stays where it is for as long as the thread lives.
     let capturing: *const Cell<bool> = CAPTURING.with(ptr::from_ref);
-    // SAFETY: the place is this thread's, which goes on.
+    // SAFETY: the place is this thread's, which is running.
     let capturing = unsafe { &*capturing };
     let outer = capturing.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(code));

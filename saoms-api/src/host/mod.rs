@@ -21,8 +21,8 @@ pub use crate::service::{Interface, Invocation, Operation, Reference, ServiceCal
 pub use crate::time::{format_duration, parse_duration};
 pub use crate::topic::{TopicDeclaration, TopicKind};
 
-/// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
 pub use saoms_derive::WriteProperties;
+/// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
 pub use smol_str::SmolStr;
 
 use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
@@ -39,9 +39,9 @@ pub type LoopVisit<'a> = dyn FnMut(&str, &str, &[(SmolStr, PropertyValue)]) + 'a
 pub trait Host {
     /// See [`Context::name`](crate::Context::name).
     fn name(&self) -> &str;
-    /// The index that stands for this component in [`Header::sender`](crate::Header::sender).
+    /// The index of this component in [`Header::sender`](crate::Header::sender).
     fn sender(&self) -> u32;
-    /// The name of the component that an index stands for in [`Header::sender`](crate::Header::sender).
+    /// The name of the component with an index in [`Header::sender`](crate::Header::sender).
     fn name_of(&self, sender: u32) -> Option<&str> {
         let _ = sender;
         None

@@ -46,7 +46,7 @@ pub const fn continued(array: &'static str) -> [ConstText; 2] {
     [ConstText::Plain(if inside.is_empty() { "" } else { "," }), ConstText::Plain(inside)]
 }
 
-/// The JSON array of items of which each has a comma before it.
+/// The JSON array of items that each have a comma before them.
 pub const fn list(items: &'static str) -> [ConstText; 3] {
     let items = if items.is_empty() { items } else { items.split_at(1).1 };
     [ConstText::Plain("["), ConstText::Plain(items), ConstText::Plain("]")]

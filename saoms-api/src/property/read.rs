@@ -30,7 +30,7 @@ impl Preset {
         Preset { text, scalar }
     }
 
-    /// That the rule allows it was seen to when it was compiled and registered.
+    /// Reads the preset. The rule allows it: that was checked when it was compiled and registered.
     #[inline(always)]
     fn read<T: PropertyField>(self, kind: PropertyKind) -> Result<T, String> {
         if let Some(read) = T::from_choice(self.text) {

@@ -141,7 +141,7 @@ impl Environment {
             if !self.validator.accepts(response, header, self.map.as_ref(), context) {
                 continue;
             }
-            // Luggage that is given up counts as open in the report, but nobody waits for it.
+            // Luggage that is given up counts as open in the report, but is not waited for.
             let counted = match response.stage {
                 LuggageStage::Delivered => -1,
                 LuggageStage::GivenUp => 0,

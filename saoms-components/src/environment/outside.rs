@@ -21,7 +21,7 @@ const MOST: usize = 100_000;
 struct Reader {
     chance: Chance,
     luggage: u32,
-    /// When the last event of the line before was, and whether it had one.
+    /// The time of the last event of the line before.
     last: Time,
     is_endless: bool,
 }
@@ -124,18 +124,18 @@ mod tests {
     /// The events of lines that come one after the other at 7 s, or what is wrong with a line.
     fn events(lines: &[&str]) -> Vec<String> {
         let mut reader = Reader::new(1);
-        let mut told = Vec::new();
+        let mut shown = Vec::new();
         for line in lines {
             match reader.read(line, Time::START + Duration::from_secs(7)) {
-                Ok(messages) => told.extend(messages.into_iter().map(|TimedMessage { at, text, .. }| {
+                Ok(messages) => shown.extend(messages.into_iter().map(|TimedMessage { at, text, .. }| {
                     at.map_or_else(|| format!("now {text}"), |at| format!("{at} {text}"))
                 })),
                 Err(LineFault { bytes, message, instead, .. }) => {
-                    told.push(format!("`{}`: {message}, {instead:?}", &line[bytes]));
+                    shown.push(format!("`{}`: {message}, {instead:?}", &line[bytes]));
                 }
             }
         }
-        told
+        shown
     }
 
     #[test]

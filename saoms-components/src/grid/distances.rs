@@ -67,8 +67,8 @@ impl Distances {
             empty = if places.is_empty() { empty + 1 } else { 0 };
             for place in places.drain(..) {
                 if self.costs[place.at as usize] == cost {
-                    let dear = place.at != start.at && !costly.is_free(place.block());
-                    self.spread(place, cost, dear);
+                    let is_costly = place.at != start.at && !costly.is_free(place.block());
+                    self.spread(place, cost, is_costly);
                 }
             }
             self.frontier[cost as usize % RING] = places;
@@ -90,7 +90,7 @@ impl Distances {
     }
 
     /// Updates the neighbours of a block whose cost is known.
-    fn spread(&mut self, place: Cell, cost: u32, dear: bool) {
+    fn spread(&mut self, place: Cell, cost: u32, is_costly: bool) {
         let Cell { x, y, at } = place;
         // Even rows lead to the right and even columns up in y. The moves come from the neighbours to this block.
         let (right, left) = if y % 2 == 0 { (MOVE, AGAINST) } else { (AGAINST, MOVE) };
@@ -102,7 +102,7 @@ impl Distances {
             (Cell { x, y: y + 1, at: at + self.stride }, down),
         ];
         for (from, lane) in neighbours {
-            let reached = cost + if dear { COSTLY } else { lane };
+            let reached = cost + if is_costly { COSTLY } else { lane };
             let known = &mut self.costs[from.at as usize];
             if reached < *known {
                 *known = reached;

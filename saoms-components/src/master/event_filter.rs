@@ -17,7 +17,7 @@ pub(super) struct EventFilter {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Refusal {
     pub(super) problem: Problem,
-    /// True if the component that waits for the luggage has to be told that it is never brought.
+    /// True if the component that waits for the luggage has to learn that it is never brought.
     pub(super) is_lost: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the environment tells the fleet: luggage, exceptional events and faults.
+//! Messages of the environment to the fleet: luggage, exceptional events and faults.
 
 use std::fmt;
 
@@ -114,7 +114,8 @@ impl Validate for EventLuggage {
         let EventLuggage { robot, from, to, block, .. } = *self;
         match self.stage {
             LuggageStage::Request => Problem::of_request(self, area),
-            // The component that requested luggage gives it up in nobody's name, even if the request was impossible.
+            // The component that requested luggage gives it up without a robot's number, even if the request was
+            // impossible.
             LuggageStage::GivenUp if robot == 0 => Ok(()),
             LuggageStage::Interest
             | LuggageStage::Release

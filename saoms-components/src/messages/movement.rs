@@ -1,4 +1,4 @@
-//! Where robots are and go.
+//! Messages about the positions and ways of robots.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! How robots work together: who is awake and able, and who needs help.
+//! Messages of the team: robots that are awake, able, or need help.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The picture of too many paths to tell them apart: blocks shaded by how often they were entered.
+//! The picture of too many paths to distinguish them: blocks shaded by how often they were entered.
 
 use super::frame::Frame;
 use super::palette::SHADES;
@@ -17,7 +17,7 @@ pub(super) struct Shades {
 }
 
 impl Shades {
-    /// Classes for numbers up to `most`: small numbers are told apart more finely.
+    /// Classes for numbers up to `most`: classes of small numbers are finer.
     pub(super) fn up_to(most: u64) -> Shades {
         let classes = SHADES.len() as u64;
         let mut from: Vec<u64> =
@@ -36,7 +36,7 @@ impl Shades {
         SHADES[(class * (SHADES.len() - 1)).checked_div(last).unwrap_or(0)]
     }
 
-    /// Each shade, and the numbers that it stands for.
+    /// Each shade, and the numbers that it represents.
     pub(super) fn legend(&self) -> impl Iterator<Item = (&'static str, String)> {
         self.from.iter().enumerate().map(|(class, least)| {
             let most = self.from.get(class + 1).map_or(self.most, |next| next - 1);

@@ -40,7 +40,7 @@ struct Strip {
     lane: usize,
 }
 
-/// Gives each leg of these robots a lane; `None` when more legs meet than anybody could tell apart.
+/// Gives each leg of these robots a lane; `None` when more legs meet than can be distinguished.
 pub(super) fn lanes(robots: &[&[Leg]], sharing: Sharing) -> Option<Lanes> {
     // By level or upright, and row or column; in it by robot and direction.
     let mut corridors: BTreeMap<(bool, i32), Vec<Strip>> = BTreeMap::new();

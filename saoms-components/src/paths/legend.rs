@@ -37,7 +37,7 @@ pub(super) enum Sign {
     Flow,
     Incident(Incident),
     Shade(&'static str),
-    /// None: the text stands for itself.
+    /// No picture: the text alone.
     Note,
 }
 

@@ -8,8 +8,8 @@ pub(super) struct Look {
     pub(super) dash: &'static [f64],
 }
 
-/// Colours that people with any kind of colour vision tell apart, without yellow, which is faint on white: M. Okabe and
-/// K. Ito, "Color Universal Design" (2008).
+/// Colours that people with any kind of colour vision can distinguish, without yellow, which is faint on white: M.
+/// Okabe and K. Ito, "Color Universal Design" (2008).
 const COLOURS: [(&str, &str); 7] = [
     ("#0072b2", "#fff"),
     ("#d55e00", "#fff"),
@@ -22,7 +22,7 @@ const COLOURS: [(&str, &str); 7] = [
 
 const DASHES: [&[f64]; 4] = [&[], &[4.0, 2.0], &[1.4, 1.6], &[7.0, 1.6, 1.4, 1.6]];
 
-/// The number of looks. More robots than that cannot be told apart as lines.
+/// The number of looks. More robots than that cannot be distinguished as lines.
 pub(super) const LOOKS: usize = COLOURS.len() * DASHES.len();
 
 /// The look of the robot that comes at this place, from 0.

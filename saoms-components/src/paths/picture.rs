@@ -17,7 +17,7 @@ use super::svg::{Svg, escaped, number};
 const MARGIN: f64 = 24.0;
 /// The room of title and outcome.
 const HEAD: f64 = 56.0;
-/// Lanes that are as near as can be told apart, and as far apart as is good to look at.
+/// The least distance of lanes that can be distinguished, and the largest that looks good.
 const SPACING: (f64, f64) = (2.2, 5.5);
 /// The longest side of an area on the paper.
 const LONGEST: f64 = 2600.0;
@@ -39,7 +39,7 @@ pub(super) enum Style {
 /// A robot that said where it is: its number, what is known of it, its path.
 pub(super) type Moved<'a> = (u32, &'a Robot, &'a Path);
 
-/// Draws a recording, under a title and a line that tells how the run ended.
+/// Draws a recording, under a title and a line about the end of the run.
 pub(super) fn draw(recording: &Recording, title: &str, outcome: &str) -> String {
     let all = recording.robots.iter();
     let robots: Vec<Moved<'_>> =

@@ -11,7 +11,7 @@ use crate::messages::{
 use saoms_api::Topic;
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 
-/// More legs than anybody could tell apart: beyond this number, only how often each block was entered is kept.
+/// The limit of legs that can be distinguished: beyond this number, only how often each block was entered is kept.
 const LEGS: usize = 20_000;
 
 /// The messages of a run, as far as the picture shows them. A recording grows with the area and the number of robots,
@@ -128,7 +128,7 @@ impl Recording {
                     robot.delivered.add(event.luggage);
                 }
             }
-            // The master says that nobody can bring it.
+            // The master says that no robot can bring it.
             LuggageStage::GivenUp if event.robot == 0 => {}
             // The robot responds, and says where it is.
             _ => self.robot_at(event.robot, component, event.block),
@@ -137,7 +137,7 @@ impl Recording {
 
     fn record_collision(&mut self, message: &SharedMessage) {
         let Some(collision) = message.get::<Collision>() else { return };
-        // An exchange of blocks was told of as a meeting before.
+        // An exchange of blocks was reported as a meeting before.
         if !collision.swap {
             *self.collisions.entry(collision.block).or_default() += 1;
         }

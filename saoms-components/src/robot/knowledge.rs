@@ -75,7 +75,7 @@ pub struct RobotKnowledge {
     pub(super) polled: Option<(Action, Outcome)>,
     /// True if it offered to help another robot.
     pub(super) offers_help: bool,
-    /// Reason why the robot cannot go on.
+    /// Reason why the robot cannot continue.
     pub(super) trouble: Option<Trouble>,
     /// Number of consecutive failures of the hardware.
     pub(super) failures: u32,
@@ -229,7 +229,7 @@ impl RobotKnowledge {
     }
 }
 
-/// Reasons why a robot cannot go on.
+/// Reasons why a robot cannot continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
     /// The robot broke down.

@@ -24,7 +24,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     for (robot, other) in sharing(&robots, |robot| robot.number) {
         let name = |robot: &FleetRobot| fleet.components()[robot.index].path;
         let message = format!("robots `{}` and `{}` both have the number {}", name(other), name(robot), robot.number);
-        // If both have the same ID, the ID has to change. The checker reports that itself, unless it is told not to.
+        // If both have the same ID, the ID has to change. The checker reports that itself, unless the composite allows
+        // it.
         let is_same_id = robot.properties.id.trim() == other.properties.id.trim();
         let place = match is_same_id {
             true => Place::property("ID").in_component(robot.index),

@@ -1,7 +1,7 @@
 //! Validation of messages from topics, on which any component may publish.
 //!
 //! A message that is impossible, or sent in another robot's name, is rejected where it arrives. It is counted, and
-//! logged with its sender once for each sender and kind of mistake, so that nobody floods the log.
+//! logged with its sender once for each sender and kind of mistake, so that no sender floods the log.
 
 mod problem;
 #[cfg(test)]
@@ -27,7 +27,7 @@ pub(crate) struct MessageValidator {
     /// True if robots announce themselves, so that a message about any other robot is rejected.
     introduced: bool,
     /// Mistakes that were logged.
-    told: Vec<(u32, &'static str, Discriminant<Problem>)>,
+    logged: Vec<(u32, &'static str, Discriminant<Problem>)>,
 }
 
 impl MessageValidator {
@@ -56,10 +56,10 @@ impl MessageValidator {
         problem: Problem,
     ) {
         let key = (header.sender, M::WHAT, discriminant(&problem));
-        if self.told.contains(&key) {
+        if self.logged.contains(&key) {
             return;
         }
-        self.told.push(key);
+        self.logged.push(key);
         let name = |sender: u32| match context.sender_name(Header { sender, ..header }) {
             Some(name) => format!("`{name}`"),
             None => format!("component {sender}"),

@@ -26,7 +26,7 @@ pub(crate) enum Problem {
     Period { micros: u64 },
     /// A response in place of a request, or a request in a robot's name.
     Response { robot: u32 },
-    /// Luggage that nobody requested.
+    /// Luggage that was not requested.
     UnknownLuggage,
     /// The number of other luggage.
     KnownLuggage,

@@ -16,7 +16,7 @@ fn name(robot: u32) -> String {
     format!("Robot{robot}")
 }
 
-/// A referee with robots 1, 2, ... on these blocks of a map of 4 x 3, of which (3,2) is blocked.
+/// A referee with robots 1, 2, ... on these blocks of a map of 4 x 3 with (3,2) blocked.
 fn referee(starts: &[Block]) -> Referee {
     let mut referee = Referee::new(Map::read("....\n....\n...@").unwrap());
     for (robot, start) in (1..).zip(starts) {

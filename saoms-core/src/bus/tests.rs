@@ -96,7 +96,7 @@ proptest! {
         }
     }
 
-    /// Against a list of all changes, of which the newest of each key counts.
+    /// Compares with a list of all changes, where the newest of each key counts.
     #[test]
     fn each_reader_of_a_state_gets_what_changed(steps in steps()) {
         let mut bus = Bus::default();

@@ -148,7 +148,7 @@ impl BusTopic {
                 0
             }
             (Store::Event(log), ReadPosition::Event(place)) => log.collect(*place, inbox),
-            // A reader keeps its topic's kind: the kind changes only when nobody uses the topic.
+            // A reader keeps its topic's kind: the kind changes only while the topic is unused.
             _ => 0,
         }
     }

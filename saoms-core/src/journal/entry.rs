@@ -79,7 +79,7 @@ impl JournalEntry {
         self.phase
     }
 
-    /// The record that it follows from, of this component or of another that sent a message; the default one stands for
+    /// The record that it follows from, of this component or of another that sent a message; the default one means
     /// none.
     pub fn cause(&self) -> Cause {
         self.cause

@@ -31,7 +31,7 @@ pub struct JournalDocument {
     pub journal: Journal,
     /// The components of the fleet, in document order.
     pub components: Vec<ComponentName>,
-    /// End of the run; `None` if the run goes on or was killed.
+    /// End of the run; `None` if the run has not ended or was killed.
     pub end: Option<Time>,
     /// True if the file is a report, which holds only the newest records.
     pub is_report: bool,
@@ -154,7 +154,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
             (serde_json::from_str(line).map(|entry| entries.push(entry)), "this is no record of a journal")
         };
         match read {
-            // A run that goes on, or was killed, may have written a part of its last line.
+            // A run that has not ended, or was killed, may have written a part of its last line.
             Err(error) if error.is_eof() && lines.peek().is_none() && !text.ends_with('\n') => {}
             read => read.map_err(|error| malformed(number, &error, what))?,
         }

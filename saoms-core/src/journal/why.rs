@@ -115,8 +115,8 @@ impl Journal {
     /// The records of one execution as acts with their causes.
     fn chains<'a>(&'a self, then: &[&'a JournalEntry]) -> Vec<Chain<'a>> {
         let acts: Vec<&JournalEntry> = then.iter().copied().filter(|entry| is_act(entry)).collect();
-        let told = if acts.is_empty() { then } else { &acts };
-        let ends = told.iter().filter(|entry| !told.iter().any(|other| other.cause() == entry.id()));
+        let shown = if acts.is_empty() { then } else { &acts };
+        let ends = shown.iter().filter(|entry| !shown.iter().any(|other| other.cause() == entry.id()));
         let mut chains: Vec<Chain<'a>> = Vec::new();
         for act in ends {
             let together =

@@ -53,8 +53,8 @@ pub enum Occurrence {
         /// True if it restored the state of the earlier one.
         continued: bool,
     },
-    /// An execution took so long that another thread had to go on with the others. From now on the component runs on a
-    /// thread of its own.
+    /// An execution took so long that another thread had to take over the other components. From now on the component
+    /// runs on a thread of its own.
     Slow {
         /// The watchdog's budget.
         budget: Duration,

@@ -190,7 +190,7 @@ impl Observers {
     }
 }
 
-/// The result of an observer's code; `None` when it panics, which the panic hook has told on standard error.
+/// The result of an observer's code; `None` when it panics, which the panic hook has reported on standard error.
 pub(super) fn contained<T>(code: impl FnOnce() -> T) -> Option<T> {
     panic::catch_unwind(AssertUnwindSafe(code)).ok()
 }

@@ -152,7 +152,7 @@ impl RunningFleet {
     }
 
     /// Runs the fleet to its end: all voters see no work left, the given time is over, a stop was requested, or no
-    /// component is left that could go on. Afterwards every component has shut down, or is named in the outcome.
+    /// component is left that can run. Afterwards every component has shut down, or is named in the outcome.
     pub fn run_to_end(mut self) -> RunReport {
         let shared = &self.handle.shared;
         if shared.clock.is_virtual() {
@@ -281,7 +281,7 @@ impl Handle {
     }
 
     /// Changes the fleet to that of an assembly: components whose paths differ end and start, components that differ
-    /// are replaced, and all others go on. Wires lead to components of the assembly.
+    /// are replaced, and all others continue. Wires lead to components of the assembly.
     ///
     /// All new instances initialize first; then they take part from one instant on, and removed components shut down. A
     /// replaced component [saves](saoms_api::Component::save) the state for its successor; a component of another class

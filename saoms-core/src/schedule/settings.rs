@@ -11,7 +11,7 @@ pub struct Settings {
     pub seed: u64,
     /// Latest end of the run, in its own time. Executions due at that very instant are not run any more.
     pub limit: Option<Duration>,
-    /// Budget of an execution: after it, another thread goes on with the other components. At least 10 us. Real time
+    /// Budget of an execution: after it, another thread takes over the other components. At least 10 us. Real time
     /// only.
     pub budget: Duration,
     /// Maximum delay that the kernel may add to the timer's sleeps to save energy. It should be small against the

@@ -16,8 +16,8 @@ fn apply(handle: &Handle, fleet: &str) -> Result<Changed, ChangeError> {
     handle.apply(&assembly(fleet))
 }
 
-/// Runs a fleet in virtual time that becomes another one at each of these times, and gives what was told and the digest
-/// of the run.
+/// Runs a fleet in virtual time that becomes another one at each of these times, and gives what was recorded and the
+/// digest of the run.
 fn run(fleet: &str, changes: &[(u64, &str)], limit: u64) -> (String, String) {
     let (fleet, diary) = start(fleet, simulated(limit));
     let fleet = fleet.unwrap();

@@ -1,4 +1,4 @@
-//! Fleets that nobody would write.
+//! Random fleets.
 
 use std::time::Duration;
 
@@ -151,7 +151,7 @@ proptest! {
     }
 }
 
-/// The thread that runs the fleet tells how it ended after everybody can see that it has.
+/// The thread of the fleet reports its end only after others can observe it.
 #[test]
 fn the_last_event_is_told_however_often_a_fleet_ends() {
     for run in 0..300 {

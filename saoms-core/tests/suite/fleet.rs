@@ -172,7 +172,7 @@ pub(crate) fn run(text: &str, settings: Settings) -> (RunReport, Arc<Diary>) {
     (fleet.unwrap().run_to_end(), diary)
 }
 
-/// Runs a fleet in virtual time and compares what it told, and how it ended.
+/// Runs a fleet in virtual time and compares its record and its outcome.
 #[track_caller]
 pub(crate) fn check(fleet: &str, milliseconds: u64, expected: &str) {
     let (report, diary) = run(fleet, simulated(milliseconds));

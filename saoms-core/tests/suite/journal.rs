@@ -143,7 +143,7 @@ fn the_same_seed_gives_the_same_journal_and_another_journal_another_digest() {
     let same = run(PAIR, simulated(3000));
     assert_eq!(one.journal, same.journal);
     assert_eq!(one.trace_hash, same.trace_hash);
-    // This robot does and says the same, but its battery loop has something to tell.
+    // This robot does and says the same, but its battery loop writes records.
     let other = run(&PAIR.replace("delay=50", "delay=50 charge=32"), simulated(3000));
     assert_ne!(one.trace_hash, other.trace_hash);
 }

@@ -11,7 +11,7 @@ use saoms_core::schedule::{RunningFleet, Settings};
 use crate::actor::Words;
 use crate::fleet::{assembly, run, simulated, unindent};
 
-/// Writes down the words on one topic, and what is logged, in the order in which it is told.
+/// Writes down the words on one topic, and what is logged, in the order of the events.
 struct Reader {
     topic: &'static str,
     told: Mutex<String>,

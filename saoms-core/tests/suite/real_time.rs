@@ -10,7 +10,7 @@ use saoms_lang::assembly::Assembly;
 
 use crate::fleet::{Diary, of, outcome, real, run, start};
 
-/// Number of times that the fleet had to go on without a slow component.
+/// Number of times that the fleet had to continue without a slow component.
 fn takeovers(diary: &Diary, name: &str) -> usize {
     diary.count(|event| event.component.as_deref() == Some(name) && matches!(event.what, Occurrence::Slow { .. }))
 }
@@ -304,7 +304,7 @@ fn a_program_that_panics_over_an_event_does_not_disturb_the_fleet() {
     assert_eq!(fleet.run_to_end().outcome.status, RunStatus::Elapsed);
 }
 
-/// The timer already sleeps when the fleet starts, and nobody who is due wakes it.
+/// The timer already sleeps when the fleet starts, and no due component wakes it.
 #[test]
 fn a_fleet_without_tasks_ends_when_its_time_is_over() {
     for _ in 0..50 {

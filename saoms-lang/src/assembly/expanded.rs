@@ -17,12 +17,12 @@ use crate::syntax::NewElement;
 /// Components have the order and the paths that they have in the assembly, so a fleet that runs from it does what it
 /// did before: where a path is more than a name, the attribute `path` in the namespace of SAOMS keeps it.
 ///
-/// A reference that leads nowhere although it should is a warning in SCA 1.0 and an error in 1.1: an assembly with such
-/// a one is written in 1.0.
+/// A reference without a target that needs one is a warning in SCA 1.0 and an error in 1.1: an assembly with such a
+/// reference is written in 1.0.
 ///
-/// What would be told again of that composite and is lowered in those that it comes from is lowered in it as well, for
-/// the same reason: `found` are the diagnostics of the check that made the assembly. Of the wiring report, which that
-/// check may not have made, it keeps what `like` says of the fleet.
+/// Severities that are lowered in the source composites are lowered in it as well, with the same reason: `found` are
+/// the diagnostics of the check that made the assembly. Of the wiring report, which that check may not have made, it
+/// keeps what `like` says of the fleet.
 pub fn expanded<'d>(assembly: &Assembly, like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> String {
     let paths: Vec<&str> = assembly.components.iter().map(|component| component.path.as_str()).collect();
     let names = names(&paths);
@@ -72,13 +72,13 @@ fn root(like: &Composite) -> NewElement {
 }
 
 /// The codes that are lowered although the composite that is left has what they are about; each with what hides least.
-/// Codes of which something is told as it is are told so again.
+/// Codes with a diagnostic at its default severity keep that severity.
 fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'static str, &'d SetBy> {
     let mut all: BTreeMap<&'static str, &SetBy> = BTreeMap::new();
-    let mut told: HashSet<&'static str> = HashSet::new();
+    let mut unlowered: HashSet<&'static str> = HashSet::new();
     for one in found.into_iter().filter(|one| codes::outlives_expansion(one.code)) {
         let Some(set) = one.set.as_ref().filter(|set| set.level != SeverityLevel::Set(Severity::Error)) else {
-            told.insert(one.code.id);
+            unlowered.insert(one.code.id);
             continue;
         };
         let known = all.entry(one.code.id).or_insert(set);
@@ -86,7 +86,7 @@ fn lowered<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> BTreeMap<&'st
             *known = set;
         }
     }
-    all.retain(|code, _| !told.contains(code));
+    all.retain(|code, _| !unlowered.contains(code));
     all
 }
 

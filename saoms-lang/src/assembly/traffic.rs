@@ -24,7 +24,7 @@ pub struct TrafficTopic {
     pub kind: TopicKind,
     /// The name of the type of its messages.
     pub message: String,
-    /// True if nobody has to read it: all that publish it say so, and it has the name that they give it.
+    /// True if it needs no reader: all that publish it say so, and it has the name that they give it.
     pub is_optional: bool,
     /// Its publishers, in the order of the assembly.
     pub writers: Vec<TopicEnd>,

@@ -27,7 +27,7 @@ pub(super) fn paths(component: &ComponentElement, composite: &Composite) -> Vec<
                 _ => &[],
             };
             let mut named: Vec<String> = names.iter().filter_map(|name| attribute(name)).collect();
-            // A bundle of which there are several versions has one description for each: `CustomerV2`.
+            // A bundle with several versions has one description for each: `CustomerV2`.
             let version = attribute("bundleVersion").and_then(|version| Some(version.split('.').next()?.to_owned()));
             if let (Some(bundle), Some(version)) = (attribute("bundle"), version) {
                 named.push(format!("{bundle}V{version}"));

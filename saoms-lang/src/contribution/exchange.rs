@@ -10,11 +10,11 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::limits::FOLDER_ENTRIES;
 use crate::load::description::{Description, Entry, Kind};
 
-/// The endings of files that hold no names that others could import, or of which they are known.
+/// The endings of files that hold no names to import, or only names that are known.
 const USUAL: &[&str] = &["composite", "componentType", "csv", "txt", "md", "properties"];
 impl Finder {
-    /// Warns of exported namespaces of which the contribution in `root` has nothing, and of imported ones that the
-    /// contributions around it do not give. These may be elsewhere: so what nobody has is told only where the name is
+    /// Warns of exported namespaces for which the contribution in `root` holds nothing, and of imported ones that no
+    /// contribution around it exports. These may be elsewhere: so a missing one is reported only where its name is
     /// nearly that of another.
     pub(super) fn exchange(
         &mut self,
@@ -70,7 +70,7 @@ impl Finder {
     }
 }
 
-/// True if there are files in a contribution, beside the usual ones, of which nobody here knows what they hold.
+/// True if a contribution has files with other endings, whose contents are unknown.
 fn holds_others(root: &Path) -> bool {
     let root = if root.as_os_str().is_empty() { Path::new(".") } else { root };
     let mut waiting = vec![root.to_owned()];

@@ -13,18 +13,18 @@ use crate::load::{ReadContext, definitions, load_component_type, load_file, read
 use crate::model::{ComponentType, Version};
 use crate::source::{OpenTexts, Sources};
 
-/// Finds what composites name in other files, and looks at each folder and each first tag of a file once: one for all
-/// fleets of a folder lets checks of them take time that grows with their number, and not with its square.
+/// Finder of what composites name in other files. It looks at each folder and each first tag of a file once: with one
+/// finder for all fleets of a folder, the time of their checks grows linearly with their number.
 ///
 /// It does not see what changes on disk while it is used.
 pub struct Finder {
     pub(super) index: Index,
     pub(super) imports: Imports,
-    /// The contributions around others, of whose descriptions nothing is told.
+    /// The contributions around others; faults of their descriptions are not reported.
     pub(super) around: Option<Imports>,
     /// The number of right names that may still be compared with wrong ones.
     pub(super) candidates: Candidates,
-    /// Of how many more names that lead nowhere it is kept where they were looked for.
+    /// The number of unresolved names whose search path may still be listed.
     pub(super) explained: usize,
     /// The files of folders that are called as composites and are none, with the reason.
     unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,

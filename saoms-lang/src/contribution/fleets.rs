@@ -84,17 +84,17 @@ impl Finder {
         let description = Description::read(path.to_owned(), context);
         self.exchange(&description, root, context.max_size, context.diagnostics);
         let files = self.index.contents(root).composites;
-        let (max_size, untold) = (context.max_size, &mut Diagnostics::new());
+        let (max_size, unreported) = (context.max_size, &mut Diagnostics::new());
         let contribution =
-            Files::read(files, &mut ReadContext { max_size, sources: context.sources, diagnostics: untold });
+            Files::read(files, &mut ReadContext { max_size, sources: context.sources, diagnostics: unreported });
         for deployable in &description.deployables {
             _ = contribution.find(deployable, &mut self.index, root, context.diagnostics);
         }
     }
 }
 
-/// The composites in a folder and in those below it, other contributions among them, in the order of their paths; what
-/// is hidden and what tools made are passed over. Reported is that there are none, or more files than are looked at.
+/// The composites in a folder and in those below it, other contributions among them, in the order of their paths;
+/// hidden files and generated ones are skipped. It is reported if there are none, or more files than the limit.
 pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Vec<PathBuf> {
     let mut index = Index::new(sources.open().clone());
     index.limit(ASKED_FOLDER_ENTRIES);
@@ -131,19 +131,19 @@ struct Files {
 }
 
 impl Files {
-    /// Reads composites for the names in them. What is wrong with them is told by those who check them; a link that
-    /// leads to no file is no composite, and reported.
+    /// Reads composites for the names in them. Their faults are reported when they are checked; a broken link is no
+    /// composite, and reported.
     fn read(all: Vec<PathBuf>, context: &mut ReadContext<'_>) -> Self {
         let max_size = context.max_size;
-        let (mut scratch, mut untold) = (Sources::with_open(context.sources.open().clone()), Diagnostics::new());
+        let (mut scratch, mut unreported) = (Sources::with_open(context.sources.open().clone()), Diagnostics::new());
         let (mut paths, mut composites, mut places) = (Vec::with_capacity(all.len()), Vec::new(), Vec::new());
         for path in all {
-            let file = read(&path, max_size, &mut scratch, &mut untold);
+            let file = read(&path, max_size, &mut scratch, &mut unreported);
             if file.is_none() && path.is_symlink() && fs::metadata(&path).is_err() {
                 context.read(&path);
                 continue;
             }
-            if let Some(composite) = file.and_then(|file| load_file(file, &scratch, &mut untold)) {
+            if let Some(composite) = file.and_then(|file| load_file(file, &scratch, &mut unreported)) {
                 composites.push(composite);
                 places.push(paths.len());
             }
@@ -152,7 +152,7 @@ impl Files {
         Self { paths, read: Contribution::with(Vec::new(), composites), places }
     }
 
-    /// Reports composites of one namespace that have one name. Without a description nobody says that the folder is one
+    /// Reports composites of one namespace that have one name. A folder without a description need not be one
     /// contribution.
     fn repeated(&self, is_described: bool, context: &mut ReadContext<'_>) {
         let mut first: HashMap<(&str, &str), usize> = HashMap::new();

@@ -180,8 +180,8 @@ fn namespaces(entries: &[Entry]) -> Vec<String> {
     entries.iter().filter_map(Entry::namespace).map(str::to_owned).collect()
 }
 
-/// The files of the composites that the contribution of `folder` imports from others, which export them. What is wrong
-/// with their descriptions is not told.
+/// The files of the composites that the contribution of `folder` imports from others, which export them. Faults of
+/// their descriptions are not reported.
 pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (sources, diagnostics) = (&mut Sources::with_open(open.clone()), &mut Diagnostics::new());
     let context = &mut ReadContext { max_size: MAX_SIZE, sources, diagnostics };
@@ -196,8 +196,8 @@ pub fn imported_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     all
 }
 
-/// The files of the composites in contributions beside that of `folder` that import what it exports. What is wrong with
-/// their descriptions is not told.
+/// The files of the composites in contributions beside that of `folder` that import what it exports. Faults of their
+/// descriptions are not reported.
 pub fn importing_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let (sources, diagnostics) = (&mut Sources::with_open(open.clone()), &mut Diagnostics::new());
     let context = &mut ReadContext { max_size: MAX_SIZE, sources, diagnostics };

@@ -304,8 +304,8 @@ impl Index {
     }
 }
 
-/// True if what is in a folder is a file, or a link to one or to nowhere, which is told when it is read. Of a pipe
-/// nobody knows that it ever ends.
+/// True if what is in a folder is a file, or a link to one or to nowhere, which is reported when it is read. A pipe is
+/// not read: it may never end.
 fn may_be_read(kind: FileType, path: &Path) -> bool {
     kind.is_file() || kind.is_symlink() && fs::metadata(path).map_or(true, |about| about.is_file())
 }

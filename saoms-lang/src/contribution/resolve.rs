@@ -90,7 +90,7 @@ impl Finder {
                     let warning = ambiguous(&wanted, &found.path, &self.index.twins(found));
                     warning.into_iter().for_each(|one| context.diagnostics.push(one));
                 }
-                // What is wrong with a file that is called so is told there, and nowhere else.
+                // Faults of a file with this name are reported there, and nowhere else.
                 let unread = || self.index.unread_named(folder, &wanted.local);
                 let link = match found.map(|found| found.path).or_else(unread) {
                     None if self.imports.is_faulty(&root, context) => Link::Faulty,
@@ -209,7 +209,7 @@ impl Wanted {
     }
 }
 
-/// The warning that a name leads to one of several files, which one of them nobody says.
+/// The warning that a name fits several files, and that none of them is preferred.
 fn ambiguous(wanted: &Wanted, found: &Path, twins: &[PathBuf]) -> Option<Diagnostic> {
     let is_beside = twins.iter().all(|twin| twin.parent() == found.parent());
     let name = |path: &Path| match path.file_name() {

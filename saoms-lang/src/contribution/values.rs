@@ -97,8 +97,8 @@ fn path_of(uri: &Text, folder: &Path, sources: &Sources) -> Result<PathBuf, Box<
     Ok(folder.join(&*decoded(path)))
 }
 
-/// A text with its `%` and two digits as the bytes that they stand for (RFC 3986, 2.1); as it is where they come to no
-/// text.
+/// A text with each `%` and two digits replaced by the byte they encode (RFC 3986, 2.1); unchanged where the bytes are
+/// no text.
 fn decoded(text: &str) -> Cow<'_, str> {
     let digit = |at: usize| text.as_bytes().get(at).and_then(|digit| char::from(*digit).to_digit(16));
     let (mut bytes, mut at) = (Vec::with_capacity(text.len()), 0);

@@ -5,8 +5,8 @@ use crate::limits::{Budget, CANDIDATES};
 /// Lists that are not longer are searched in any case.
 const FEW: usize = 100;
 
-/// Counts the right names that are looked at for wrong ones: where nearly all names are wrong every search goes through
-/// all right ones, and a check must take time that grows with its files, and not with their square.
+/// Counter of the right names that are compared with wrong ones: where nearly all names are wrong, every search goes
+/// through all right ones, and the time of a check must grow linearly with its files.
 #[derive(Debug)]
 pub(crate) struct Candidates(Budget);
 

@@ -7,7 +7,7 @@ use super::{Code, Diagnostic, Severity, codes};
 use crate::limits::{CODE_DIAGNOSTICS, FILE_DIAGNOSTICS};
 use crate::source::{FileId, Location};
 
-/// Collects diagnostics.
+/// Collector of diagnostics.
 ///
 /// At most 1,000 diagnostics of one code, and 2,000 in all, are kept for one file; all are counted, and
 /// [`Diagnostics::into_sorted`] says how many more there were.
@@ -55,8 +55,8 @@ impl Diagnostics {
         Self::default()
     }
 
-    /// Lets nobody conclude from what is missing in a stretch of a file, where a fault of the text is reported, nor
-    /// from names of the hidden kinds that are found nowhere.
+    /// Marks a stretch of a file with a fault of the text, which is reported. Nothing is concluded from what is missing
+    /// in it, nor from unresolved names of the hidden kinds.
     pub(crate) fn add_damage(&mut self, stretch: Location, hidden: HiddenNames) {
         self.damaged.insert((stretch.file, stretch.span.start), stretch.span.end);
         self.hidden.composites |= hidden.composites;
@@ -106,7 +106,7 @@ impl Diagnostics {
     /// True if no more diagnostics of this code are kept for a file.
     pub(crate) fn is_full(&self, code: &'static Code, file: FileId) -> bool {
         let kept = self.counts.get(&(file, code.id)).map_or(0, |count| count.kept);
-        // The first of a kind is always told.
+        // The first of a kind is always kept.
         kept >= CODE_DIAGNOSTICS || kept > 0 && self.kept.get(&file).is_some_and(|kept| *kept >= FILE_DIAGNOSTICS)
     }
 
@@ -172,7 +172,7 @@ impl Diagnostics {
 
     /// Takes back those of a code at a place, where another one says it better.
     pub(crate) fn withdraw(&mut self, code: &'static Code, location: Location) {
-        // Most that are withdrawn were never told.
+        // Most that are withdrawn were never reported.
         if self.counts.get(&(location.file, code.id)).is_none_or(|count| count.kept == 0) {
             return;
         }
@@ -223,7 +223,7 @@ impl Diagnostics {
         self.items.iter()
     }
 
-    /// All that are to be told, by file and place, with one more for each kind of which there were too many to keep.
+    /// All to report, by file and place, with one more for each kind that had too many to keep.
     pub fn into_sorted(self) -> Vec<Diagnostic> {
         let mut all = self.into_all();
         all.retain(|one| !one.is_allowed());

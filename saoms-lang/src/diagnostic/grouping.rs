@@ -1,5 +1,5 @@
-//! Diagnostics that say the same of many places: for people one of them is told, with how many more there are and
-//! where.
+//! Diagnostics that say the same of many places: for people one of them is shown, with the number and the places of the
+//! others.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
@@ -28,12 +28,12 @@ pub(super) fn grouped<'d>(
     for (kind, one) in kinds.iter().zip(&diagnostics).filter(|(kind, _)| is_many(kind)) {
         many.entry(kind).or_default().push(one);
     }
-    let told = kinds.iter().zip(&diagnostics).filter_map(|(kind, one)| match many.get(kind).map(Vec::as_slice) {
+    let shown = kinds.iter().zip(&diagnostics).filter_map(|(kind, one)| match many.get(kind).map(Vec::as_slice) {
         None => Some((*one, None)),
         Some([first, rest @ ..]) => std::ptr::eq(*first, *one).then(|| (*one, Some(others(rest, sources)))),
         Some([]) => None,
     });
-    told.collect()
+    shown.collect()
 }
 
 /// The key of diagnostics that are alike: code, severity, file, and the message but for its numbers, as a hash, since

@@ -10,7 +10,7 @@ use super::{Diagnostic, Severity};
 use crate::source::{FileId, Sources};
 
 /// All diagnostics as text, one after the other, an empty line between two. Beside the code stands the rule of the SCA
-/// specification, where there is one. Many that are alike are told once, with the lines of the others.
+/// specification, where there is one. Many that are alike are shown once, with the lines of the others.
 pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
     Human::of(diagnostics, sources, colour).to_string()
 }
@@ -18,7 +18,7 @@ pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> Str
 /// Diagnostics for people, made while they are written: those of a thousand files are long.
 #[derive(Debug)]
 pub struct Human<'d> {
-    told: Vec<(&'d Diagnostic, Option<String>)>,
+    shown: Vec<(&'d Diagnostic, Option<String>)>,
     sources: &'d Sources,
     renderer: Renderer,
 }
@@ -27,19 +27,19 @@ impl<'d> Human<'d> {
     /// These diagnostics, in colours if asked.
     pub fn of(diagnostics: impl IntoIterator<Item = &'d Diagnostic>, sources: &'d Sources, colour: bool) -> Self {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
-        Self { told: grouped(diagnostics.into_iter().collect(), sources), sources, renderer }
+        Self { shown: grouped(diagnostics.into_iter().collect(), sources), sources, renderer }
     }
 }
 
 impl fmt::Display for Human<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (place, (one, others)) in self.told.iter().enumerate() {
+        for (place, (one, others)) in self.shown.iter().enumerate() {
             if place > 0 {
                 out.write_str("\n")?;
             }
             let rendered = render(one, others.as_deref(), self.sources, &self.renderer);
-            // Where a part of a line is shown, its place is told before it, and the picture has a place without a name
-            // besides.
+            // Where a part of a line is shown, its place is written before it, and the picture has a place without a
+            // name besides.
             let lines = rendered.lines().filter(|line| !is_nameless_place(line));
             // A blank line that only ends the picture would be two with ours.
             writeln!(out, "{}", lines.collect::<Vec<_>>().join("\n").trim_end())?;

@@ -6,7 +6,7 @@ use crate::source::Location;
 /// The level that a diagnostic can be set to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeverityLevel {
-    /// It is not told, and kept for the record.
+    /// It is not shown, and kept for the record.
     Allow,
     /// It has this severity.
     Set(Severity),

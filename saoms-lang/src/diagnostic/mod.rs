@@ -103,7 +103,7 @@ impl Diagnostic {
         }
     }
 
-    /// True if it is kept for the record alone: it is not told, and counts for nothing.
+    /// True if it is kept for the record alone: it is not shown, and not counted.
     pub fn is_allowed(&self) -> bool {
         self.set.as_ref().is_some_and(|set| set.level == SeverityLevel::Allow)
     }

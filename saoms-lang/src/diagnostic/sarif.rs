@@ -81,7 +81,7 @@ fn result(one: &Diagnostic, codes: &[&Code], sources: &Sources) -> Value {
         result["properties"] = json!({ "tags": [sca] });
     }
     if let Some(set) = &one.set {
-        // On the command line nobody says why.
+        // The command line gives no reason.
         let kind = if set.is_option { "external" } else { "inSource" };
         if one.is_allowed() {
             let mut suppression = json!({ "kind": kind, "location": { "physicalLocation": place(set.at, sources) } });

@@ -103,7 +103,7 @@ fn two(
     }
 }
 
-/// A fault of what a text is compared with: a name that stands for nothing is probably a text without its quotes.
+/// A fault of what a text is compared with: an unknown name is probably a text without its quotes.
 fn unquoted(fault: ExpressionFault, text: &ExpressionValue, of: &Expression) -> ExpressionFault {
     let (ExpressionValue::Text(_), Node::Name(name, _), None) = (text, &of.node, &fault.problem.instead) else {
         return fault;

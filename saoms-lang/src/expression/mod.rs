@@ -103,5 +103,5 @@ pub struct ExpressionFault {
     pub problem: ExpressionError,
 }
 
-/// Gives names their values.
+/// The lookup of a name's value.
 pub type Lookup<'l> = dyn FnMut(&str) -> Result<ExpressionValue, ExpressionError> + 'l;

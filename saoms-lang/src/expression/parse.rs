@@ -1,4 +1,4 @@
-//! From tokens to an expression.
+//! The parser from tokens to an expression.
 
 use std::ops::Range;
 

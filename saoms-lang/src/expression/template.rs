@@ -18,7 +18,7 @@ pub fn has_expression(text: &str) -> bool {
     memchr::memchr(b'$', text.as_bytes()).is_some() && text.contains("${")
 }
 
-/// A text with the numbers that its expressions come to. `$${` stands for `${`.
+/// A text with its expressions replaced by their values. `$${` is written for a plain `${`.
 ///
 /// # Errors
 /// Every expression without a value.

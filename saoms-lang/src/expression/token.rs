@@ -1,4 +1,4 @@
-//! From text to tokens.
+//! The tokens of an expression's text.
 
 use std::ops::Range;
 

@@ -47,7 +47,7 @@ impl Loader<'_> {
 
     /// Tells of an attribute of SCA 1.1 in a file of 1.0, once for all of its name.
     fn newer(&mut self, element: Element<'_>, attribute: Attribute<'_>, known: &'static Known) {
-        // Behind a wrong namespace nobody knows which version is meant.
+        // With a wrong namespace the version is unknown.
         if self.newer.contains(&known.name) || Version::from_namespace(&self.namespace).is_none() {
             return;
         }
@@ -143,7 +143,7 @@ impl Loader<'_> {
         self.attribute(element, name).map(Attribute::trimmed)
     }
 
-    /// The attribute of this name, or the misspelt one that is meant by it: that is told.
+    /// The attribute of this name, or its misspelling, which is reported.
     fn attribute<'e>(&self, element: Element<'e>, name: &str) -> Option<Attribute<'e>> {
         element.attribute(name).or_else(|| {
             let mut meant = self.meant.iter().rev().take_while(|(of, ..)| *of == element.id());
@@ -353,8 +353,8 @@ fn without_expressions(text: &str) -> Cow<'_, str> {
     plain
 }
 
-/// True if an element is written in place of an attribute of the one around it, as far as that can be told from what
-/// stands in it: it is reported as an element that does not exist.
+/// True if an element is written in place of an attribute of the one around it, as far as its content shows it: it is
+/// reported as an element that does not exist.
 pub(super) fn is_attribute_as_element(element: Element<'_>) -> bool {
     let Some(around) = element.parent() else { return false };
     // What is in a property may be its value.

@@ -1,4 +1,4 @@
-//! Elements: whose they are, and those that are none of anybody.
+//! Elements: the vocabulary each belongs to, and unknown ones.
 
 use smol_str::SmolStr;
 
@@ -18,7 +18,7 @@ const ONLY_1_1: &[&str] = &["requires", "policySetAttachment", "documentation", 
 /// Elements of SCA that the model does not keep.
 const NOT_KEPT: [&str; 5] = ["operation", "requires", "policySetAttachment", "documentation", "extensions"];
 
-/// Whose vocabulary an element belongs to.
+/// The vocabulary that an element belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Family {
     /// That of SCA.
@@ -32,7 +32,7 @@ pub(super) enum Family {
 }
 
 impl Loader<'_> {
-    /// Whose an element is. One of no namespace, or of another version of SCA than the root, is reported.
+    /// The family of an element. One of no namespace, or of another version of SCA than the root, is reported.
     pub(super) fn family(&mut self, element: Element<'_>) -> Family {
         let root = element.document().root();
         if element.is_unnamed() {
@@ -102,7 +102,7 @@ impl Loader<'_> {
     ) -> Option<&'static str> {
         let name = element.local_name();
         if family == Family::Sca && element.namespace() != self.namespace {
-            // Of another version, which is reported: nobody knows what it would be in this one.
+            // Of another version, which is reported: its meaning in this one is unknown.
             return None;
         }
         if family == Family::Sca && is_own_alone(name) {
@@ -153,7 +153,7 @@ impl Loader<'_> {
         let whose = if family == Family::Own { "SAOMS" } else { self.version.label() };
         let message = format!("{whose} has no element {}", quoted(name));
         let one = Diagnostic::new(code, location, message);
-        // Of `implementation.python` nobody means all but the last letters.
+        // A slip in `implementation.python` is one in its last part.
         let slip = match name.split_once('.') {
             Some((kind, variant)) if known.iter().any(|one| one.split('.').next() == Some(kind)) => {
                 let variants = known.iter().filter(|one| one.split_once('.').is_some_and(|(of, _)| of == kind));
@@ -213,7 +213,7 @@ impl Loader<'_> {
         let is_1_1 = self.version.is_1_1();
         let others = if is_1_1 { ONLY_1_0 } else { ONLY_1_1 };
         let Some(name) = others.iter().copied().find(|known| *known == element.local_name()) else { return };
-        // Behind a wrong namespace nobody knows which version is meant.
+        // With a wrong namespace the version is unknown.
         if self.newer.contains(&name) || Version::from_namespace(&self.namespace).is_none() {
             return;
         }
@@ -228,7 +228,7 @@ impl Loader<'_> {
         });
     }
 
-    /// Reports the second of two elements of which there can be one.
+    /// Reports a second element of a kind that may occur once.
     pub(super) fn repeated(&mut self, element: Element<'_>, first: Location, parent: &'static Kind, what: &str) {
         let message = format!("{} has a second {what}", quoted(parent.name));
         let one = Diagnostic::new(&codes::REPEATED_ELEMENT, element.name_location(), message);

@@ -22,7 +22,7 @@ impl Loader<'_> {
         let replicas = self.replicas(element);
         // A name with an expression is one of replicas, also where nothing says how many there are.
         let replicas = replicas.or_else(|| is_of_replicas(&name, element).then(Replicas::default));
-        // Without lists that grow: there may be very many components, of which most have one reference.
+        // Lists are allocated at their size: there may be very many components, most with one reference.
         let number_of = |name: &str| element.children().filter(|one| one.local_name() == name).count();
         let mut component = ComponentElement {
             origin: Origin::of(element),

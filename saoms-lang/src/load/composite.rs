@@ -117,8 +117,8 @@ impl Loader<'_> {
         self.severities.push(SeverityRule { origin, code, level, reason, is_wrong, within });
     }
 
-    /// Remembers what a `severity` that lacks its prefix, or stands where it cannot, would be about: that is not told
-    /// beside it.
+    /// Remembers the code of a `severity` without its prefix or in a wrong place, so that diagnostics of that code are
+    /// not reported beside it.
     pub(super) fn meant_severity(&mut self, element: Element<'_>) {
         let (Some(parent), Some(code)) = (element.parent(), element.attribute("code")) else { return };
         let code = code.trimmed();

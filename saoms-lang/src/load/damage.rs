@@ -29,8 +29,7 @@ fn has_names(element: Element<'_>) -> bool {
     }
 }
 
-/// True if a child of the root with something damaged inside may be, or hold, a component of which nobody knows the
-/// name.
+/// True if a child of the root with something damaged inside may be, or hold, a component with an unknown name.
 fn may_hide_component(part: Element<'_>) -> bool {
     let is_known = match part.local_name() {
         "component" => has_readable_name(part),

@@ -10,8 +10,8 @@ use crate::diagnostic::Diagnostics;
 use crate::model::Version;
 use crate::syntax::{self, Element, Parse};
 
-/// Checks the file `path`. One of another kind, which may have the same name, is passed over unless it was asked for.
-/// True if it is one of definitions, or something is wrong with it.
+/// Checks the file `path`. One of another kind, which may have the same name, is skipped unless it was asked for. True
+/// if it is one of definitions, or something is wrong with it.
 pub(crate) fn check(path: &Path, is_asked_for: bool, context: &mut ReadContext<'_>) -> bool {
     let ReadContext { max_size, sources, diagnostics } = context;
     let known = diagnostics.len();

@@ -83,7 +83,7 @@ impl Deployable {
 
 impl Description {
     /// The descriptions of the contribution in a folder: by its author, and by the tools that made it. `None` where
-    /// nobody says anything; what is wrong is reported.
+    /// there is none; faults are reported.
     pub(crate) fn of(root: &Path, context: &mut ReadContext<'_>) -> Option<Self> {
         let mut made = Self::read(path_in(root)?, context);
         let generated = root.join(GENERATED);
@@ -111,11 +111,12 @@ impl Description {
     pub(crate) fn read(path: PathBuf, context: &mut ReadContext<'_>) -> Self {
         let ReadContext { max_size, sources, diagnostics } = context;
         let mut made = Self { path, ..Self::default() };
-        // What is wrong with it is told once, however often it is read.
+        // Its faults are reported once, however often it is read.
         let shown = made.path.display().to_string();
         let is_it = |file: FileId| sources.get(file).path() == shown;
-        let (mut untold, is_told) = (Diagnostics::new(), diagnostics.iter().any(|one| is_it(one.location.file)));
-        let diagnostics = if is_told { &mut untold } else { &mut **diagnostics };
+        let (mut unreported, is_reported) =
+            (Diagnostics::new(), diagnostics.iter().any(|one| is_it(one.location.file)));
+        let diagnostics = if is_reported { &mut unreported } else { &mut **diagnostics };
         let Some(file) = read(&made.path, *max_size, sources, diagnostics) else {
             made.is_faulty = true;
             return made;
@@ -256,8 +257,8 @@ impl Description {
     }
 }
 
-/// The namespace of a name. One without a prefix is of the default namespace; where that is one of SCA, in which
-/// nobody's composites are, any may be meant, and so with a prefix that is bound to none.
+/// The namespace of a name. One without a prefix is of the default namespace; where that is one of SCA, which holds no
+/// user's composites, any may be meant. The same goes for an unbound prefix.
 fn namespace(name: &str, at: Element<'_>) -> Option<String> {
     let prefix = name.split_once(':').map_or("", |(prefix, _)| prefix);
     let namespace = at.resolve_prefix(prefix)?;

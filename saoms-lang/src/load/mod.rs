@@ -99,9 +99,10 @@ struct Loader<'d> {
     /// The namespace that counts as that of SCA: that of the version, but for a root in an unknown one.
     namespace: String,
     diagnostics: &'d mut Diagnostics,
-    /// The attributes of SCA 1.1 in a file of 1.0 that were told.
+    /// The attributes of SCA 1.1 in a file of 1.0 that were reported.
     newer: Vec<&'static str>,
-    /// The misspelt attributes that were told: their elements, the names that are meant, and those that are written.
+    /// The misspelt attributes that were reported: their elements, the names that are meant, and those that are
+    /// written.
     meant: Vec<(ElementId, &'static str, String)>,
     /// The severity settings.
     severities: Vec<SeverityRule>,

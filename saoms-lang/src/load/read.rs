@@ -234,7 +234,7 @@ struct Wrong {
     code: &'static Code,
     /// The part of the file that can be shown.
     shown: String,
-    /// The place of the fault in it: a character that stands for bytes which are none.
+    /// The place of the fault in it: the character shown in place of invalid bytes.
     at: u32,
     message: String,
     help: String,

@@ -1,5 +1,5 @@
-//! The root element: is it a composite, and of which version of SCA? Namespaces that are nearly those of SCA or SAOMS,
-//! so that what is in them would be passed over in silence.
+//! The root element: whether it is a composite, and its version of SCA. Namespaces that are nearly those of SCA or
+//! SAOMS are reported, because elements in them would be skipped silently.
 
 use std::collections::{HashMap, HashSet};
 
@@ -11,7 +11,7 @@ use crate::source::{Location, Span};
 use crate::syntax::{Attribute, Document, Element};
 
 impl Loader<'_> {
-    /// True if the root is a composite, or written as nearly one; finds out of which version of SCA.
+    /// True if the root is a composite, or nearly one; also sets its version of SCA.
     pub(super) fn root(&mut self, root: Element<'_>) -> bool {
         let namespace = root.namespace();
         namespace.clone_into(&mut self.namespace);

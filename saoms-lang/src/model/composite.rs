@@ -14,7 +14,7 @@ pub struct Composite {
     pub origin: Origin,
     /// The whole document: foreign elements and attributes, complex values, prefixes.
     pub document: Arc<Document>,
-    /// The version of SCA that its namespace stands for.
+    /// The version of SCA of its namespace.
     pub version: Version,
     /// `name`; empty, at the tag, when the file has none.
     pub name: Text,
@@ -79,7 +79,7 @@ pub struct SeverityRule {
     pub level: Located<SeverityLevel>,
     /// `reason`.
     pub reason: Text,
-    /// True if it is wrong, which is reported: what it is about is not told beside that.
+    /// True if it is wrong, which is reported: diagnostics of its code are then suppressed.
     pub is_wrong: bool,
     /// The element that it stands in; `None` for the composite itself.
     pub within: Option<Location>,
@@ -92,7 +92,7 @@ pub struct ComponentType {
     pub origin: Origin,
     /// The whole document.
     pub document: Arc<Document>,
-    /// The version of SCA that its namespace stands for.
+    /// The version of SCA of the namespace.
     pub version: Version,
     /// Its services in order.
     pub services: Vec<ServiceElement>,

@@ -102,7 +102,7 @@ impl Composite {
     /// The namespaces that a QName in it may mean, the likeliest first, and its local part. `None` in place of the
     /// namespaces when its prefix is bound to none: then any will do.
     ///
-    /// A name without a prefix is of the default namespace. Where that is one of SCA, in which nobody's composites are,
+    /// A name without a prefix is of the default namespace. Where that is one of SCA, which holds no user's composites,
     /// the composite's own is meant.
     pub fn resolve_name<'n>(&self, naming: Naming<'n>) -> (Option<Vec<String>>, &'n str) {
         let element = naming.origin.element(&self.document);
@@ -159,12 +159,12 @@ impl Contribution {
         &self.composites[..self.asked_for]
     }
 
-    /// The target of the name at an element; `None` where nobody looked.
+    /// The target of the name at an element; `None` where it was not resolved.
     pub fn link(&self, origin: Origin) -> Option<&Link> {
         self.links.get(&(origin.file(), origin.element))
     }
 
-    /// The target of the `library` of an implementation; `None` where nobody looked.
+    /// The target of the `library` of an implementation; `None` where it was not resolved.
     pub fn library(&self, implementation: Origin) -> Option<&LibraryLink> {
         self.libraries.get(&(implementation.file(), implementation.element))
     }

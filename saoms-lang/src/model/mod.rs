@@ -98,7 +98,7 @@ impl Version {
         }
     }
 
-    /// The version that a namespace stands for.
+    /// The version of a namespace.
     pub fn from_namespace(namespace: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|version| version.namespace() == namespace)
     }

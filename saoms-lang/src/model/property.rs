@@ -132,7 +132,7 @@ impl Property {
         (all.next().is_none() && self.content().is_empty()).then_some(first)
     }
 
-    /// The one text that it gives directly, where it gives nothing else and leads nowhere: what most properties are.
+    /// The one text that it gives directly, where it gives nothing else and has no source, as most properties.
     pub(crate) fn only_text(&self) -> Option<&Text> {
         match (&self.value, &self.text, &self.details) {
             (Some(one), None, None) | (None, Some(one), None) => Some(one),

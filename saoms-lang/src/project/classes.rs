@@ -17,7 +17,7 @@ pub trait ClassPath {
 pub struct Classes {
     /// The classes, loops and rules.
     pub registry: Registry,
-    /// The resolver of libraries that composites name themselves; `None` where nobody looks for them.
+    /// The resolver of libraries that composites name themselves; `None` where they are not looked for.
     pub libraries: Option<Rc<dyn LibraryResolver>>,
     /// Faults of plugins, which have no place in a composite.
     pub problems: Vec<PluginFault>,
@@ -32,7 +32,7 @@ pub struct PluginFault {
     pub text: String,
 }
 
-/// Opens libraries that composites name with `library`.
+/// A resolver of the libraries that composites name with `library`.
 pub trait LibraryResolver {
     /// Looks for the library that a composite in a folder names, and adds what it offers to the registry. Nothing in it
     /// runs.

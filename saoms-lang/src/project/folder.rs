@@ -10,7 +10,7 @@ use crate::source::{Sources, Span};
 /// Composites that are named where one of them has to be.
 const OFFERED: usize = 5;
 
-/// The inputs of one fleet: a folder stands for the files that run in it. A folder where that is unclear is reported.
+/// The inputs of one fleet: a folder means the files that run in it. A folder where that is unclear is reported.
 pub(super) fn one_fleet(
     inputs: &[Input],
     max_size: u64,

@@ -1,4 +1,4 @@
-//! From the inputs of a project to the model.
+//! The step from the inputs of a project to the model.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::model::{Composite, Contribution};
 use crate::registry::Registry;
 use crate::source::{FileId, Sources};
 
-/// The path that stands for standard input.
+/// The path that means standard input.
 pub const INPUT: &str = "-";
 /// The name that diagnostics have for the values of composite properties beside the files.
 pub const SET: &str = "--set";

@@ -93,7 +93,7 @@ impl Project {
         }
     }
 
-    /// Adds a composite file to the fleet. `-` is standard input; a folder stands for the fleet that runs in it.
+    /// Adds a composite file to the fleet. `-` is standard input; a folder means the fleet that runs in it.
     #[must_use]
     pub fn file(mut self, path: impl Into<PathBuf>) -> Self {
         self.inputs.push(Input::Path(path.into()));

@@ -66,7 +66,7 @@ pub struct Alias {
     /// The name.
     #[serde(rename = "class")]
     pub name: String,
-    /// Values that stand for those that the composite does not give.
+    /// Values for properties that the composite does not give.
     #[serde(default)]
     pub preset: std::collections::BTreeMap<String, String>,
 }
@@ -177,7 +177,7 @@ pub struct ClassTopic {
     pub message: String,
     /// The schema of the message type: two ends agree when these are equal.
     pub schema: Value,
-    /// True if those that publish it need nobody who reads it.
+    /// True if its publishers need no reader.
     #[serde(default)]
     pub optional: bool,
 }

@@ -27,7 +27,7 @@ pub enum RegistryError {
         /// The version of the declaration.
         found: u32,
     },
-    /// A name, or the code of a rule, stands for something else already.
+    /// A name, or the code of a rule, is taken already.
     NameTaken {
         /// The name.
         name: String,

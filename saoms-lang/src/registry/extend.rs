@@ -5,7 +5,7 @@ use serde_json::value::RawValue;
 
 use super::{ClassDeclaration, ClassKind, DefaultLoops};
 
-/// So long a line of classes that extend each other is none that anybody wrote.
+/// The limit of a chain of classes that extend each other: a longer one is a mistake.
 const LONGEST: usize = 32;
 
 /// The declaration of a class that another one extends.

@@ -254,8 +254,7 @@ impl Registry {
     }
 
     /// Up to three names that are like `name`, the likeliest first: those that end alike behind the last dot, or else
-    /// those that are spelt alike, or else those of which it is a part. What a class is called comes before what else
-    /// it is called.
+    /// those that are spelt alike, or else those that contain it. The name of a class comes before its aliases.
     pub fn nearest(&self, name: &str) -> Vec<&str> {
         let names = self.classes.values().map(|class| (class.name(), class.is_alias()));
         near(name, names)

@@ -9,7 +9,7 @@ pub struct LineColumn {
     pub column: u32,
 }
 
-/// From one line and column to another; the end is exclusive.
+/// A range from one line and column to another; the end is exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LineRange {
     /// The start.

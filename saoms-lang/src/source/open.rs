@@ -22,7 +22,7 @@ impl OpenTexts {
 
     /// The text for the file at `path`, however the path is written.
     pub fn get(&self, path: &Path) -> Option<&Arc<String>> {
-        // As a rule there are none, and then nobody has to ask the file system.
+        // As a rule there are none, and then the file system need not be asked.
         if self.texts.is_empty() { None } else { self.texts.get(&identity(path)) }
     }
 

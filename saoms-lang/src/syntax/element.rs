@@ -176,8 +176,7 @@ impl<'a> Element<'a> {
         own.iter().map(move |raw| Attribute { document: self.document, raw })
     }
 
-    /// Its attributes in order, without declarations of namespaces and without those of which name or value are
-    /// unknown.
+    /// Its attributes in order, without declarations of namespaces and without those whose name or value is unknown.
     pub fn attributes(self) -> impl Iterator<Item = Attribute<'a>> + use<'a> {
         self.written_attributes().filter(|one| one.raw.namespace != XMLNS && one.is_sure())
     }

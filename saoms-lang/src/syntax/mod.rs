@@ -5,9 +5,8 @@
 //!
 //! The steps, each with a file: `lexer` cuts the text into tokens (quick-xml finds the ends of markup), `start_tag`
 //! reads attributes (`slips` says where a damaged one ends), `nest` finds which end tag belongs to which start tag,
-//! `resolve` binds prefixes to namespaces.
-//! What cannot be relied on behind a fault is marked in the tree ([`Element::is_damaged`]), so that nobody reports the
-//! same mistake a second time.
+//! `resolve` binds prefixes to namespaces. Parts that are unreliable because of a fault are marked in the tree
+//! ([`Element::is_damaged`]), so that no rule reports the same mistake a second time.
 
 mod attribute;
 mod characters;

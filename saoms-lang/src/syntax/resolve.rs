@@ -31,7 +31,7 @@ pub(super) fn resolve(lexer: &mut Lexer<'_>) -> (Vec<Box<str>>, Vec<Declaration>
         numbers: HashMap::new(),
         bound: HashMap::new(),
         in_scope: Vec::new(),
-        told: HashSet::new(),
+        reported: HashSet::new(),
         declared: Vec::new(),
         sorted: Vec::new(),
     };
@@ -56,7 +56,7 @@ struct Resolver<'a> {
     /// The prefixes of the declarations in scope, each with the number of the element behind it.
     in_scope: Vec<(u32, &'a str)>,
     /// The prefixes that are reported as unbound.
-    told: HashSet<&'a str>,
+    reported: HashSet<&'a str>,
     declared: Vec<Declaration>,
     /// The names of the attributes of the element at hand, each with its place.
     sorted: Vec<(&'a str, usize)>,
@@ -82,7 +82,7 @@ impl<'a> Resolver<'a> {
         }
         let namespace = match split(self.input.piece(node.name_span())).0 {
             None => self.namespace(""),
-            // That it is no name is told.
+            // It is no name, which is reported.
             Some(_) if lexer.tokens[token].flags & UNNAMED != 0 => Some(NO_NAMESPACE),
             Some(prefix) => self.prefix(lexer, prefix, node.name),
         };
@@ -125,7 +125,7 @@ impl<'a> Resolver<'a> {
             lexer.faults.add(|| self.input.fault(&codes::XML_PREFIX, start, end, message));
             lexer.attributes[at].flags |= BAD_NAME;
             // That it is bound to nothing here is clear.
-            self.told.insert(prefix);
+            self.reported.insert(prefix);
             return;
         }
         let namespace = self.number(&uri);
@@ -180,7 +180,7 @@ impl<'a> Resolver<'a> {
         }
         let root = lexer.elements[0];
         let (fault, meant) = self.unbound(prefix, start, root.name + root.name_len);
-        if self.told.insert(prefix) {
+        if self.reported.insert(prefix) {
             lexer.faults.add(|| fault);
         }
         meant

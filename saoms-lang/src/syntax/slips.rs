@@ -75,8 +75,8 @@ pub(super) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
     one.label(place, "the tag ends here").suggest("insert `>`", place, ">")
 }
 
-/// The quote that closes a value, of which the first character is at `at`, where the opening quote is missing or stands
-/// elsewhere: before it nothing ends the value, and behind it the tag goes on.
+/// The quote that closes a value with its first character at `at`, where the opening quote is missing or misplaced:
+/// nothing before it ends the value, and the tag continues behind it.
 pub(super) fn first_quote(input: Input<'_>, at: u32) -> Option<u32> {
     let is_end = |byte: &u8| matches!(byte, b'"' | b'\'' | b'<' | b'>' | b'=' | b' ' | b'\t' | b'\r' | b'\n');
     let end = at + input.bytes()[at as usize..].iter().position(is_end)? as u32;
@@ -223,7 +223,7 @@ fn ends_with_attribute_name(text: &str) -> bool {
     !name.is_empty() && name_length(name.as_bytes()) == name.len()
 }
 
-/// The end of a value without a closing quote, the place where its tag goes on, and true if it surely ends there.
+/// The end of a value without a closing quote, the place where its tag continues, and true if it surely ends there.
 pub(super) fn value_end(input: Input<'_>, quote_at: u32) -> (u32, u32, bool) {
     let start = quote_at + 1;
     let rest = &input.text[start as usize..];

@@ -157,8 +157,8 @@ fn pieces(stretch: &str) -> impl Iterator<Item = (Range<usize>, Place)> {
     })
 }
 
-/// The character that the reference at the start of `text` stands for, and its length in bytes. A `&` by itself stands
-/// for itself.
+/// The character that the reference at the start of `text` means, and its length in bytes. A `&` by itself is a
+/// character.
 fn reference(text: &str) -> (char, usize) {
     let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || b"#_-.:".contains(byte);
     let length = text.bytes().skip(1).take_while(is_part).count();

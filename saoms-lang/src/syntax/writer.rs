@@ -62,7 +62,7 @@ impl NewElement {
         self
     }
 
-    /// With the namespace that a prefix stands for, unless it says that already.
+    /// Declares the namespace of a prefix, unless it is declared already.
     pub fn declare(mut self, prefix: &str, namespace: &str) -> Self {
         let name = if prefix.is_empty() { "xmlns".to_owned() } else { format!("xmlns:{prefix}") };
         if !self.attributes.iter().any(|(known, _)| *known == name) {
@@ -134,9 +134,8 @@ impl NewElement {
 /// A text as it can stand everywhere in XML: inside an element, and in an attribute within quotation marks of either
 /// kind.
 ///
-/// Characters that reading would change are written by their numbers: tabs and line ends, of which attributes would
-/// keep blanks alone (XML 1.0, 3.3.3), and returns (2.11). A character that XML has no way to write (2.2) becomes
-/// U+FFFD.
+/// Characters that reading would change are written by their numbers: tabs and line ends, which become blanks in
+/// attributes (XML 1.0, 3.3.3), and returns (2.11). A character that XML has no way to write (2.2) becomes U+FFFD.
 ///
 /// ```
 /// assert_eq!(saoms_lang::syntax::escaped("a\"b]]> & 'c'\n"), "a&quot;b]]&gt; &amp; &apos;c&apos;&#10;");

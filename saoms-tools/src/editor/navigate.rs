@@ -1,4 +1,4 @@
-//! From a name to what it stands for, and to everything else that means the same.
+//! Navigation from a name to its definition, and to all other names of the same symbol.
 
 use std::path::PathBuf;
 

@@ -189,7 +189,7 @@ fn shared(scene: &Scene, one: &Occurrence) -> Result<(), String> {
     }
 }
 
-/// The name of a replica, or that of all, under another pattern. Under one with other expressions nobody knows it.
+/// The name of a replica, or that of all, under another pattern. Under one with other expressions it is unknown.
 fn replica(pattern: &str, written: &str, new: &str) -> Option<String> {
     if group(pattern).is_some_and(|group| group == written) {
         return group(new);

@@ -107,7 +107,7 @@ pub struct Port {
 }
 
 impl Port {
-    /// A port of which nothing else is known.
+    /// A port with a name alone.
     pub(super) fn named(name: &str) -> Self {
         Self { name: name.to_owned(), interface: None, many: None, inside: None }
     }
@@ -129,7 +129,7 @@ pub struct DiagramLink {
 pub enum LinkKind {
     /// From a component's reference to a component's service.
     Wire,
-    /// Between a part of the composite and the part of a component that it stands for.
+    /// Between a part of the composite and the part of a component that it promotes.
     Promotion,
 }
 

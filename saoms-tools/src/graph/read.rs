@@ -1,4 +1,4 @@
-//! From the model to a diagram.
+//! The step from the model to a diagram.
 
 use std::collections::{HashMap, HashSet};
 

@@ -18,7 +18,7 @@ fn together(texts: impl IntoIterator<Item = String>) -> Diagram {
     drawn(&texts.fold(project, |project, text| project.other_text("c.composite", text)))
 }
 
-/// The diagram of a project in memory, whose classes nobody knows.
+/// The diagram of a project in memory, whose classes are unknown.
 fn drawn(project: &Project) -> Diagram {
     let loaded = project.clone().in_memory().load(&Registry::new());
     Diagram::of(&loaded.contribution, &loaded.registry, &Occurrences::default())

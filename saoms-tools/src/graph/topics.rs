@@ -19,13 +19,13 @@ pub(super) fn of(view: &View<'_>) -> Vec<DiagramTopic> {
     topics.all
 }
 
-/// Makes one of topics that are the same but for their names, such as those of the replicas of a hall: the same before
-/// renaming, with the same ends, each of which stands for several components; so do all where the composite
+/// Joins topics that are the same but for their names, such as those of the replicas of a hall: the same before
+/// renaming, and with the same ends, where each end is several components. All ends are several where the composite
 /// `is_repeated`.
 pub(super) fn join(diagram: &mut Diagram, is_repeated: bool) {
     let is_several = |end: &usize| is_repeated || diagram.components[*end].replicas.is_some_and(|(_, most)| most > 1);
     let mut all: Vec<DiagramTopic> = Vec::with_capacity(diagram.topics.len());
-    // By what they are the same in; `names` has the one before renaming until here.
+    // Indices of joined topics by what they have in common; until here, `names` holds the name before renaming.
     let mut places: HashMap<Sameness, usize> = HashMap::new();
     for mut topic in std::mem::take(&mut diagram.topics) {
         let declared = std::mem::replace(&mut topic.names, vec![topic.name.clone()]);

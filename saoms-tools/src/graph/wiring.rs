@@ -78,7 +78,7 @@ impl Linker<'_> {
         }
     }
 
-    /// Links what the composite promotes to what it stands for, and gives it the interface of that.
+    /// Links each promotion of the composite to the promoted part, and gives it the interface of that.
     fn promotions(&mut self, view: &View<'_>) {
         for (place, service) in view.services().enumerate() {
             let Some(promote) = &service.promote else { continue };

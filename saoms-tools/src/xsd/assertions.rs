@@ -116,7 +116,7 @@ fn nanoseconds() -> String {
     format!(r"xs:decimal(replace($v, '\s*[a-zµ]+$', '')) * ({factor})")
 }
 
-/// That a component is of none of these classes.
+/// The test that a component is of none of these classes.
 fn is_no(names: &[&str]) -> String {
     let names = list(names.iter().copied());
     format!("not(*[local-name() = ('implementation.java', 'implementation.rust')]/@class = {names})")

@@ -48,7 +48,7 @@ fn element(node: Node<'_, '_>) -> String {
     out
 }
 
-/// Whether it is white space that separates the parts of an element, or all that an element of SCA holds.
+/// True if it is white space that separates the parts of an element, or all that an element of SCA holds.
 fn is_between(node: Node<'_, '_>) -> bool {
     let is_blank =
         |node: Node<'_, '_>| node.text().is_some_and(|text| text.trim_matches([' ', '\t', '\r', '\n']).is_empty());

@@ -37,7 +37,7 @@ impl Events {
     }
 
     /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same
-    /// lines give the same run; in real time they are read as they come, and the run goes on at least to their end.
+    /// lines give the same run; in real time they are read as they come, and the run lasts at least to their end.
     pub(super) fn play(mut self, handle: Handle, is_virtual: bool) {
         if is_virtual {
             return self.read_all(&handle);

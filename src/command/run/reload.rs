@@ -26,7 +26,7 @@ const AGAIN: Duration = Duration::from_secs(1);
 /// The identity of a file's content: inode, size, and time of its last change.
 type Stamp = (u64, u64, i64, i64);
 
-/// Watches the libraries of a fleet until it is dropped.
+/// The watch over the libraries of a fleet, until it is dropped.
 pub(crate) struct Reload {
     _end: Sender<()>,
 }

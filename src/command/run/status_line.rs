@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal, Stderr, Write};
 use std::sync::{Mutex, PoisonError};
 use std::{env, mem};
 
-/// Signs that show one after the other that the run goes on.
+/// Signs shown one after the other while the run continues.
 const TURNS: [char; 4] = ['|', '/', '-', '\\'];
 /// Control sequences (ECMA-48, 8.3.41, and DECAWM): to the start of the line and erase it; do not wrap; wrap again.
 const ERASE: &str = "\r\x1b[K";

@@ -67,10 +67,10 @@ struct Row<'a> {
 /// The number of reasons of a chain that are shown: up to the first record, that one included, which an earlier chain
 /// goes through as well.
 fn shown_anew(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> usize {
-    let told: HashSet<Cause> =
+    let known: HashSet<Cause> =
         earlier.iter().flat_map(|chain| chain.acts.iter().chain(&chain.reasons)).map(|one| one.id()).collect();
     let all = chain.reasons.len();
-    let common = chain.reasons.iter().position(|reason| told.contains(&reason.id()));
+    let common = chain.reasons.iter().position(|reason| known.contains(&reason.id()));
     // The line that replaces the omitted ones has to save at least one line.
     common.map(|common| common + 1).filter(|anew| anew + 1 < all).unwrap_or(all)
 }

@@ -1,4 +1,4 @@
-//! What is checked: one text, or the files of a fleet.
+//! Inputs of checks: one text, or the files of a fleet.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ use super::parsed;
 /// The files of a fleet, each a path and a text; the first is the composite that is asked for.
 pub(crate) type Files = Vec<(String, String)>;
 
-/// What is checked.
+/// An input of a check.
 #[derive(Debug)]
 pub(crate) enum Input {
     /// One composite, which finds no other.
@@ -87,7 +87,7 @@ pub(crate) fn kinds<T>(fleet: &Compilation<T>) -> Vec<String> {
     all
 }
 
-/// What a diagnostic says, without the places.
+/// A diagnostic without its places.
 pub(crate) fn kind(one: &Diagnostic) -> String {
     let labels = one.labels.iter().map(|label| label.text.as_str());
     let suggestions = one.suggestions.iter().map(|one| one.description.as_str());

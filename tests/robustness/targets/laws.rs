@@ -1,4 +1,4 @@
-//! What has to hold for whatever is checked.
+//! Laws that hold for any input of a check.
 
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::{Diagnostic, Edit, codes};
@@ -46,7 +46,7 @@ fn without<'k>(some: &'k [String], others: &[String]) -> Vec<&'k String> {
     some.iter().filter(|one| !others.contains(one)).collect()
 }
 
-/// What a fleet comes to is written out, and comes to the same.
+/// The expansion of a fleet gives the same assembly as the fleet.
 fn written_out(input: &Input, fleet: &Compilation, assembly: &Assembly, registry: &Registry) {
     let text = fleet.expanded().unwrap();
     let alone = Input::Text(text.clone()).compiled(KNOWN, registry);
@@ -80,8 +80,8 @@ fn mended(input: &Input, fleet: &Compilation, settings: Settings, registry: &Reg
     let after = Input::Text(edited.clone()).compiled(settings, registry);
     let number = |fleet: &Compilation| kinds(fleet).iter().filter(|kind_| **kind_ == kind(one)).count();
     if one.code.id.starts_with("S01") || one.code == &codes::NAMESPACE_NEAR || parsed(text).is_none() {
-        // Of these the first is told, and of a text whose tags do not fit what stands before that is seen: the same may
-        // be wrong again further on.
+        // The first of these is reported, and where tags do not fit, the text before that is read: the same may be
+        // wrong again further on.
         let start = |one: &Diagnostic| one.location.span.start as usize;
         let is_further =
             |next: &Diagnostic| start(next) > start(one) || edited.len() - start(next) < text.len() - start(one);

@@ -1,4 +1,4 @@
-//! How much is allocated, counted for each thread.
+//! The number of allocated bytes, counted for each thread.
 
 #![allow(unsafe_code, reason = "an allocator is unsafe code")]
 
@@ -21,7 +21,7 @@ fn count(bytes: isize) {
     });
 }
 
-// SAFETY: every call goes on to the system's allocator as it is; counting allocates nothing.
+// SAFETY: every call is passed to the system's allocator unchanged; counting allocates nothing.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as isize);

@@ -1,5 +1,4 @@
-//! What has to hold for whatever bytes a file has. The tests beside this file and the fuzzers in `fuzz/` run the same
-//! functions.
+//! Laws that hold for files of any bytes. The tests beside this file and the fuzzers in `fuzz/` run the same functions.
 
 mod grammar;
 mod input;

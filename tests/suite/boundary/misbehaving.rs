@@ -1,5 +1,5 @@
-//! Components of plugins that do what they must not: the program and all other components go on, and what happened is
-//! told by name.
+//! Components of plugins that do what they must not: the program and all other components continue, and the faults are
+//! reported by name.
 
 use std::path::PathBuf;
 
@@ -33,7 +33,7 @@ fn beside_honest(components: &str) -> Run {
     run
 }
 
-/// That the run failed for what component `Bad` did.
+/// Asserts that the run failed because of component `Bad`.
 fn assert_fails(run: &Run, expected: &[&str]) {
     assert_eq!((run.code, run.component("Bad")["failures"].as_u64()), (Some(1), Some(1)), "{}", run.text);
     for expected in ["Bad"].iter().chain(expected) {

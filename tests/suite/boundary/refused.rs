@@ -10,7 +10,7 @@ use saoms_core::plugin::Plugin;
 use super::build::library;
 use super::run::{component, in_folder, property, saoms};
 
-/// What a fleet with a component of `good` says when this library is named.
+/// The output of a fleet with a component of `good` when this library is named.
 fn refused_with(path: &Path, components: &str) -> String {
     let folder = in_folder(components);
     let arguments =
@@ -36,7 +36,7 @@ fn changed(name: &str, change: impl FnOnce(&mut Vec<u8>)) -> PathBuf {
     path
 }
 
-/// Where libraries are written. Other tests have their composites beside it, and would find libraries there.
+/// The folder where libraries are written. Other tests have their composites beside it, and would find libraries there.
 fn folder() -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused");
     fs::create_dir_all(&folder).unwrap();

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use crate::support::PROGRAM;
 
-/// What a command came to.
+/// The result of a command.
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
     /// Standard output and standard error.
@@ -31,7 +31,7 @@ impl Run {
         found.unwrap()
     }
 
-    /// Why it failed.
+    /// The reasons of its failure.
     pub(crate) fn reasons(&self) -> String {
         self.report["outcome"]["reasons"].to_string()
     }

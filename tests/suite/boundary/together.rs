@@ -1,4 +1,4 @@
-//! What plugins do with each other and with what is linked into the program.
+//! Plugins together with each other and with linked classes.
 
 use std::fs;
 
@@ -17,7 +17,7 @@ fn messages_and_calls_go_between_plugins_and_the_program() {
         + &component("Echo", "elsewhere.Echo", "");
     let run = second(&components, &[library("good"), library("elsewhere")]);
     assert_eq!(run.code, Some(0), "{}", run.text);
-    // Ten readings, doubled, and the echo of each a period later, of which the last is still on its way.
+    // Ten readings, doubled, and the echo of each a period later; the last echo is still on its way.
     assert_eq!(run.report["readings"]["heard"], 10 + 9, "{}", run.report);
     assert_eq!(run.report["readings"]["sum"], (0..10).sum::<i32>() * 2 + (0..9).sum::<i32>() * 2 + 9000);
     assert_eq!(run.report["area"]["width"], 3);

@@ -1,4 +1,4 @@
-//! One slip of the pen in a fleet that ships is told, and told as few times as it can be.
+//! One slip of the pen in a shipped fleet is reported, with as few diagnostics as possible.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

@@ -1,5 +1,5 @@
-//! Mistakes that people make in fleets that are right: each is told once, at its place, and what is suggested makes the
-//! fleet right again.
+//! Mistakes that people make in fleets that are right: each is reported once, at its place, and what is suggested makes
+//! the fleet right again.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -15,7 +15,7 @@ use saoms_lang::source::Sources;
 /// A fleet: the files of it, by their names, the composite first.
 type Files = Vec<(&'static str, String)>;
 
-/// Where the files of a fleet are written to be checked.
+/// A checker, with the folder for the files of a fleet.
 struct Checker {
     registry: Registry,
     folder: tempfile::TempDir,
@@ -26,7 +26,7 @@ impl Checker {
         Self { registry: Registry::linked().unwrap(), folder: tempfile::tempdir().unwrap() }
     }
 
-    /// What is wrong with a fleet.
+    /// The diagnostics of a fleet.
     fn faults(&self, files: &Files) -> (Vec<Diagnostic>, Sources) {
         for (name, text) in files {
             fs::write(self.folder.path().join(name), text).unwrap();
@@ -35,7 +35,8 @@ impl Checker {
         (compilation.reported().cloned().collect(), compilation.sources)
     }
 
-    /// What comes of a mistake: each diagnostic with the text that it marks, its help, and what its suggestions leave.
+    /// The report of a mistake: each diagnostic with the text that it marks, its help, and the texts after its
+    /// suggestions.
     fn outcome(&self, files: &Files) -> String {
         let (found, sources) = self.faults(files);
         let mut out = String::new();

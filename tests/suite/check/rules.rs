@@ -41,7 +41,7 @@ fn every_rule_is_documented_with_an_example() {
     assert_eq!(is_kept, [true, true], "docs/diagnostics.md or docs/rules.md is out of date: run with UPDATE_EXPECT=1");
 }
 
-/// What a page has before the part about rules over whole fleets, and behind it.
+/// The text of a page before the part about rules over whole fleets, and behind it.
 fn around<'t>(text: &'t str, start: &str) -> (&'t str, &'t str) {
     if start.starts_with('\n') {
         return text.find(start).map_or((text, ""), |at| (&text[..at], ""));
@@ -79,7 +79,7 @@ fn fleet(components: &[Component<'_>]) -> String {
     text + "</composite>"
 }
 
-/// What is found, without lines and columns.
+/// The findings, without lines and columns.
 fn found(components: &[Component<'_>]) -> Vec<String> {
     let found = Fleet::of_text(fleet(components)).diagnostics();
     let plain = |line: &str| {
@@ -93,7 +93,7 @@ const MASTER: Component<'_> = ("Master", "saoms.MasterEnvironment", &[], false);
 
 const ROBOT: Component<'_> = ("Robot1", "saoms.Robot", &[], true);
 
-/// What is found with this scenario on this map, and one robot.
+/// The findings with this scenario on this map, and one robot.
 fn with_scenario(map: &str, scenario: &str) -> Vec<String> {
     found(&[
         ("World", "saoms.World", &[("map", map)], false),
@@ -126,7 +126,7 @@ fn luggage_is_looked_at_wherever_it_may_be() {
         ("Robot1", "saoms.Robot", &[], false),
     ];
     assert_eq!(found(&without), ["error S5001 `random` needs an area to draw from, and nothing in the fleet says one"]);
-    // A wrong line and an impossible one are told together.
+    // A wrong line and an impossible one are reported together.
     let both = with_scenario(map, "at 1s lugage (1,1) to (0,0); at 1s luggage (1,1) to (0,0)");
     assert_eq!(both.len(), 2, "{both:?}");
 }
@@ -147,7 +147,7 @@ fn chargers_are_looked_at_in_the_world_that_they_are_in() {
     );
 }
 
-/// Robots that move beside a world: all of them, or some. A mistake in a wire is told alone.
+/// Robots that move beside a world: all of them, or some. A mistake in a wire is reported alone.
 #[test]
 fn robots_outside_of_the_world_are_told_unless_a_wire_has_a_fault() {
     let world = ("World", "saoms.World", &[][..], false);
@@ -171,7 +171,7 @@ fn robots_outside_of_the_world_are_told_unless_a_wire_has_a_fault() {
         let found = Fleet::of_text(text.replace(right, wrong)).diagnostics();
         assert!(found.lines().count() == 1 && found.contains(code), "{wrong}: {found}");
     }
-    // What has nothing to do with wires is told together with them.
+    // Findings that do not concern wires are reported together with them.
     let far: &[(&str, &str)] = &[("chargeX", "40"), ("battery", "10")];
     let text = fleet(&[
         ("World", "saoms.World", &[], false),
@@ -295,7 +295,7 @@ fn events_of_unknown_robots_are_found() {
 fn only_what_no_full_battery_can_do_is_out_of_reach() {
     let row = ".".repeat(60);
     let map = format!("{row}\n{row}\n{row}");
-    // Robot 1 is at (0,1), and a full battery lasts for 50 executions, of which it keeps some back.
+    // Robot 1 is at (0,1), and a full battery lasts for 50 executions; it keeps some in reserve.
     assert!(with_scenario(&map, "at 1s luggage (0,0) to (20,1)").is_empty());
     let far = with_scenario(&map, "at 1s luggage (21,1) to (0,0)");
     assert_eq!(far.len(), 1);

@@ -94,11 +94,11 @@ fn what_runs_of_a_folder_is_what_it_calls_deployable() {
     let folder = contribution(&["a:other", "a:fleet"]);
     let (code, _, stderr) = saoms(folder.path(), &["check", "."], "");
     assert!(code == 2 && stderr.contains("S2002"), "{stderr}");
-    // One with a value that nobody gives cannot run.
+    // One with a missing value cannot run.
     let folder = contribution(&["a:hall"]);
     let (code, _, stderr) = saoms(folder.path(), &["check", "."], "");
     assert!(code == 2 && stderr.contains("S2025"), "{stderr}");
-    // One that is not there is told beside all else.
+    // A missing one is reported beside all else.
     let folder = contribution(&["a:flet"]);
     let (code, stdout, stderr) = saoms(folder.path(), &["check", "."], "");
     assert!(code == 2 && stderr.contains("error[S2051]") && stdout.starts_with("3 fleets"), "{stderr}");
@@ -158,7 +158,7 @@ fn what_fleets_share_is_told_once() {
     assert_eq!(told.matches("S4003").count(), 1, "{told}");
 }
 
-/// What is exported and does not run is made for others, also where it is alone.
+/// An exported composite that does not run is for others, also where it is alone.
 #[test]
 fn the_only_composite_of_a_library_may_lack_what_others_give_it() {
     let folder = tempfile::tempdir().unwrap();

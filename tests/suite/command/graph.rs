@@ -121,7 +121,7 @@ fn topics_of_loops_are_drawn_as_the_wiring_report_has_them() {
     assert!(drawn.contains(&"OTHER") && drawn.contains(&"CSMSTOPIC"), "{drawn:?}");
 }
 
-/// What is inside is drawn as often as it is there in one of the composites around it, and what it promotes is joined
+/// An inner composite is drawn as often as it occurs in one of the composites around it, and its promotions are joined
 /// to its component.
 #[test]
 fn what_is_in_replicas_is_counted_in_each_of_them() {

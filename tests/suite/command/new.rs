@@ -1,4 +1,4 @@
-//! What `saoms new` makes builds, passes its own tests, and runs.
+//! The crates of `saoms new` build, pass their own tests, and run.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::{env, fs};
 
 use crate::support::{root, saoms_in, text};
 
-/// Where this test was built: what the made crates depend on is built there already.
+/// The target folder of this test: the dependencies of the made crates are built there already.
 fn target() -> PathBuf {
     Path::new(env!("CARGO_BIN_EXE_saoms")).parent().unwrap().parent().unwrap().to_owned()
 }

@@ -19,7 +19,7 @@ fn folder(test: &str) -> PathBuf {
     folder
 }
 
-/// What is told when it cannot be answered.
+/// The message when there is no answer.
 #[track_caller]
 fn refused(folder: &Path, arguments: &[&str]) -> String {
     let output = saoms_in(folder, &[&["why"], arguments].concat());

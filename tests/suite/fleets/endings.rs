@@ -1,5 +1,5 @@
 //! Fleets that cannot bring all luggage, because robots break, sleep, get in each other's way or live on too small
-//! batteries: each run ends by itself, and what nobody brings is reported.
+//! batteries: each run ends by itself, and luggage that is not brought is reported.
 
 use std::fmt::Write;
 use std::time::Duration;

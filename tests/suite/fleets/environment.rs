@@ -1,4 +1,4 @@
-//! What reaches the fleet from outside: scenarios in files, events that anybody publishes, breakdowns.
+//! Events from outside the fleet: scenarios in files, events of any publisher, breakdowns.
 
 use std::fs;
 use std::time::Duration;

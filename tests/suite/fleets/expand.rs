@@ -1,4 +1,4 @@
-//! What `saoms expand` leaves of a fleet runs as the fleet did.
+//! The output of `saoms expand` runs as the fleet did.
 
 use std::fs;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use saoms_testkit::Fleet;
 
 use crate::support::{composites, root, saoms, saoms_in};
 
-/// Everything that a run does, as far as it is told: the digest of all effects, and the counts of every component.
+/// Everything that is reported of a run: the digest of all effects, and the counts of every component.
 fn facts(report: &RunReport) -> (Option<String>, Vec<(String, u64)>) {
     let components = report.components.iter().map(|one| (one.name.clone(), one.executions));
     (report.trace_hash.clone(), components.collect())

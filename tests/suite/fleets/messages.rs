@@ -1,5 +1,4 @@
-//! What nobody can mean on the topics that the shipped components read: reported with its sender, said once, and
-//! ignored.
+//! Impossible messages on the topics that the shipped components read: reported with their sender, once, and ignored.
 
 use std::time::Duration;
 

@@ -84,7 +84,7 @@ fn a_robot_that_pauses_at_any_moment_loses_nothing() {
             let context = format!("{robots} robots, paused from execution {from} for {length}:\n{log}");
             assert_eq!(run.sections["collisions"], json!({"vertex": 0, "swap": 0}), "{context}");
             let count = |name: &str| run.sections["luggage"][name].as_u64().unwrap();
-            // While the only robot is away nobody is left: that is told.
+            // While the only robot is away no robot is left, which is reported.
             let given_up = log.lines().filter(|line| line.contains("gives up luggage")).count() as u64;
             assert_eq!((count("delivered") + given_up, count("open")), (4, given_up), "{context}");
             assert!(robots == 1 || given_up == 0, "{context}");

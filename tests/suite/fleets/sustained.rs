@@ -39,14 +39,14 @@ impl Setting {
         Fleet::of_text(text + "</composite>")
     }
 
-    /// What the checker says about it.
+    /// The findings of the checker.
     fn severity(&self, every: u32) -> String {
         let found = self.fleet(every, "").diagnostics();
         assert!(found.lines().count() <= 1 && (found.is_empty() || found.contains(" S5006 ")), "{found}");
         found.split(' ').next().unwrap_or("").to_owned()
     }
 
-    /// How many pieces wait after so many seconds.
+    /// The number of pieces that wait after so many seconds.
     fn backlog(&self, every: u32, seconds: u64) -> u64 {
         // The checker says nothing about work that ends some time.
         let report = self.fleet(every, "1000000 times").run(1, Duration::from_secs(seconds));

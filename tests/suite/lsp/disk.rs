@@ -19,7 +19,7 @@ fn what_is_deleted_and_made_again_is_noticed() {
     editor.wait_for("inner.composite", |all| all.len() == 1);
     fs::remove_file(editor.folder.join("inner.composite")).unwrap();
     watched(&mut editor, "inner.composite", 3);
-    // The include leads nowhere.
+    // The include is unresolved.
     editor.wait_for("outer.composite", |all| all.len() == 1 && all[0].ends_with(" 1:17"));
     fs::write(editor.folder.join("inner.composite"), INNER).unwrap();
     watched(&mut editor, "inner.composite", 1);

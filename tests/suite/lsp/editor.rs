@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use crate::support::{command, empty_folder};
 
-/// How long an answer can take before the test is given up: a server that hangs must not hold up the others.
+/// The longest wait for an answer before the test is given up: a server that hangs must not delay other tests.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 pub(crate) struct Editor {
@@ -152,7 +152,7 @@ impl Editor {
 
 impl Drop for Editor {
     fn drop(&mut self) {
-        // Where a test failed, nobody ended the session.
+        // A failed test leaves the session open.
         drop(self.input.take());
         let _ = self.server.kill();
         let _ = self.server.wait();

@@ -35,7 +35,7 @@ fn diagnostics_follow_what_is_typed_in_every_file() {
     let start = json!({ "line": 1, "character": column - 1 });
     editor.change("inner.composite", 2, json!([{ "range": { "start": start, "end": end }, "text": "" }]));
     editor.wait_for("inner.composite", <[String]>::is_empty);
-    // Text that is no XML is told, too, and what can be written there.
+    // Text that is no XML is reported, too, with what can be written there.
     editor.change(
         "outer.composite",
         2,
@@ -110,7 +110,7 @@ fn plugins_complete_and_explain_as_what_is_linked_in() {
     let (class, name) = (at(2, 35), at(5, 18));
     let hover = editor.ask("textDocument/hover", class);
     let said = hover["result"]["contents"]["value"].as_str().unwrap();
-    assert!(said.contains("Logs a greeting") && said.contains("libhello.so"), "{said}");
+    assert!(said.contains("logs a greeting") && said.contains("libhello.so"), "{said}");
     let proposed = editor.ask("textDocument/completion", name);
     let items = proposed["result"]["items"].as_array().unwrap();
     let own = items.iter().find(|item| item["label"] == "name").unwrap();

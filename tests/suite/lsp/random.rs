@@ -59,10 +59,10 @@ fn place(text: &str, at: usize) -> Value {
     json!({ "line": text[..at].matches('\n').count(), "character": text[start..at].encode_utf16().count() })
 }
 
-/// What is wrong: code, severity, both ends, and what is said.
+/// The diagnostics: code, severity, both ends, and message.
 type Found = Vec<(String, String, [usize; 4], String)>;
 
-/// What `saoms check` finds in a file of a folder.
+/// The diagnostics of `saoms check` for a file of a folder.
 fn checked(folder: &Path, file: &str) -> Found {
     let output = crate::support::saoms_in(folder, &["check", "--format", "json", "."]);
     let all: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -81,7 +81,7 @@ fn checked(folder: &Path, file: &str) -> Found {
     found
 }
 
-/// What the server shows, in the terms of `saoms check`: lines and characters from 1.
+/// The diagnostics of the server, in the terms of `saoms check`: lines and characters from 1.
 fn shown(diagnostics: &Value, text: &str) -> Found {
     let lines: Vec<&str> = text.split('\n').collect();
     let end = |place: &Value| {
@@ -133,7 +133,7 @@ fn session(file: &str, others: &[&str], keystrokes: usize, seed: u64) {
                 text.replace_range(start..end, &new);
             }
         }
-        // A blank that says nothing makes sure that there is a text that nobody has seen yet.
+        // A blank without meaning makes sure that the text is a new one.
         version += 1;
         let end = place(&text, text.len());
         editor.change(name, version, json!([{ "range": { "start": end, "end": end }, "text": " " }]));

@@ -48,7 +48,7 @@ fn saoms(arguments: &[&str]) -> Output {
     support::saoms(&[arguments, &["--plugin", library().to_str().unwrap()]].concat())
 }
 
-/// What a run of the fleet came to.
+/// The result of a run of the fleet.
 fn run(composite: &Path, seed: u64) -> Value {
     let seed = seed.to_string();
     let path = composite.to_str().unwrap();

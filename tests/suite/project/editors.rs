@@ -1,4 +1,4 @@
-//! What is shipped for editors: the files are well-formed, and the commands that they start exist.
+//! Files for editors: they are well-formed, and the commands that they start exist.
 
 use std::fs;
 use std::path::PathBuf;

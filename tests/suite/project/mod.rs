@@ -1,4 +1,4 @@
-//! What the repository says of itself: its documents, its editors, the order of its modules.
+//! The repository: its documents, its files for editors, the order of its modules.
 
 mod architecture;
 mod editors;

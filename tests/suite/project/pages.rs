@@ -1,5 +1,5 @@
-//! What the pages in `docs/` show is so: their composites and scenarios have no fault of their own, their commands have
-//! the options that they name, and what is printed there is printed.
+//! The pages in `docs/` are true: their composites and scenarios have no fault of their own, their commands have the
+//! options that they name, and what is printed there is printed.
 
 use std::fs;
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ fn blocks<'p>(page: &'p str, language: &str) -> Vec<&'p str> {
     page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
 }
 
-/// What is wrong with a composite, as the command says it, and the codes.
+/// The diagnostics of a composite as the command shows them, and their codes.
 fn faults(text: &str) -> (String, Vec<&'static str>) {
     let project = Project::new().in_memory().text("page.composite", text);
     let compilation = project.compile(&Registry::linked().unwrap());
@@ -62,13 +62,13 @@ fn whole(part: &str) -> String {
     format!("<composite {namespaces} targetNamespace=\"urn:page\" name=\"page\">\n{part}</composite>")
 }
 
-/// Without the lines that stand for what a page leaves out.
+/// Without the lines that mark omissions of a page.
 fn without_gaps(text: &str) -> String {
     text.lines().filter(|line| line.trim() != "...").map(|line| format!("{line}\n")).collect()
 }
 
-/// What parts of composites lack, because a page does not show all of one: files, implementations, components, classes
-/// of plugins, properties.
+/// The missing context of parts of composites, because a page does not show all of one: files, implementations,
+/// components, classes of plugins, properties.
 const LACKING: [&str; 12] =
     ["S0003", "S1010", "S2011", "S2024", "S2026", "S2030", "S2031", "S2045", "S2049", "S3001", "S3006", "S3015"];
 

@@ -3,7 +3,7 @@
 use super::fleet::fleet;
 use super::run::Run;
 
-/// What the master of these classic robots does when, in a minute.
+/// The acts of the master of these classic robots in a minute, with times.
 fn master(properties: &str, scenario: &str, robots: &[&str]) -> String {
     run(properties, scenario, robots).log("MRMS").join("\n")
 }
@@ -57,7 +57,7 @@ fn only_as_many_are_sent_away_as_were_woken() {
         master("", "at 3s landing 6", &["1", "2", "3 asleep=true"]),
         "3.500 s awakes robot 3\n3.500 s finds 2 robots too few asleep\n28.500 s sends under charge robot 3"
     );
-    // Where nobody sleeps, nobody is called, least of all a robot 0.
+    // Where no robot sleeps, none is called, least of all a robot 0.
     let run = run("", "at 3s landing 4", &["1", "2"]);
     assert_eq!(run.log("MRMS"), ["3.500 s finds 2 robots too few asleep"]);
 }

@@ -1,4 +1,4 @@
-//! What led to what robots did goes back to what began it, in another component.
+//! Chains of causes lead from acts of robots back to their origin in another component.
 
 use saoms_testkit::Fleet;
 
@@ -69,7 +69,8 @@ fn luggage_for_which_nobody_is_awake_awakes_a_robot() {
 
 #[test]
 fn luggage_that_no_battery_lasts_for_is_given_up_in_the_end() {
-    // A move takes two executions: too much for the way to the far corner and back, of which the checker can only warn.
+    // A move takes two executions: too much for the way to the far corner and back, which is only a warning of the
+    // checker.
     let component = |id: &str, class: &str, more: &str| {
         format!(
             r#"<component name="{id}"><implementation.java class="{class}"/><property name="ID">{id}</property>

@@ -13,7 +13,7 @@ use crate::support::root;
 /// A run that is over.
 pub(crate) struct Run {
     pub(crate) report: RunReport,
-    /// What was said, in order.
+    /// The messages, in order.
     lines: Vec<Line>,
 }
 
@@ -76,7 +76,7 @@ impl Run {
         self.lines.iter().filter(|line| !line.log).map(|line| line.text.as_str()).collect()
     }
 
-    /// What a component wrote to its log, with the time.
+    /// The log of a component, with times.
     pub(crate) fn log(&self, component: &str) -> Vec<String> {
         let of = |line: &&Line| line.log && &*line.component == component;
         self.lines.iter().filter(of).map(|line| format!("{} {}", line.time, line.text)).collect()

@@ -2,7 +2,7 @@
 
 use super::run::Run;
 
-/// What both robots do in this scenario and, after a landing, in the next one.
+/// The acts of both robots in this scenario and, after a landing, in the next one.
 pub(crate) const FIRST: &str = "\
 8: claims (1,5) to (10,5), 100.0
 14: arrives, 92.0

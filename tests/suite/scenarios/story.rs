@@ -1,4 +1,4 @@
-//! What a robot did, from what it said: a line for each execution in which more happened than a step on its way.
+//! The acts of a robot from its messages: a line for each execution with more than a step on its way.
 
 use std::fmt::Write;
 
@@ -26,7 +26,7 @@ impl Run {
 const GOES_HOME: &str = "goes under charge";
 const CHARGED: &str = "is charged";
 
-/// What a robot says in each execution for as long as it lasts: the first time matters.
+/// States that a robot reports in each execution: only the first report matters.
 const REPEATED: [&str; 2] = [GOES_HOME, CHARGED];
 
 /// The fact in a line of the console; `None` for those that say how things are and for steps.
@@ -77,7 +77,7 @@ impl<'a> Execution<'a> {
         shown.or_else(logged)
     }
 
-    /// Where the robot says that it is and that it goes.
+    /// The position and the destination that the robot reports.
     pub(crate) fn step(&self) -> Option<(&'a str, &'a str)> {
         let line = self.said.iter().find_map(|line| line.strip_prefix("says: My position now is: "))?;
         line.split_once(" and my next position will be: ")

@@ -3,7 +3,7 @@
 
 use super::run::Run;
 
-/// Runs a composite until all is delivered and checks that nobody collided or was left without battery.
+/// Runs a composite until all is delivered and checks that no robot collided or was left without battery.
 fn run(composite: &str, pieces: i64) -> Run {
     let run = Run::of(composite, 3600);
     let count = |section, name| run.count(section, name);

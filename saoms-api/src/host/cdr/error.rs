@@ -5,7 +5,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecodeError(Box<Fault>);
 
-/// Boxed, because every field that is read returns a result, and large ones are slow.
+/// The content of an error, boxed because every field that is read returns a result, and large results are slow.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Fault {
     what: Cow<'static, str>,

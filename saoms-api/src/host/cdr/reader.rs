@@ -1,6 +1,6 @@
 use super::{DecodeError, HEADER};
 
-/// Reads CDR that may come from anybody.
+/// Reader of CDR from any source.
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
     bytes: &'a [u8],

@@ -1,6 +1,6 @@
 use super::HEADER;
 
-/// Writes CDR.
+/// Writer of CDR.
 #[derive(Clone, Debug)]
 pub struct Writer {
     bytes: Vec<u8>,

@@ -169,8 +169,8 @@ impl<'a> Rule<'a> {
         }
     }
 
-    /// Reads a value that has an order, and compares it with the bounds: but for those that `is_far` knows to be beyond
-    /// it without reading them, of which it is told whether they are the least value.
+    /// Reads a value that has an order, and compares it with the bounds. Values that `is_far` knows to be beyond the
+    /// bounds are not read; it is called with true for the least value.
     fn within<T: PartialOrd>(
         &self,
         text: &str,
@@ -268,7 +268,7 @@ pub fn parse_scalar(kind: PropertyKind, text: &str) -> Option<Scalar> {
     }
 }
 
-/// A text without the blanks around it, of which most have none: a look at both ends is enough then.
+/// A text without the blanks around it. Most texts have none: then a look at both ends is enough.
 pub(crate) fn trim(text: &str) -> &str {
     match text.as_bytes() {
         [first, .., last] if first.is_ascii_graphic() && last.is_ascii_graphic() => text,

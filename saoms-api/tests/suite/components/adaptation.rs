@@ -1,4 +1,4 @@
-//! Loops over a knowledge: what they reach, what they may change, what is told of it.
+//! Loops over a knowledge: what they reach, what they may change, what is recorded.
 
 use saoms_api::host::{KnowledgeClass, LoopRegistration, Registration};
 use saoms_api::{

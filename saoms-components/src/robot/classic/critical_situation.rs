@@ -38,7 +38,7 @@ pub struct ClassicCriticalSituation {
 /// Critical situations that a robot can react to.
 #[derive(Clone, Copy, Debug)]
 pub enum ClassicCriticalSymptom {
-    /// The robot itself cannot go on.
+    /// This robot cannot continue.
     Broken(CriticalKind),
     /// Another robot, or this one, waits for a healer.
     NeedsHelp(u32),

@@ -159,7 +159,7 @@ impl RobotKnowledge {
         self.energy.returns = 0;
     }
 
-    /// True if a charged robot can go on: the battery lasts for the rest of its job, or is full.
+    /// True if a charged robot can continue: the battery lasts for the rest of its job, or is full.
     pub(super) fn may_leave(&mut self) -> bool {
         let Some(job) = self.job.filter(|_| self.variables.busy) else { return true };
         let needs = self.executions_for(&job, self.variables.has_luggage);
@@ -238,7 +238,7 @@ impl RobotKnowledge {
         self.battery.is_full() || self.executions_left() >= needs
     }
 
-    /// Number of executions from the block where the robot goes on to another charger.
+    /// Number of executions from the robot's next block to another charger.
     pub(super) fn home_to(&mut self, charger: Block) -> u32 {
         self.energy.pace.job(self.routes.between(self.next, charger), 0)
     }

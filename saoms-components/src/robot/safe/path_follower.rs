@@ -36,7 +36,7 @@ pub enum SafePathSymptom {
     },
     /// The robot is on the way.
     OnTheWay {
-        /// Block from which it goes on.
+        /// Block from which it continues.
         at: Block,
         /// Goal of the robot.
         goal: Block,

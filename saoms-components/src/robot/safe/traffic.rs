@@ -40,7 +40,7 @@ pub(crate) struct Traffic {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Claim {
     pub(super) robot: u32,
-    /// Block from which it goes on.
+    /// Block from which it continues.
     pub(super) at: Block,
     pub(super) goal: Option<Block>,
     /// True if the robot goes along y first when both directions are equally short.
@@ -97,7 +97,7 @@ impl Traffic {
         self.near.iter().find(|peer| peer.holds(block) || peer.wanted == block).map(|peer| peer.robot)
     }
 
-    /// Number of executions for which the robot wanted to go on and could not.
+    /// Number of executions for which the robot wanted to move and could not.
     pub(super) fn waited(&self) -> u32 {
         self.waited
     }

@@ -41,7 +41,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
-    // The classic rules go on with an empty battery; robots of other classes and other loops are unknown.
+    // Classic robots move with an empty battery; robots of other classes and other loops are unknown.
     let is_known = |robot: &FleetRobot| {
         let loops = &fleet.components()[robot.index].class.loops;
         robot.properties.policy == Policy::Safe && loops.iter().all(|name| name.starts_with("saoms."))

@@ -81,7 +81,7 @@ impl Engine {
         self.slots[number as usize].body = Some(body);
     }
 
-    /// Gives back the body of a component that goes on as before.
+    /// Gives back the body of a component that continues as before.
     pub(super) fn return_unchanged(&mut self, number: u32, body: Box<Body>, now: u64) {
         self.slots[number as usize].held = false;
         self.put_back(number, body);

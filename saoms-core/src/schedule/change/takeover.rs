@@ -22,7 +22,7 @@ pub enum Takeover {
     Awaited,
 }
 
-/// Reasons of a takeover that was refused. The earlier instance goes on.
+/// Reasons of a takeover that was refused. The earlier instance continues.
 #[derive(Debug)]
 pub(crate) enum Refusal {
     /// It may be possible later.

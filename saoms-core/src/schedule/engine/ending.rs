@@ -15,7 +15,7 @@ pub(crate) enum EndCause {
     Elapsed,
     /// A stop was requested.
     Interrupted,
-    /// No component is left that could go on.
+    /// No component is left that can run.
     Lost,
     /// No component is scheduled, and in virtual time none ever will be.
     Idle,

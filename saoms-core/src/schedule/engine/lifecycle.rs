@@ -47,7 +47,7 @@ impl Engine {
             }
             (SlotState::Starting, PendingRequest::None) => slot.until = until,
             (SlotState::Active, PendingRequest::None) => {
-                // A running component goes on; only its end may change.
+                // A running component continues; only its end may change.
                 slot.until = until;
                 if slot.entry != NEVER {
                     let when = slot.due.min(until).max(now);

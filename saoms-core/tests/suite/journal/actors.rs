@@ -110,7 +110,7 @@ struct Mind {
     piece: Option<(u32, saoms_api::Cause)>,
     #[entry]
     charge: i64,
-    /// The piece that others were told of.
+    /// The piece that was announced to others.
     #[entry(effector)]
     told: u32,
     #[extras]

@@ -1,4 +1,4 @@
-//! Slips that make a text no XML are told together, and nothing false behind them.
+//! Slips that make a text no XML are reported together, and nothing false behind them.
 
 use super::*;
 
@@ -83,7 +83,7 @@ fn slips_are_told_together_as_each_is_alone() {
     let together = |places: &[usize]| {
         let mut expected: Vec<String> = Vec::new();
         for one in places.iter().flat_map(|place| &alone[*place]) {
-            // A prefix is told once.
+            // A prefix is reported once.
             let is_prefix = |one: &str| one.contains("[foo]");
             if !(is_prefix(one) && expected.iter().any(|other| is_prefix(other))) {
                 expected.push(one.clone());

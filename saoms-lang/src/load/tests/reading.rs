@@ -94,7 +94,7 @@ fn a_file_that_is_not_there_has_neighbours() {
 
 #[test]
 fn a_file_that_may_not_be_read_says_so() {
-    // Root may read everything; a file whose name is too long can be read by nobody.
+    // Root may read everything; a file whose name is too long cannot be read at all.
     let said = read_shown(Path::new(&"x".repeat(5000)), MAX_SIZE);
     assert!(said.contains("S0003 the file cannot be read: "), "{said}");
 }

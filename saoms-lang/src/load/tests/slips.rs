@@ -1,4 +1,4 @@
-//! One slip of the pen is told once, and none is passed over.
+//! One slip of the pen is reported once, and none is skipped.
 
 use super::{JAVA, OASIS, OSOA, faults, faults_1_0, faults_1_1};
 

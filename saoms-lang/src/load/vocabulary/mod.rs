@@ -64,7 +64,7 @@ pub struct Kind {
     pub doc: &'static str,
     /// Its attributes.
     pub attributes: &'static [Known],
-    /// The SCA elements that it can hold; a name that ends with a dot stands for all that start so.
+    /// The SCA elements that it can hold; a name that ends with a dot means all that start so.
     pub children: &'static [&'static str],
 }
 

@@ -257,7 +257,7 @@ impl<'a> Nest<'_, 'a> {
         let end = self.lexer.tokens.len() as u32 - 1;
         if let Some(&top) = self.open.last() {
             let node = *self.node(top);
-            // A tag of which nobody knows the end may have been meant as `/>`.
+            // A tag with an unknown end may have been meant as `/>`.
             let is_doubtful = self.token(node.token).flags & DAMAGED_TAG != 0 && top + 1 == self.count;
             if !is_doubtful && !self.lexer.is_cut_short && !self.has_second_root {
                 let Named { name, at, .. } = self.named(&node);

@@ -165,7 +165,7 @@ impl Tag<'_, '_> {
     pub(super) fn resume(&mut self, from: u32) {
         let input = self.input;
         self.flags |= DAMAGED_TAG;
-        // Behind a value that goes on beyond it, the `>` is none of this tag.
+        // A `>` inside a value does not end the tag.
         let bound = self.close.filter(|close| *close >= from).unwrap_or(self.limit).max(from);
         let mut at = from;
         while at < bound {

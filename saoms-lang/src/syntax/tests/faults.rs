@@ -1,4 +1,4 @@
-//! What is not well-formed, and where.
+//! Faults of well-formedness, and their places.
 
 use super::{fault, tree};
 

@@ -1,4 +1,4 @@
-//! What a composite without faults comes to.
+//! Assemblies of composites without faults.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,4 @@
-//! What files beside implementations say of components.
+//! Component types: files beside implementations that describe components.
 
 use std::fs;
 
@@ -15,7 +15,7 @@ const DESCRIPTION: &str = "<property name='speed' type='xsd:int'>5</property>
 <reference name='clock'/>
 <reference name='lamps' multiplicity='0..n'/>";
 
-/// What is wrong with a composite that has files beside it, where classes are taken as given or not.
+/// The diagnostics of a composite that has files beside it, where classes are taken as given or not.
 pub(crate) fn found(inside: &str, types: &[(&str, &str)], assume_classes: bool) -> String {
     let folder = tempfile::tempdir().unwrap();
     for (name, inside) in types {
@@ -36,7 +36,7 @@ fn script(inside: &str) -> String {
     found(&inside, &[("run.componentType", DESCRIPTION)], true)
 }
 
-/// The same of a class that nobody here knows.
+/// The same for an unknown class.
 fn class(inside: &str) -> String {
     let inside = format!("<component name='S'><implementation.java class='a.Run'/>\n{inside}</component>");
     found(&inside, &[("Run.componentType", DESCRIPTION)], true)
@@ -120,7 +120,7 @@ fn what_a_file_cannot_say_is_told() {
     "#]].assert_eq(&found(inside, &[("run.componentType", described)], true));
 }
 
-/// Its file is added to what it says itself, which nobody here can see.
+/// Its file adds to its own declaration, which is not visible here.
 #[test]
 fn a_class_may_have_more_than_its_file_says() {
     let wrong = format!("{RIGHT}\n<property name='sped'>1</property>\n<service name='another'/>");

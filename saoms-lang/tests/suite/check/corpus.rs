@@ -1,4 +1,4 @@
-//! What the checker says of real files when classes are taken as given.
+//! Diagnostics of the checker for real files when classes are taken as given.
 
 use std::fs;
 use std::path::Path;
@@ -44,24 +44,24 @@ fn rows(folder: &Path) -> Vec<Row> {
     table.lines().skip(1).map(row).collect()
 }
 
-/// Files that nobody calls invalid, and that are taken elsewhere, with the error that they have all the same, and
+/// Files that are not called invalid, and that other runtimes accept, with the error that they have all the same, and
 /// where. Each of them breaks a rule.
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     // These two include each other, so that neither has an end (ASM60031: what is left after inclusion has to be
-    // valid). They are there to show that a runtime does not hang; what it makes of them nobody asserts.
+    // valid). They are there to show that a runtime does not hang; its result is not asserted.
     ("itest/recursive/src/main/resources/Demo1Composite.composite", "S2032", "sample:Demo1Composite"),
     ("itest/recursive/src/main/resources/Demo2Composite.composite", "S2032", "sample:Demo2Composite"),
     // An attribute is misspelt, so that the intent that it names holds nowhere. The schema forbids it (ASM13001); the
     // test that reads the file is about other parts of it.
     ("org/apache/tuscany/sca/policy/xml/Calculator.composite", "S1007", "requiers"),
-    // A component gives one property two values in two elements, of which nothing says which counts (ASM50031): what
-    // this file is there to show. The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
+    // A component gives one property two values in two elements, and no rule says which counts (ASM50031): what this
+    // file is there to show. The same project calls it invalid elsewhere (`DuplicateComponentPropertyName`).
     ("vtest/assembly/component/src/main/resources/component_duplicate_property.composite", "S3005", "strProperty"),
     // A component has one reference twice (ASM50007): what this file is there to show.
     ("vtest/assembly/component/src/main/resources/referencename_2.composite", "S2004", "b"),
 ];
 
-/// Files of which less is told than could be: the code that is not told, and the reason.
+/// Files with a fault that is not reported: the code that is missing, and the reason.
 const NOT_JUDGED: &[(&str, &str, &str)] = &[(
     "vtest/assembly/component/src/main/resources/reference_multiplicity_ntargets.composite",
     "S2018",
@@ -79,7 +79,7 @@ fn what_foreign_implementations_need_is_not_judged() {
     }
 }
 
-/// How many files there are of a kind, and how many of them have errors.
+/// The number of files of a kind, and of those with errors.
 #[derive(Default)]
 struct Tally {
     files: usize,
@@ -92,7 +92,7 @@ impl Tally {
         self.faulty += usize::from(is_faulty);
     }
 
-    /// Whether at most this many of a hundred have errors.
+    /// True if at most this many of a hundred have errors.
     fn holds(&self, most: usize) -> bool {
         self.faulty * 100 <= self.files * most
     }
@@ -133,8 +133,7 @@ fn files_that_nobody_calls_invalid_have_no_errors() {
     assert!(open.is_empty(), "no exceptions any more: {open:?}");
 }
 
-/// What the messages of Tuscany come to here: code, and the text that it points at. `docs/rules.md` has the same by
-/// code.
+/// The messages of Tuscany as diagnostics: code, and the text that it points at. `docs/rules.md` has the same by code.
 pub(crate) const MESSAGES: &[(&str, &str, &str)] = &[
     ("AttributeCompositeMissing", "S1008", "deployable"),
     ("AttributeNameSpaceMissing", "S1004", "export"),
@@ -157,7 +156,7 @@ pub(crate) const MESSAGES: &[(&str, &str, &str)] = &[
     ("UnresolvedComponentImplementation", "S2031", "sca:dummyImplementation.composite"),
 ];
 
-/// Messages of which the collection has no file, and the code that says the same.
+/// Messages without a file in the collection, and the code that says the same.
 pub(crate) const MORE_MESSAGES: &[(&str, &str)] = &[
     ("AttributeURIMissing", "S1008"),
     ("BindingNotFound", "S2013"),
@@ -368,7 +367,7 @@ fn things_at(place: Location, sources: &Sources) -> Option<Vec<String>> {
     is_part(place, element.text_span()?, text).then_some(things)
 }
 
-/// Whether a place is a part of a value, or all of it, that begins and ends where a word does.
+/// True if a place is a part of a value, or all of it, that begins and ends where a word does.
 fn is_part(place: Location, value: Span, text: &str) -> bool {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let (start, end) = (place.span.start as usize, place.span.end as usize);

@@ -25,7 +25,7 @@ pub(crate) fn add(registry: &mut Registry) {
     loops.into_iter().for_each(|one| registry.add_loop(one).unwrap());
 }
 
-/// What a cart knows.
+/// The knowledge of a cart.
 #[derive(Default, Knowledge)]
 #[knowledge(name = "example.Cart")]
 struct CartKnowledge {

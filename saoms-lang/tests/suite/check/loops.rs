@@ -1,4 +1,4 @@
-//! What a composite says about the loops of a component.
+//! Declarations of a composite about the loops of a component.
 
 use std::fmt::Write as _;
 

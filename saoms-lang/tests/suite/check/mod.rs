@@ -1,4 +1,4 @@
-//! What the checker finds in composites, and what it makes of those without faults.
+//! Diagnostics of the checker, and assemblies of composites without faults.
 
 mod assemblies;
 mod classes;

@@ -1,4 +1,4 @@
-//! Composites that nobody meant: whatever they are, the checker answers, and points into them.
+//! Random composites: whatever they are, the checker answers, and points into them.
 
 use std::fs;
 use std::path::Path;
@@ -33,7 +33,7 @@ const EVERYTHING: &str = r#"<property name="pace">250us</property>
 <component name="G"><implementation.java class="example.Gps"/></component>
 <wire source="N/task" target="R/TaskInterface/b"/><wire source="R/gps" target="G" replace="true"/>"#;
 
-/// What words of one text are replaced with: words that mean something elsewhere, and some that break forms.
+/// The replacements of words of a text: words that mean something elsewhere, and some that break forms.
 const WORDS: &[&str] = &[
     "", "$", "$pace", "$where/at/x", "/", "R/move", "G/position/b", "::", ",", "POSTOPIC", "-1", "0", "1e99", "é",
     "&lt;", "true", "test", "R", "N", "G/other", "0..n", "1..1", "example.Gps", "example.Fragile", "localhost:0",

@@ -4,7 +4,7 @@ use expect_test::expect;
 
 use crate::check::support::{nested, part, shown};
 
-/// What is found in a composite of SCA 1.1, whose classes are given.
+/// The diagnostics of a composite of SCA 1.1, whose classes are given.
 fn found(inside: &str) -> String {
     given(&part("fleet", "", inside))
 }

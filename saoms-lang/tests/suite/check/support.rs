@@ -64,7 +64,7 @@ pub(crate) fn part(name: &str, attributes: &str, inside: &str) -> String {
     )
 }
 
-/// What the first of these texts comes to, after what is wrong with it: components, values as text, targets.
+/// The assembly of the first of these texts, after its diagnostics: components, values as text, targets.
 pub(crate) fn outcome(texts: &[&str], settings: &[&str]) -> String {
     let (assembly, diagnostics, sources) = nested(texts, settings, false);
     let mut out = told(&diagnostics, &sources);
@@ -86,12 +86,12 @@ pub(crate) fn outcome(texts: &[&str], settings: &[&str]) -> String {
     out
 }
 
-/// What is wrong with a composite, with `inside` in one of SCA 1.1.
+/// The diagnostics of a composite, with `inside` in one of SCA 1.1.
 pub(crate) fn faults(inside: &str) -> String {
     faults_of(&[&fleet(inside)], &[])
 }
 
-/// What is wrong with texts and settings.
+/// The diagnostics of texts and settings.
 pub(crate) fn faults_of(texts: &[&str], settings: &[&str]) -> String {
     let (assembly, diagnostics, sources) = run(texts, settings);
     let has_errors = diagnostics.iter().any(|one| one.severity.name() == "error");

@@ -5,7 +5,7 @@ use expect_test::expect;
 use crate::check::component_types::found;
 use crate::check::support::faults;
 
-/// What is wrong with a component of a class that nobody here knows.
+/// The diagnostics of a component of an unknown class.
 fn given(inside: &str) -> String {
     let inside = format!("<component name='A'><implementation.java class='x.A'/>\n{inside}</component>");
     found(&inside, &[], true)

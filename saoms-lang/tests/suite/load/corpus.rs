@@ -1,4 +1,4 @@
-//! What the loader says of real files, and that it says something sensible of what is left of them.
+//! Diagnostics of the loader for real files, and for damaged ones.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,7 +14,7 @@ use crate::load::files::{self, Sample};
 use crate::load::oracle::judge;
 use crate::load::places::checked;
 
-/// What the files of this repository get, apart from the tenth of warnings that a composite has no target namespace.
+/// The diagnostics of the files of this repository, apart from warnings that a composite has no target namespace.
 #[test]
 fn the_shipped_files_get_what_they_deserve() {
     let expected = BTreeMap::from([
@@ -34,7 +34,7 @@ fn the_shipped_files_get_what_they_deserve() {
     }
 }
 
-/// Those that the collection calls valid, or of which it says nothing but that the schema is content.
+/// Files that the collection calls valid, or that only the schema accepts.
 #[test]
 fn files_that_are_valid_have_no_errors() {
     let Some(folder) = collection() else { return };
@@ -54,7 +54,7 @@ fn files_that_are_valid_have_no_errors() {
     assert!(seen > 500, "{seen} rows were looked at");
 }
 
-/// What violates the schema in one of the ways that the loader knows is found, at the very element.
+/// Violations of the schema that the loader knows are found, at the very element.
 #[test]
 fn files_that_are_invalid_by_the_vocabulary_have_an_error_there() {
     let Some(folder) = collection() else { return };

@@ -17,7 +17,7 @@ pub(crate) fn definitions(namespace: &str, inside: &str) -> String {
     )
 }
 
-/// What is said of a file by itself.
+/// The diagnostics of a file by itself.
 pub(crate) fn alone(name: &str, text: String) -> String {
     let folder = written(&[(name, text)]);
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());

@@ -1,4 +1,4 @@
-//! What contributions say that they give and take.
+//! Exports and imports of contributions.
 
 use expect_test::expect;
 

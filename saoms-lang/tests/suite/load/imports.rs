@@ -1,4 +1,4 @@
-//! What one contribution imports from another.
+//! Imports of one contribution from another.
 
 use expect_test::expect;
 

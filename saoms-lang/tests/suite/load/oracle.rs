@@ -101,12 +101,12 @@ fn theirs(text: &str) -> Option<String> {
     Some(out)
 }
 
-/// Whether XML forbids what was found, and roxmltree is known to let it pass.
+/// True if XML forbids the text, and roxmltree is known to accept it.
 fn is_known_to_pass(fault: &Diagnostic) -> bool {
     let message = &fault.message;
     // XML 1.0, 3.1: no attribute twice. It looks at declarations of the default namespace less closely.
     message.contains("the attribute `xmlns` is given twice")
-        // Namespaces in XML 1.0, 2.2: a prefix that is declared stands for something.
+        // Namespaces in XML 1.0, 2.2: a declared prefix is bound to a namespace.
         || message == "a prefix cannot be bound to no namespace"
         // XML 1.0, 2.6: white space behind the target of an instruction; Namespaces in XML, 7: no colon in it.
         || message.starts_with("a processing instruction is")

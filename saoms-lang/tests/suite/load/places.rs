@@ -1,4 +1,4 @@
-//! Every place that is told is right.
+//! Every reported place is right.
 
 use std::collections::HashSet;
 

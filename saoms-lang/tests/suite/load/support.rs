@@ -43,7 +43,7 @@ pub(crate) fn loaded_folder(folder: &Path) -> (Vec<FolderFleet>, Sources, Diagno
     (load_folder(folder, MAX_SIZE, &mut sources, &mut diagnostics), sources, diagnostics)
 }
 
-/// What is said, with the folder as `FOLDER`.
+/// The diagnostics, with the folder as `FOLDER`.
 pub(crate) fn shown(folder: &Path, sources: &Sources, diagnostics: Diagnostics) -> String {
     let mut out = String::new();
     for one in &diagnostics.into_sorted() {

@@ -101,7 +101,7 @@ proptest! {
     }
 }
 
-/// What follows in a tree.
+/// The next part of a tree.
 #[derive(Clone, Debug)]
 enum Step {
     /// A start tag without its end: it is empty when it is said so.
@@ -111,7 +111,7 @@ enum Step {
 }
 
 const NAMES: [&str; 6] = ["a", "b", "ab", "p:a", "p:b", "q:a"];
-/// Attributes, some of which say what a prefix stands for in the tag and in what is in it.
+/// Attributes, some of which bind a prefix for the tag and its content.
 const ATTRIBUTES: [&str; 11] = [
     " x='1'", " xy='22'", " p:x='1'", "\n  q:x=\"\"", " y='&lt;'", " z='a b'", " xmlns='d'", " xmlns='e'",
     " xmlns:p='u'", " xmlns:p='w'", " xmlns:q='u'",

@@ -49,7 +49,7 @@ pub(super) fn complete(
     let scopes = if is_outer { scene.users(0).to_vec() } else { vec![0] };
     if let Some(slash) = text[word.start..at].find('/') {
         let (name, start) = (&text[word.start..word.start + slash], word.start + slash + 1);
-        // What stands behind a second slash is a binding, which nobody declares.
+        // Behind a second slash is a binding, which is not declared.
         if text[start..at].contains('/') {
             return Vec::new();
         }
@@ -110,8 +110,7 @@ pub(super) fn complete(
     all
 }
 
-/// The name of the first of the replicas that a component stands for, where it does not depend on what is set from
-/// outside.
+/// The name of the first replica of a component, where it does not depend on what is set from outside.
 fn first_replica(scene: &Scene, (file, component): (usize, &Component)) -> Option<String> {
     let of = &scene.files[file];
     let from = of.element(component.name.element).attribute_in(SAOMS_NAMESPACE, "from");
@@ -149,7 +148,7 @@ enum Fitting {
     None,
     /// One, or it cannot be known.
     Some,
-    /// These, of which one has to be named.
+    /// These: one of them has to be named.
     Several(Vec<String>),
 }
 

@@ -54,8 +54,8 @@ pub fn complete(scene: &Scene, at: usize) -> Vec<Proposal> {
     }
 }
 
-/// Proposals behind a `&`: the characters that cannot stand for themselves everywhere (XML 1.0, 4.6). `None` where
-/// there is none.
+/// Proposals behind a `&`: the characters that must be escaped in some places (XML 1.0, 4.6). `None` where there is
+/// none.
 fn entities(scene: &Scene, at: usize) -> Option<Vec<Proposal>> {
     const ENTITIES: [(&str, &str); 5] =
         [("&amp;", "&"), ("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'")];

@@ -27,7 +27,7 @@ pub(super) fn complete(scene: &Scene, value: &Range<usize>, at: usize, fits: fn(
     entries
         .filter_map(|entry| {
             let (path, name) = (entry.path(), entry.file_name().into_string().ok()?);
-            // What would have to be written with references is for nobody.
+            // A name that would need character references is not proposed.
             if name.starts_with('.') || name.contains(['&', '<', '"', '\'']) {
                 return None;
             }

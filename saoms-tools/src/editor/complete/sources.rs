@@ -78,7 +78,7 @@ fn texts(scene: &Scene, value: &Range<usize>, at: usize) -> Option<Vec<Proposal>
     let range = value.start + open + 1..at + end;
     let mut seen = BTreeSet::new();
     let mut add = |text: &str| {
-        // What would have to be written with references is for nobody.
+        // A text that would need character references is not proposed.
         let is_plain = !text.is_empty() && !text.contains(['&', '<', '"', '\'', '\n']);
         let is_new = is_plain && seen.len() < MOST_TEXTS && seen.insert(text.to_owned());
         is_new.then(|| Proposal::new(text, ProposalKind::Value, &range))

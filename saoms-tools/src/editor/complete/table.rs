@@ -140,7 +140,7 @@ impl Cell {
     }
 }
 
-/// The cells of each line, of which there is at least one.
+/// The cells of each line; each line has at least one.
 fn lines(text: &str) -> Vec<Vec<Cell>> {
     let mut all = vec![Vec::new()];
     let first = text.len() - text.trim_start_matches('\u{feff}').len();

@@ -1,4 +1,4 @@
-//! The names in composites, and in the files beside them, each with what it stands for.
+//! The names in composites, and in the files beside them, each with its symbol.
 
 use saoms_lang::contribution::table;
 use saoms_lang::diagnostic::Diagnostics;
@@ -11,7 +11,7 @@ use super::file::File;
 use super::outline::{Component, Implementation, Named, Side};
 use super::symbol::{FileRange, Occurrence, Symbol, is_replica};
 
-/// The names of a file that stand for something, and those in files that hold values for it.
+/// The names of a file that have a symbol, and those in files that hold values for it.
 pub(crate) struct Found<'s> {
     scene: &'s Scene,
     file: usize,

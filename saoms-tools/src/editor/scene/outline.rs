@@ -274,7 +274,7 @@ impl Outline {
     }
 }
 
-/// Reads the attributes of one element.
+/// Reader of the attributes of one element.
 #[derive(Clone, Copy)]
 struct Reader<'t>(Element<'t>);
 

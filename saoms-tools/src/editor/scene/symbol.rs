@@ -121,8 +121,8 @@ impl Scene {
     }
 }
 
-/// True if a name is one of those that a name with expressions, as `Robot${index:03}`, stands for; or `Robot*`, all of
-/// them; or one with another expression.
+/// True if a name with expressions, as `Robot${index:03}`, can produce this name; also for `Robot*`, which means all of
+/// them, and for a name with another expression.
 pub(crate) fn is_replica(pattern: &str, name: &str) -> bool {
     match pieces(pattern).split_first() {
         Some((first, rest)) if !rest.is_empty() => {

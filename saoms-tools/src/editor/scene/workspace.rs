@@ -52,7 +52,7 @@ impl Surroundings {
     }
 }
 
-/// By what a change on disk shows.
+/// The stamp of a file that shows a change on disk: time and size.
 type Stamp = (Option<SystemTime>, u64);
 
 impl Workspace {

@@ -12,7 +12,7 @@ fn said(inside: &str) -> Option<(String, String)> {
     hover(&scene, at).map(|(text, range)| (text, scene.file().text[range].to_owned()))
 }
 
-/// That what is said at the cursor is about `about` and holds all of these.
+/// Asserts that the hover text at the cursor is about `about` and holds all of these.
 fn says(inside: &str, about: &str, parts: &[&str]) {
     let (text, at) = said(inside).unwrap_or_default();
     assert_eq!(at, about, "{inside}");

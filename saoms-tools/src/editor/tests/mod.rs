@@ -1,4 +1,4 @@
-//! Names and what they stand for, text in and text out.
+//! Names and their symbols, text in and text out.
 
 mod broken;
 mod expressions;

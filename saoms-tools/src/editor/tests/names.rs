@@ -150,7 +150,7 @@ fn what_a_reference_of_a_composite_targets_is_around_it() {
     // The one inside is another one.
     let all = renamed(&inner("W").replacen("\"W\"", "\"W|\"", 1), &[("one.composite", &one)], "In").unwrap();
     assert_eq!(all, [inner("W").replacen("\"W\"", "\"In\"", 1), one.clone()]);
-    // With another name it would lead nowhere in the other composite.
+    // With another name it would be unresolved in the other composite.
     let others = [("one.composite", one.as_str()), ("two.composite", &outer("two", "W"))];
     let refused = renamed(&marked, &others, "Site").unwrap_err();
     assert!(refused.contains("in `two.composite`"), "{refused}");

@@ -199,7 +199,7 @@ fn furthest(routes: &[Route]) -> HashMap<Pin, usize> {
     all
 }
 
-/// The points where another line of the same reference goes on.
+/// The points where another line of the same reference continues.
 fn forks(route: &Route, furthest: &HashMap<Pin, usize>, x: i32, origin: Point) -> Vec<Point> {
     let Some(track) = route.strand.track else { return Vec::new() };
     let lines = route.left.iter().zip(&route.strand.left);

@@ -1,4 +1,4 @@
-//! Does what it is told to, which is never good.
+//! A plugin that misbehaves as its properties say.
 
 use std::panic::panic_any;
 use std::time::Duration;
@@ -26,10 +26,10 @@ pub trait Callee {
 
 #[derive(Debug, Properties)]
 pub struct ActorProperties {
-    /// Where it does it.
+    /// The operation in which it misbehaves.
     #[property(default = "")]
     at: String,
-    /// What it does.
+    /// The way it misbehaves.
     #[property(default = "panic")]
     does: String,
 }
@@ -135,11 +135,11 @@ impl Drop for Actor {
     }
 }
 
-/// What a lamp knows.
+/// The knowledge of a lamp.
 #[derive(Debug, Default, Knowledge)]
 #[knowledge(name = "bad.Lamp")]
 pub struct LampKnowledge {
-    /// How bright it is.
+    /// Its brightness.
     #[entry(effector)]
     brightness: u32,
     #[extras]

@@ -3,7 +3,7 @@
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Class, Component, Context, Failure, Finding, Message, Place, Properties, Publisher, Subscription, Topic, interface};
 
-/// What a sender measures.
+/// A measurement of a sender.
 #[derive(Clone, Debug, Message)]
 #[message(key = "number")]
 pub struct Reading {

@@ -28,7 +28,7 @@ pub trait Callee {
 
 #[derive(Debug, Properties)]
 pub struct ActorProperties {
-    /// What it does.
+    /// The way it misbehaves.
     #[property(default = "")]
     does: String,
 }

@@ -16,7 +16,7 @@ impl<'b> Choices<'b> {
         }
     }
 
-    /// Whether something happens that does once in so many times.
+    /// True once in so many times.
     pub(super) fn once_in(&mut self, times: usize) -> bool {
         self.below(times) == times - 1
     }

@@ -53,7 +53,7 @@ struct Writer<'c, 'b> {
     choices: &'c mut Choices<'b>,
     registry: &'c Registry,
     version: Version,
-    /// Whether texts can hold expressions.
+    /// True if texts can hold expressions.
     is_replicated: bool,
     text: String,
 }
@@ -101,7 +101,7 @@ impl<'c, 'b> Writer<'c, 'b> {
         self.text
     }
 
-    /// An element that can stand in another one, or one that nobody knows.
+    /// An element that can stand in another one, or an unknown one.
     fn child(&mut self, parent: &'static Kind) {
         let all: Vec<&str> = children(parent).collect();
         let name = if all.is_empty() || self.choices.once_in(32) { "bogus" } else { self.choices.of(&all) };

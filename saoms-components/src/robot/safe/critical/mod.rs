@@ -1,4 +1,4 @@
-//! Robots that cannot go on, and robots that help them.
+//! Robots that cannot continue, and robots that help them.
 
 mod records;
 mod substitute;

@@ -7,9 +7,9 @@ use crate::robot::Trouble;
 /// Critical situations that a robot can react to.
 #[derive(Clone, Debug)]
 pub enum SafeCriticalSymptom {
-    /// This robot cannot go on.
+    /// This robot cannot continue.
     Broken {
-        /// Reason why it cannot go on.
+        /// Reason why it cannot continue.
         trouble: Trouble,
         /// Kind of its critical situation.
         kind: CriticalKind,
@@ -69,7 +69,7 @@ pub enum SafeCriticalSymptom {
 pub enum SafeCriticalDecision {
     /// Ask for help, and shut down.
     CallForHelp {
-        /// Reason why the robot cannot go on.
+        /// Reason why the robot cannot continue.
         trouble: Trouble,
         /// Kind of its critical situation.
         kind: CriticalKind,

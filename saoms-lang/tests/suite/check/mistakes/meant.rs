@@ -1,12 +1,12 @@
-//! What is meant by values and names that lead nowhere: each is told once, also of replicas, with what to write.
+//! Likely meanings of values and unresolved names: each is reported once, also for replicas, with what to write.
 
 use expect_test::expect;
 
 use crate::check::mistakes::slips::{GPS, of, robot};
 use crate::check::support::{faults_of, outcome, part};
 
-/// What is wrong with three halls of two robots: with what the component that a hall implements says, and the property
-/// of the hall.
+/// The diagnostics of three halls of two robots: with the declarations of the component that a hall implements, and the
+/// property of the hall.
 fn halls(given: &str, property: &str) -> String {
     let namespaces = "xmlns:saoms=\"urn:saoms:1\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
     let robots = "<component name=\"Robot${index}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"period\">1</property>\n<property name=\"ID\">R${hall * 10 + index}</property>\n<property name=\"number\">${hall * 10 + index}</property></component>";
@@ -39,7 +39,7 @@ fn one_mistake_in_replicas_of_composites_is_told_once() {
           fix: replace `Gg` with `G` [4:72-74 "G"]
     "#]]
     .assert_eq(&halls(&format!("{right}<reference name=\"gps\" target=\"Gg\"/>"), must));
-    // A property without a value is told where an expression first uses it.
+    // A property without a value is reported where an expression first uses it.
     expect![[r#"
         hall:5:24-28 error S2045: the property `hall` has no value (in `Robot1`, index 1)
           help: write it in the file, or give it with `--set`, or in the component that the composite implements

@@ -1,4 +1,4 @@
-//! Mistakes that people make: each is told once, at its place, with what to write.
+//! Mistakes that people make: each is reported once, at its place, with what to write.
 
 mod meant;
 pub(crate) mod slips;

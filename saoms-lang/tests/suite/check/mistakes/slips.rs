@@ -1,11 +1,11 @@
-//! Slips of the pen: each is told once, at its place, with what was probably meant.
+//! Slips of the pen: each is reported once, at its place, with what was probably meant.
 
 use expect_test::expect;
 
 use crate::check::support::{faults_of, fleet, fleet_1_0, nested, outcome, part, shown};
 use crate::check::values::files::checked;
 
-/// What is wrong with a fleet with the prefix of SAOMS.
+/// The diagnostics of a fleet with the prefix of SAOMS.
 pub(crate) fn of(inside: &str) -> String {
     outcome(&[&part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside)], &[])
 }

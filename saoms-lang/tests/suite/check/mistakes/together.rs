@@ -1,10 +1,10 @@
-//! Mistakes are told together: one hides no other, and each is told once.
+//! Mistakes are reported together: one hides no other, and each is reported once.
 
 use expect_test::expect;
 
 use crate::check::support::{faults_of, fleet, outcome, part};
 
-/// What is wrong with a fleet with the prefix of SAOMS.
+/// The diagnostics of a fleet with the prefix of SAOMS.
 fn of(inside: &str) -> String {
     outcome(&[&part("fleet", "xmlns:saoms=\"urn:saoms:1\"", inside)], &[])
 }
@@ -86,7 +86,7 @@ fn a_faulty_expression_hides_nothing_else() {
     "#]].assert_eq(&by_condition);
 }
 
-/// What is wrong with halls that have such a property, and attributes, when there are mistakes inside each.
+/// The diagnostics of halls that have such a property, and attributes, when there are mistakes inside each.
 fn halls(attributes: &str, property: &str) -> String {
     let inner = |number: &str, inside: &str| {
         let inside = format!("<property name=\"count\" type=\"xsd:int\" mustSupply=\"true\"/>\n{inside}");
@@ -172,8 +172,8 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     "#]].assert_eq(&by_table);
 }
 
-/// A board with these properties, and marks of which one is beside any board, one beside one of the usual size, and one
-/// is none.
+/// A board with these properties, and three marks: one beside any board, one beside one of the usual size, and one is
+/// none.
 fn board(properties: &str) -> String {
     of(&format!(
         "<component name=\"B\"><implementation.java class=\"example.Board\"/><property name=\"ID\">B</property>

@@ -1,4 +1,4 @@
-//! What is documented of codes and rules, and how severe a finding is.
+//! The documentation of codes and rules, and severities of findings.
 
 mod reference;
 mod rules;

@@ -82,7 +82,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/check/examples")
 }
 
-/// What the example of a code gives, as people see it; an error when it has not that fault alone.
+/// The diagnostics of the example of a code, as people see them; an error when it has not that fault alone.
 fn example(code: &Code) -> Result<String, String> {
     let (diagnostics, sources) = match code.id {
         "S0001" | "S0002" | "S0003" | "S0004" | "S0005" | "S0006" | "S0007" => unreadable(code.id),

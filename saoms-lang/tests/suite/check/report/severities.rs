@@ -9,9 +9,9 @@ use crate::check::classes::registry;
 use crate::check::support::{part, shown};
 
 struct Found {
-    /// Whether the fleet can run.
+    /// True if the fleet can run.
     runs: bool,
-    /// What is told.
+    /// The reported diagnostics.
     told: String,
     json: Value,
     sarif: Value,
@@ -175,7 +175,7 @@ fn an_option_that_asks_for_more_than_a_composite_says_so_too() {
     .assert_eq(&told);
 }
 
-/// What is found in the second of two components is about the first as well.
+/// A finding in the second of two components is about the first as well.
 #[test]
 fn either_of_two_components_can_say_it() {
     let first = clocks("", "").replacen("</component>", &(severity("S4001", "allow") + "</component>"), 1);
@@ -260,7 +260,7 @@ fn what_is_wrong_with_severities_is_found() {
 <component name="G"><implementation.java class="example.Gps"/><saoms:severity code="S2018" level="note" reason="x"/><severity code="S2018"/></component>"#,
         &["S4001", "S4001=", "S4001=errror", "S40001=error", "=allow", "unwired=note"],
     ).told);
-    // Those of the wiring report match nothing where nobody asks for it.
+    // Those of the wiring report match nothing where it is not asked for.
     assert_eq!(
         of(
             &format!(

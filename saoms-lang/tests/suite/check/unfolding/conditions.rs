@@ -129,7 +129,7 @@ fn includes_and_composites_can_be_absent() {
     ));
 }
 
-/// What is included by a condition that is not true declares nothing in place of what is there.
+/// A composite whose inclusion has a false condition declares nothing in place of what is there.
 #[test]
 fn expressions_take_the_properties_of_what_is_included() {
     let with = |name: &str, count: usize, robots: &str| {
@@ -231,7 +231,7 @@ fn what_is_promoted_and_absent_is_told_with_what_can_be_done() {
     .assert_eq(&outcome(&[&fleet], &[]));
 }
 
-/// What a condition keeps away declares nothing for those that are there.
+/// An element with a false condition declares nothing for those that are there.
 #[test]
 fn expressions_take_nothing_of_what_is_kept_away() {
     const SAOMS: &str = "xmlns:saoms=\"urn:saoms:1\"";

@@ -94,7 +94,7 @@ fn references_without_a_target_make_it_one_of_sca_1_0() {
     assert!(settled(&[&fleet, &text]).contains("xmlns=\"http://www.osoa.org/xmlns/sca/1.0\""));
 }
 
-/// Nobody is told again what somebody gave a reason for; what is told of others is.
+/// A diagnostic lowered with a reason is not reported again; those of other components are.
 #[test]
 fn lowered_warnings_stay_lowered() {
     let clock = |name: &str, more: &str| {
@@ -112,7 +112,7 @@ fn lowered_warnings_stay_lowered() {
     assert!(fleet(clock("A", "") + &wiring).contains(&wiring), "it is for another check");
 }
 
-/// What a composite lowers stays lowered, or its expansion would not run.
+/// Severities that a composite lowers stay lowered, or its expansion would not run.
 #[test]
 fn lowered_errors_stay_lowered() {
     let robot = |name: &str, more: &str| {

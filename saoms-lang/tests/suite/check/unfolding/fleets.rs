@@ -425,7 +425,7 @@ fn a_number_that_no_replica_has_means_the_nearest_that_one_has() {
           fix: replace `R0x` with `R02` [6:14-17 "R02"]
     "#]]
     .assert_eq(&of(&inside, &[]));
-    // What follows the last one is nobody.
+    // Nothing follows the last one.
     let ring = "<component name=\"R${index:02}\" saoms:count=\"2\"><implementation.java class=\"example.Conductor\"/><reference name=\"gps\" target=\"R${index + 1:02}\"/></component>";
     let (_, found, sources) = nested(&[&fleet(ring)], &[], true);
     let found: String = found.iter().map(|one| shown(one, &sources)).collect();

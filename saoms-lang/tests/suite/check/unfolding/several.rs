@@ -23,7 +23,7 @@ fn found(files: &[(&str, &str)]) -> String {
     found + &numbers.collect::<String>()
 }
 
-/// What a component gives the composite that it implements counts for expressions as it does for sources, however it is
+/// A value that a component gives the composite that it implements counts for expressions as for sources, however it is
 /// given.
 #[test]
 fn expressions_inside_of_composites_take_what_sources_lead_to() {
@@ -123,7 +123,7 @@ fn lines_of_tables_are_about_a_replica_in_any_of_the_places_of_a_composite() {
     .assert_eq(&with("name,number\nR1,5\nR12,6\n"));
 }
 
-/// What is wrong outside of a composite is told there, and not again of each replica inside that has it from there.
+/// A mistake outside of a composite is reported there, and not again for each replica inside that takes the value.
 #[test]
 fn what_replicas_have_from_outside_is_told_once() {
     let hall = part(

@@ -238,7 +238,7 @@ fn values_of_a_file_are_in_elements() {
     }
 }
 
-/// What a text holds is the business of the one who takes it.
+/// The content of a text is checked by the component that takes it.
 #[test]
 fn a_text_may_look_like_xml() {
     for text in ["<robot>", "<robot>7</robot>", "< 7"] {

@@ -1,4 +1,4 @@
-//! Where findings of constructors about parts of values are shown.
+//! Places of findings of constructors about parts of values.
 
 use expect_test::expect;
 

@@ -1,4 +1,4 @@
-//! What composites give on to those inside of them, as expressions and components there take it.
+//! Values that composites pass to those inside of them, as expressions and components there take them.
 
 use std::ffi::OsString;
 
@@ -21,7 +21,7 @@ fn hall(property: &str) -> String {
     )
 }
 
-/// What that comes to, inside of a composite with these properties, where the component says this.
+/// The result inside of a composite with these properties, where the component says this.
 fn taken(property: &str, outside: &str, given: &str) -> String {
     let outer = part(
         "outer",
@@ -73,7 +73,7 @@ fn a_property_that_has_to_be_given_a_value_is_not_given_one_by_a_source_without(
           help: write the value inside
     "#]]
     .assert_eq(&taken(must, "", "<property name=\"n\"/>"));
-    // Where nobody takes it, too.
+    // Also where no component takes it.
     let unused = part(
         "hall",
         "",
@@ -165,7 +165,7 @@ fn long_values_are_given_on_through_many_composites() {
     .assert_eq(&outcome(&[&outer, &wing, &hall], &[]));
 }
 
-/// What a component gives has to be right although nothing inside takes it.
+/// A value that a component gives has to be right although nothing inside takes it.
 #[test]
 fn what_nobody_takes_is_held_to_its_type() {
     const SCHEMA: &str = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";

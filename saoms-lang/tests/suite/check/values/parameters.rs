@@ -223,7 +223,7 @@ fn types_that_xml_schema_does_not_have_are_told_with_the_nearest() {
     assert_eq!(property("own:itn") + &property("xsd:unsignedByte"), "");
 }
 
-/// Where classes are taken as given, a composite may be there for components of others.
+/// A composite may be there for components of others, where classes are taken as given.
 #[test]
 fn a_value_that_a_component_has_to_give_is_awaited_of_one_that_is_not_seen() {
     let inside = r#"<property name="pace" mustSupply="true"/>

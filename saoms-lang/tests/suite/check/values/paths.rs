@@ -5,7 +5,7 @@ use expect_test::expect;
 use crate::check::support::{faults, fleet, nested, outcome, part, shown};
 use crate::check::values::properties::robot;
 
-/// What users need of XPath, and what is said of the rest.
+/// The part of XPath that users need, and the diagnostics of the rest.
 #[test]
 fn sources_are_paths() {
     let bays = r#"<bays xmlns="urn:x" unit="m"><bay id="a"><x>3</x><y>4</y></bay><bay id="b/c"><x>5</x></bay><bay> 7 <x> 8 </x></bay></bays>"#;

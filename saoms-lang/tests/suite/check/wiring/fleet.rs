@@ -97,7 +97,7 @@ fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
     expect![""].assert_eq(&found("elsewhere"));
 }
 
-/// Who uses a slip of the name that others have without renaming, however many they are on either side.
+/// Users of a slip of the name that others have without renaming, however many they are on either side.
 #[test]
 fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
     let found = |new: &[&str]| {

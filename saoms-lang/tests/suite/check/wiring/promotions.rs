@@ -1,4 +1,4 @@
-//! What composites say of what they promote, held against it.
+//! Declarations of promotions compared with the promoted parts.
 
 use expect_test::expect;
 
@@ -10,7 +10,7 @@ const TYPE: &[(&str, &str)] = &[(
     "<service name='s'/><service name='u'/>\n<reference name='one'/><reference name='many' multiplicity='1..n'/>",
 )];
 
-/// What is wrong with composites whose classes are taken as given.
+/// The diagnostics of composites whose classes are taken as given.
 fn given(inside: &str) -> String {
     found(inside, TYPE, true)
 }

@@ -117,7 +117,7 @@ fn a_reference_of_a_composite_is_promoted_by_it() {
     "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
 }
 
-/// What stands in a composite that is not found may wire anything.
+/// A composite that is not found may wire anything.
 #[test]
 fn beside_an_include_that_leads_nowhere_no_reference_lacks_a_target() {
     let navigator = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/></component>";
@@ -185,7 +185,7 @@ fn what_is_inside_is_named_by_what_is_promoted() {
     .assert_eq(&with_unit("<wire source=\"U/G/position\" target=\"U\"/>"));
 }
 
-/// What is wrong with navigators, of which each takes the wheels of one robot, beside two robots that are replicas.
+/// The diagnostics of navigators that each take the wheels of one robot, beside two robots that are replicas.
 fn navigators(attributes: &str, inside: &str) -> String {
     let robots = "<component name=\"R${index}\" saoms:count=\"2\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R${index}</property><property name=\"number\">1</property><property name=\"period\">1</property></component>";
     of(&format!(

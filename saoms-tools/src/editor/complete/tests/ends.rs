@@ -20,7 +20,7 @@ fn ends_are_components_and_their_parts() {
         let of = ends(&format!("{worlds}{ROBOT}<reference name=\"world\" target=\"{name}/|\"/></component>"));
         assert_eq!(of, ["hardware"], "{name}");
     }
-    // Any service will do while nobody says who calls it.
+    // Any service will do while its caller is unknown.
     assert_eq!(ends("<wire target=\"World/|\"/>"), ["hardware", "TaskInterface"]);
     let services = ends(&format!("{ROBOT}<reference name=\"world\" target=\"World/|\"/></component>"));
     assert_eq!(services, ["hardware"], "the others have another interface");

@@ -20,7 +20,7 @@ pub struct MyPluginProperties {
     step: u32,
 }
 
-/// Counts.
+/// A component that counts.
 #[derive(Debug, Class)]
 #[class(name = "my_plugin.MyPlugin", periodic, publishes(COUNT))]
 pub struct MyPlugin {

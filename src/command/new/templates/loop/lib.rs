@@ -12,7 +12,7 @@ pub struct MyPluginProperties {
     threshold: f64,
 }
 
-/// Makes a robot charge earlier than it would.
+/// A loop that makes a robot charge earlier.
 #[derive(Debug, LoopClass)]
 #[looping(name = "my_plugin.MyPlugin", senses("battery"), effects("chargeAt"))]
 pub struct MyPlugin {

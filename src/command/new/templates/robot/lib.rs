@@ -15,7 +15,7 @@ pub struct MyPluginProperties {
     move_periods: u32,
 }
 
-/// Drives one robot.
+/// The driver of one robot.
 #[derive(Debug, Class)]
 #[class(name = "my_plugin.MyPlugin", passive, service("hardware": Hardware))]
 pub struct MyPlugin {
