@@ -6,8 +6,15 @@ use clap_complete::Shell;
 use crate::Exit;
 use crate::output::print;
 
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  printed
+  1  standard output could not be written
+  2  there are none for this shell";
+
 /// Print completions of the command line for a shell
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub(crate) struct CompletionsArguments {
     /// The shell that reads them
     #[arg(value_enum)]

@@ -8,11 +8,16 @@ use saoms_lang::source::FileId;
 use saoms_lang::syntax;
 use saoms_tools::format::{Formatted, WIDTH};
 
-use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{DiagnosticReport, compiled};
 use crate::output::{counted, eprint, print};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  printed
+  1  standard output could not be written
+  2  the input is wrong: a composite, a value, the command line, a plugin; nothing was printed";
 
 /// Print the one composite that is left when includes, inner composites, property sources and wires are resolved
 #[derive(Debug, Args)]

@@ -15,6 +15,7 @@ use crate::plugins::registry;
 const EXIT_CODES: &str = "\
 Exit codes:
   0  explained
+  1  standard output could not be written
   2  there is no such code, or a plugin cannot be used";
 
 /// The pages of all codes, each below a heading with its code and name.

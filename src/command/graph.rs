@@ -49,6 +49,13 @@ pub(crate) enum PictureFormat {
 pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let path = arguments.output.as_deref().filter(|path| *path != Path::new("-"));
     let picture = match (arguments.format, path) {
+        (Some(format), Some(path)) if by_ending(path).is_some_and(|other| other != format) => {
+            eprint(&format!(
+                "error: `--format` says another format than the ending of `{}`\n  = help: leave it out, or give the file another ending\n",
+                path.display()
+            ));
+            return Exit::WrongInput;
+        }
         (Some(format), _) => format,
         (None, None) => PictureFormat::Svg,
         (None, Some(path)) => match by_ending(path) {

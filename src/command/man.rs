@@ -1,17 +1,18 @@
 //! `saoms man`: the manual pages of all commands.
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::{Args, Command};
+use clap_mangen::Man;
 
 use crate::Exit;
-use crate::output::{eprint, print};
+use crate::output::{print, write_into};
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0  written; the folder is on standard output
-  1  a page could not be written";
+  1  a page could not be written
+  2  two pages would be one file";
 
 /// Write manual pages of all commands
 #[derive(Debug, Args)]
@@ -24,14 +25,28 @@ pub(crate) struct ManArguments {
 
 pub(crate) fn man(arguments: &ManArguments, command: Command) -> Exit {
     let folder = &arguments.output;
-    match fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(command, folder)) {
+    let mut command = command.disable_help_subcommand(true);
+    command.build();
+    let mut pages = Vec::new();
+    add(command, &mut pages);
+    let mut texts = Vec::with_capacity(pages.len());
+    for page in pages {
+        let mut text = Vec::new();
+        // Memory takes all that is written to it.
+        let _ = page.render(&mut text);
+        texts.push((folder.join(page.get_filename()), text));
+    }
+    match write_into("manual page", folder, &texts, Vec::new()) {
         Ok(()) => {
             print(&format!("{}\n", folder.display()));
             Exit::Done
         }
-        Err(error) => {
-            eprint(&format!("error: manual pages cannot be written to `{}`: {error}\n", folder.display()));
-            Exit::Failed
-        }
+        Err(refused) => refused.told(),
     }
+}
+
+/// Adds the pages of a command and of those below it.
+fn add(command: Command, pages: &mut Vec<Man>) {
+    command.get_subcommands().filter(|one| !one.is_hide_set()).for_each(|one| add(one.clone(), pages));
+    pages.push(Man::new(command));
 }

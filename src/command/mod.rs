@@ -24,14 +24,13 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::Exit;
 use crate::output::{has_failed, printed};
 
-/// Exit codes of the subcommands that take a fleet.
 const EXIT_CODES: &str = "\
 Exit codes:
-  0    done, also when --for elapsed with work left (the report says so)
-  1    the run failed: a component failed for good, a message was lost, a finished report or picture could not be written;
-       or it is incomplete: work was given up
-  2    the input is wrong: a composite, a value, the command line, a place where no file can be; nothing was started
-  130  ended by Ctrl-C";
+  0    done
+  1    failed, not as asked, or the output could not be written
+  2    the input is wrong: a composite, a value, the command line; nothing was started
+  130  ended by Ctrl-C, SIGTERM or SIGHUP
+The help of each command says what they mean for it.";
 
 /// Deploys a fleet of self-adaptive robots from composite files.
 #[derive(Debug, Parser)]
@@ -86,6 +85,10 @@ fn parsed() -> Arguments {
             && Path::new(word).exists()
         {
             let tip = format!("to run a composite, write `saoms run {word}`");
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        if error.kind() == ErrorKind::ArgumentConflict {
+            let tip = "one of them has no effect beside the other: leave one out".to_owned();
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
         if error.use_stderr() {

@@ -1,14 +1,13 @@
 //! `saoms schema`: writes the language of composites as XML schemas, for editors.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use saoms_tools::xsd::{Xsd, catalog, schemas};
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
-use crate::output::{Asked, Outputs, Place, Refused, print};
+use crate::output::{print, write_into};
 use crate::plugins::{files_read, registry};
 
 const EXIT_CODES: &str = "\
@@ -60,25 +59,11 @@ pub(crate) fn schema(arguments: &SchemaArguments) -> Exit {
     let catalog = catalog(&schemas);
     let texts = schemas.iter().map(|schema| (folder.join(schema.file), &schema.text));
     let texts: Vec<(PathBuf, &String)> = texts.chain([(folder.join(CATALOG), &catalog)]).collect();
-    match write(folder, &texts, files_read(&arguments.plugins)) {
+    match write_into("schema", folder, &texts, files_read(&arguments.plugins)) {
         Ok(()) => {
             texts.iter().for_each(|(path, _)| print(&format!("{}\n", path.display())));
             Exit::Done
         }
         Err(refused) => refused.told(),
     }
-}
-
-/// Writes all texts, beside files that are read.
-fn write(folder: &Path, texts: &[(PathBuf, &String)], read: Vec<PathBuf>) -> Result<(), Refused> {
-    let asked = |path| Asked { what: "schema", option: "--output", path, grows: false };
-    fs::create_dir_all(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
-    let mut outputs = Outputs::beside(read);
-    // None is written where one is refused.
-    let places: Vec<Place> = texts.iter().map(|(path, _)| outputs.add(asked(path))).collect::<Result<_, _>>()?;
-    for (place, (path, text)) in places.into_iter().zip(texts) {
-        let written = place.open().and_then(|sink| sink.write(|to| to.write_all(text.as_bytes())));
-        written.map_err(|error| Refused::Unwritable(asked(path).unwritable(&error)))?;
-    }
-    Ok(())
 }

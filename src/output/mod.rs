@@ -7,7 +7,7 @@ mod place;
 mod replace;
 mod standard;
 
-pub(crate) use outputs::{Asked, Outputs, Refused};
+pub(crate) use outputs::{Asked, Outputs, write_into};
 pub(crate) use place::{Place, Sink};
 pub(crate) use replace::replace;
 pub(crate) use standard::{

@@ -132,3 +132,25 @@ impl Asked<'_> {
         )
     }
 }
+
+/// Writes texts into a folder, which is made if it is not there, beside files that are read. None is written where one
+/// cannot be.
+///
+/// # Errors
+/// One cannot be written, or would be written over another file.
+pub(crate) fn write_into(
+    what: &'static str,
+    folder: &Path,
+    texts: &[(PathBuf, impl AsRef<[u8]>)],
+    read: Vec<PathBuf>,
+) -> Result<(), Refused> {
+    let asked = |path| Asked { what, option: "--output", path, grows: false };
+    fs::create_dir_all(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
+    let mut outputs = Outputs::beside(read);
+    let places: Vec<Place> = texts.iter().map(|(path, _)| outputs.add(asked(path))).collect::<Result<_, _>>()?;
+    for (place, (path, text)) in places.into_iter().zip(texts) {
+        let written = place.open().and_then(|sink| sink.write(|to| to.write_all(text.as_ref())));
+        written.map_err(|error| Refused::Unwritable(asked(path).unwritable(&error)))?;
+    }
+    Ok(())
+}

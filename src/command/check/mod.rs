@@ -10,13 +10,18 @@ use saoms_lang::project::{Compilations, FleetOutput};
 use serde::Serialize;
 use serde::ser::Serializer;
 
-use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{DiagnosticReport, project};
 use crate::output::{counted, eprint, print, print_json};
 use crate::plugins::{CommandClasses, usable};
 use wiring::Wiring;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  no error; there may be warnings and notes
+  1  standard output could not be written
+  2  an error in a composite, a value or the command line; a file cannot be read, or a plugin cannot be used";
 
 /// Check composites without running anything
 #[derive(Debug, Args)]

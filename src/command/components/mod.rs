@@ -18,8 +18,15 @@ use crate::arguments::{Format, PluginArguments};
 use crate::output::{eprint, print};
 use crate::plugins::registry;
 
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  listed or described
+  1  standard output could not be written
+  2  there is no such class or loop, or a plugin cannot be used";
+
 /// List the component classes, or describe one: properties, topics, services, references
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub(crate) struct ComponentsArguments {
     /// The class to describe, by any of its names
     pub(crate) name: Option<String>,

@@ -12,8 +12,15 @@ use crate::output::{eprint, print, replace};
 
 use files::Names;
 
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  made
+  1  made, but standard output could not be written
+  2  one of the files is there already, the name cannot be used, or a file could not be written";
+
 /// Make a plugin or a composite that works, to start from
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub(crate) struct NewArguments {
     #[command(subcommand)]
     pub(crate) what: NewKind,
@@ -22,6 +29,7 @@ pub(crate) struct NewArguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum NewKind {
     /// Make the crate of a plugin: its code, its tests, and a composite that uses it
+    #[command(after_help = EXIT_CODES)]
     Plugin {
         /// The folder to make; its name becomes that of the package
         path: PathBuf,
@@ -36,6 +44,7 @@ pub(crate) enum NewKind {
         api: Option<String>,
     },
     /// Make a composite with one robot
+    #[command(after_help = EXIT_CODES)]
     Composite {
         /// The file to make
         path: PathBuf,

@@ -24,7 +24,6 @@ use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::INPUT;
 
-use super::EXIT_CODES;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
@@ -36,6 +35,15 @@ use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
 use report_file::ReportFile;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done, also when --for elapsed with work left (the report says so), or when nobody reads what it prints any more
+  1    the run failed: a component failed for good, a message was lost, a report, picture or standard output could not be
+       written; or it is incomplete: work was given up
+  2    the input is wrong: a composite, a value, the command line, a place where no file can be or that is read; nothing
+       was started
+  130  ended by Ctrl-C, SIGTERM or SIGHUP";
 
 /// Check composites and run the fleet that they describe together
 #[derive(Debug, Args)]
@@ -54,7 +62,7 @@ pub(crate) struct RunArguments {
     pub(crate) limit: Option<Duration>,
 
     /// Run in virtual time: the same fleet, deterministic, as fast as the machine goes
-    #[arg(long = "virtual", conflicts_with = "realtime")]
+    #[arg(long = "virtual", conflicts_with_all = ["realtime", "timer_slack", "budget"])]
     pub(crate) virtual_time: bool,
 
     /// Seed of all chance: in virtual time the same seed gives the same run
@@ -91,19 +99,21 @@ pub(crate) struct RunArguments {
     #[arg(long, value_enum, value_name = "STYLE", default_value_t = ConsoleStyle::Plain)]
     pub(crate) console: ConsoleStyle,
 
-    /// Run the timer under SCHED_FIFO with locked memory
-    #[arg(long)]
+    /// Run the timer under SCHED_FIFO with locked memory, in real time
+    #[arg(long, conflicts_with = "timer_slack")]
     pub(crate) realtime: bool,
 
-    /// Maximum delay of the timer that the kernel may add to save power; 1ns is the most punctual
+    /// Maximum delay of the timer that the kernel may add to save power, in real time and without `--realtime`; 1ns is
+    /// the most punctual
     #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) timer_slack: Duration,
 
-    /// Time that an execution may hold up the others before a spare thread takes over
+    /// Time that an execution may hold up the others before a spare thread takes over, in real time
     #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) budget: Duration,
 
-    /// Time that a component may take to end before it is abandoned
+    /// Time that a component may take to end before it is abandoned, and that a reader of standard output may take
+    /// nothing after a signal
     #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) grace: Duration,
 }
@@ -146,6 +156,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         eprint("error: no component of this program draws paths\n");
         return Exit::WrongInput;
     }
+    let watched = arguments.reload.then(|| Watched::of(&assembly));
+    if watched.as_ref().is_some_and(Watched::is_empty) {
+        eprint(
+            "error: `--reload` has nothing to watch: no component of the fleet comes from a plugin\n  = help: leave it out, or name the plugin with `--plugin`\n\n1 error: nothing was started\n",
+        );
+        return Exit::WrongInput;
+    }
     let Some(files_written) = RunFiles::of(arguments, read) else { return Exit::WrongInput };
     let RunFiles { report, picture, journal } = files_written;
     // With a file, somebody wants the whole run, seen or not.
@@ -162,7 +179,6 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
     // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
     let signals = Signalled::new();
-    let watched = arguments.reload.then(|| Watched::of(&assembly));
     let fleet = match RunningFleet::start(assembly, settings(arguments), observers) {
         Ok(fleet) => fleet,
         Err(error) => {

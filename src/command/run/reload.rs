@@ -86,6 +86,11 @@ impl Watched {
         files.dedup();
         Watched { components: paths(assembly), files }
     }
+
+    /// True if there is no library.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.files.is_empty()
+    }
 }
 
 /// The libraries that a component's class and loops come from.

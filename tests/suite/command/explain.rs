@@ -70,5 +70,5 @@ fn every_command_has_a_manual_page() {
     }
     let output = saoms(&["man", "-o", "/proc/none"]);
     assert_eq!(code(&output), 1);
-    assert!(stderr(&output).starts_with("error: manual pages cannot be written to `/proc/none`: "));
+    assert!(stderr(&output).starts_with("error: the manual page cannot be written to `/proc/none`: "));
 }

@@ -8,6 +8,7 @@ mod fmt;
 mod graph;
 mod new;
 mod operation;
+mod options;
 mod outcomes;
 mod outputs;
 mod paths;
