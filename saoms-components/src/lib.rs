@@ -17,6 +17,7 @@ mod paths;
 mod report;
 pub mod robot;
 mod rules;
+pub mod shift;
 pub mod text;
 mod validation;
 pub mod world;

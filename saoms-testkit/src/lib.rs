@@ -77,3 +77,8 @@ struct Plugins;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/hardware.md")]
 struct Hardware;
+
+/// The example of `docs/scheduling.md`, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/scheduling.md")]
+struct Scheduling;

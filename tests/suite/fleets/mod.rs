@@ -9,4 +9,5 @@ mod messages;
 mod pause;
 mod physics;
 mod replace;
+mod shifts;
 mod sustained;

@@ -1,0 +1,72 @@
+//! Shifts: components that others schedule for a time.
+
+use std::time::Duration;
+
+use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterface, TaskInterfaceReference, Time};
+
+/// Properties of shifts.
+#[derive(Debug, Properties)]
+pub struct ShiftProperties {
+    /// Time of the first shift, from the start of this component.
+    #[property(default = "0s", range = "0s"..="24h")]
+    start: Duration,
+    /// Length of a shift.
+    #[property(range = "1ms"..="24h")]
+    work: Duration,
+    /// Time from the end of a shift to the start of the next one.
+    #[property(default = "0s", range = "0s"..="24h")]
+    pause: Duration,
+    /// Number of shifts; by default they do not end.
+    #[property(range = 1..)]
+    shifts: Option<u32>,
+}
+
+/// Schedules other components in shifts: it starts them, and they stop after the time that it gives them.
+///
+/// Their `runOnStartup` is `false`, so that they wait for their first shift. Its reference `tasks` leads to any periodic
+/// component. A new shift starts in the first execution that is due at its time or later.
+#[derive(Debug, Class)]
+#[class(name = "saoms.Shift", periodic, reference("tasks": TaskInterface, many))]
+pub struct Shift {
+    properties: ShiftProperties,
+    tasks: Vec<TaskInterfaceReference>,
+    /// Time of the next shift; `None` after the last one.
+    next: Option<Time>,
+    begun: u32,
+}
+
+impl Component for Shift {
+    type Properties = ShiftProperties;
+
+    fn new(properties: ShiftProperties) -> Result<Self, Failure> {
+        Ok(Shift { properties, tasks: Vec::new(), next: None, begun: 0 })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.tasks = context.references("tasks")?;
+        self.next = Some(context.now() + self.properties.start);
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let Some(due) = self.next.filter(|next| *next <= context.now()) else { return Ok(()) };
+        let ShiftProperties { work, pause, shifts, .. } = self.properties;
+        let milliseconds = u64::try_from(work.as_millis()).unwrap_or(u64::MAX);
+        for task in &self.tasks {
+            task.schedule_for(context, milliseconds)?;
+        }
+        self.begun = self.begun.saturating_add(1);
+        self.next = Some(due + work + pause).filter(|_| shifts.is_none_or(|shifts| self.begun < shifts));
+        context.info(format_args!("starts shift {} of {} s for {}", self.begun, work.as_secs_f64(), self.names()));
+        Ok(())
+    }
+}
+
+impl Shift {
+    fn names(&self) -> String {
+        match self.tasks.len() {
+            1 => "1 component".to_owned(),
+            count => format!("{count} components"),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! A component that schedules others: the shipped example of shifts.
+
+use std::time::Duration;
+
+use saoms_testkit::Fleet;
+
+#[test]
+fn the_robot_of_shifts_runs_in_its_shifts_alone_and_no_luggage_is_lost() {
+    let run = Fleet::of_file("composites/shift.composite").run(0, Duration::from_mins(10));
+    assert_eq!((run.count("luggage.delivered"), run.count("luggage.open")), (12, 0));
+    assert_eq!((run.count("collisions.vertex"), run.count("stranded")), (0, 0));
+    // Three shifts of 15 s, with a period of 100 ms.
+    let robot = run.components.iter().find(|component| component.name == "Robot2").unwrap();
+    assert_eq!(robot.executions, 450);
+    let shifts: Vec<String> = run.log_of("Shift").into_iter().map(|line| line.to_string()).collect();
+    assert_eq!(shifts.len(), 3, "{shifts:?}");
+    assert_eq!(shifts[0], "starts shift 1 of 15 s for 1 component");
+}
+
+#[test]
+fn shifts_without_an_end_and_without_a_pause_follow_each_other() {
+    let text = std::fs::read_to_string(crate::support::root().join("composites/shift.composite")).unwrap();
+    let text = text.replace("    <property name=\"shifts\" value=\"3\"/>\n", "");
+    let text = text.replace("    <property name=\"pause\" value=\"10s\"/>\n", "");
+    let run = Fleet::of_text(text).run(0, Duration::from_secs(65));
+    // From 5 s to 65 s, with a new instance every 15 s.
+    let robot = run.components.iter().find(|component| component.name == "Robot2").unwrap();
+    assert!((590..=600).contains(&robot.executions), "{}", robot.executions);
+    assert_eq!(run.log_of("Shift").len(), 4);
+}
+
+#[test]
+fn shifts_have_a_length_and_a_component() {
+    let shift = |inside: &str| {
+        let text = format!(
+            "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" name=\"t\">\
+             <component name=\"Shift\"><implementation.rust class=\"saoms.Shift\"/><property name=\"ID\" value=\"S\"/>\
+             <property name=\"period\" value=\"1s\"/>{inside}</component></composite>"
+        );
+        Fleet::of_text(text).diagnostics()
+    };
+    assert!(shift("<reference name=\"tasks\" target=\"Shift\"/>").contains("`work`"));
+    assert!(shift("<property name=\"work\" value=\"1s\"/>").contains("tasks"));
+}
