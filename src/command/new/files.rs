@@ -154,6 +154,19 @@ pub(super) fn composite(name: &str) -> String {
     include_str!("templates/new.composite").replace("my-fleet", name)
 }
 
+/// A folder with a fleet: its composite and the files that this names.
+pub(super) fn site(name: &str) -> Vec<(PathBuf, String)> {
+    [
+        ("site.composite", include_str!("templates/site/site.composite")),
+        ("map.txt", include_str!("templates/site/map.txt")),
+        ("scenario.txt", include_str!("templates/site/scenario.txt")),
+        ("robots.csv", include_str!("templates/site/robots.csv")),
+        ("README.md", include_str!("templates/site/README.md")),
+    ]
+    .map(|(file, text)| (file.into(), text.replace("my-site", name)))
+    .into()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

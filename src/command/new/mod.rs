@@ -1,4 +1,4 @@
-//! `saoms new`: a plugin crate or a composite that works, to start from.
+//! `saoms new`: a plugin crate, a site or a composite that works, to start from.
 
 mod files;
 
@@ -18,7 +18,7 @@ Exit codes:
   1  made, but standard output could not be written
   2  one of the files is there already, the name cannot be used, or a file could not be written";
 
-/// Make a plugin or a composite that works, to start from
+/// Make a plugin, a site or a composite that works, to start from
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct NewArguments {
@@ -43,6 +43,11 @@ pub(crate) enum NewKind {
         #[arg(long, value_name = "SOURCE")]
         api: Option<String>,
     },
+    /// Make a folder with a small fleet: a composite, a map, a scenario, and a table of the robots
+    Site {
+        /// The folder to make; its name becomes that of the composite
+        path: PathBuf,
+    },
     /// Make a composite with one robot
     #[command(after_help = EXIT_CODES)]
     Composite {
@@ -62,6 +67,7 @@ pub(crate) enum PluginKind {
 pub(crate) fn new(arguments: &NewArguments) -> Exit {
     let made = match &arguments.what {
         NewKind::Plugin { path, kind, api } => plugin(path, *kind, api.as_deref()),
+        NewKind::Site { path } => site(path),
         NewKind::Composite { path } => composite(path),
     };
     match made {
@@ -90,16 +96,31 @@ fn plugin(path: &Path, kind: PluginKind, api: Option<&str>) -> Result<String, St
 fn composite(path: &Path) -> Result<String, String> {
     let path = if path.extension().is_some() { path.to_owned() } else { path.with_extension("composite") };
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    if !is_ncname(&stem) {
-        return Err(format!(
-            "found the name `{stem}`, expected a letter and then letters, digits, `-`, `_` or `.`: it becomes the name of the composite"
-        ));
-    }
+    composite_name(&stem)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = path.file_name().map(PathBuf::from).unwrap_or_default();
     write_all(folder, vec![(name, files::composite(&stem))])?;
     let path = path.display();
     Ok(format!("Made {path}. Next:\n\n  saoms check {path}\n  saoms run {path} --virtual\n"))
+}
+
+fn site(path: &Path) -> Result<String, String> {
+    let name = file_name(path)?;
+    composite_name(&name)?;
+    write_all(path, files::site(&name))?;
+    let path = path.display();
+    Ok(format!(
+        "Made the site `{name}` in {path}. Next:\n\n  cd {path}\n  saoms check site.composite\n  saoms run site.composite --virtual\n"
+    ))
+}
+
+fn composite_name(name: &str) -> Result<(), String> {
+    if is_ncname(name) {
+        return Ok(());
+    }
+    Err(format!(
+        "found the name `{name}`, expected a letter and then letters, digits, `-`, `_` or `.`: it becomes the name of the composite"
+    ))
 }
 
 fn file_name(path: &Path) -> Result<String, String> {

@@ -76,6 +76,38 @@ fn a_made_composite_runs() {
 }
 
 #[test]
+fn a_made_site_runs_with_its_files_and_options() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = saoms_in(folder.path(), &["new", "site", "north-hall"]);
+    assert!(made.status.success() && text(&made).contains("saoms run site.composite"), "{}", text(&made));
+    let site = folder.path().join("north-hall");
+    let readme = fs::read_to_string(site.join("README.md")).unwrap();
+    let (_, commands) = readme.split_once("```\n").unwrap();
+    for line in commands.lines().take_while(|line| *line != "```") {
+        let line = line.split(" #").next().unwrap().trim_end();
+        let mut words: Vec<&str> = line.strip_prefix("saoms ").unwrap().split(' ').collect();
+        if words == ["run", "site.composite"] {
+            words.push("--virtual");
+        }
+        let done = saoms_in(&site, &words);
+        assert!(done.status.success(), "{line}: {}", text(&done));
+        if words[0] == "run" {
+            assert!(
+                text(&done).contains("8 of 8 pieces of luggage delivered, no collision"),
+                "{line}: {}",
+                text(&done)
+            );
+        }
+    }
+    assert!(site.join("way.svg").exists());
+    let strict = ["check", "--wiring", "--severity", "S4010=error", "site.composite"];
+    assert!(saoms_in(&site, &strict).status.success());
+    assert!(saoms_in(&site, &["fmt", "--check", "site.composite"]).status.success());
+    let again = saoms_in(folder.path(), &["new", "site", "north-hall"]);
+    assert_eq!(again.status.code(), Some(2), "{}", text(&again));
+}
+
+#[test]
 fn nothing_that_is_there_is_touched() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("hall.composite"), "mine").unwrap();
@@ -98,6 +130,7 @@ fn wrong_names_and_sources_are_told() {
         (&["new", "plugin", "saoms-api"], "a crate of SAOMS itself"),
         (&["new", "plugin", "robot", "--api", "nowhere"], "expected a folder with `saoms-api` in it"),
         (&["new", "composite", "2 halls"], "it becomes the name of the composite"),
+        (&["new", "site", "2 halls"], "it becomes the name of the composite"),
     ] {
         let made = saoms_in(folder.path(), arguments);
         assert_eq!(made.status.code(), Some(2), "{}", text(&made));
