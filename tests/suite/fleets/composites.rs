@@ -7,12 +7,28 @@ use std::time::Duration;
 use saoms_core::report::RunStatus;
 use saoms_testkit::{Fleet, expect_diagnostics};
 
-use crate::support::{composites, root};
+use crate::support::{code, composites, root, saoms, stderr, stdout};
 
+/// The composites that run by themselves.
 fn shipped() -> Vec<PathBuf> {
-    let found = composites(&root().join("composites"));
+    let mut found = composites(&root().join("composites"));
+    found.retain(|path| !path.parent().unwrap().join("sca-contribution.xml").exists());
     assert!(found.len() >= 4, "{found:?}");
     found
+}
+
+#[test]
+fn the_contribution_of_two_teams_shares_the_work() {
+    let checked = saoms(&["check", "composites/teams"]);
+    assert_eq!(stdout(&checked), "9 components: 0 errors, 0 warnings\n", "{}", stderr(&checked));
+    let run = saoms(&["run", "composites/teams", "--virtual"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let shown = stdout(&run);
+    assert!(shown.contains("20 of 20 pieces of luggage delivered, no collision, 0 stranded"), "{shown}");
+    for robot in 1..=6 {
+        let team = if robot <= 3 { "West" } else { "East" };
+        assert!(shown.contains(&format!("{team}/Robot{robot}    deposited luggage")), "robot {robot}: {shown}");
+    }
 }
 
 #[test]
