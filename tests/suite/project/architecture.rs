@@ -1,9 +1,9 @@
-//! Holds the import rule of ARCHITECTURE.md: what a crate and a module must not know.
+//! The rules of ARCHITECTURE.md: what a crate and a module must not know, and the layout of the page.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::support::root;
+use crate::support::{project, root};
 
 /// The crates with an order of modules: each module may use those before it, none after it.
 const ORDERS: &[(&str, &[&str])] = &[
@@ -17,11 +17,12 @@ const ORDERS: &[(&str, &[&str])] = &[
     ("saoms-core", &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"]),
 ];
 
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+/// The sources in a folder and below it, but what is built of them.
+pub(super) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.is_dir() {
+        if path.is_dir() && !path.ends_with("target") {
             files.extend(rust_files(&path));
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             files.push(path);
@@ -84,6 +85,14 @@ fn dependencies(package: &str) -> Vec<String> {
         .filter(|name| name.starts_with("saoms-"))
         .map(str::to_owned)
         .collect()
+}
+
+#[test]
+fn each_invariant_is_a_line_in_bold() {
+    for line in project("ARCHITECTURE.md").lines().filter(|line| line.contains("**")) {
+        let inside = line.strip_prefix("**").and_then(|rest| rest.strip_suffix("**"));
+        assert!(inside.is_some_and(|inside| !inside.contains("**") && inside.ends_with('.')), "{line}");
+    }
 }
 
 #[test]
