@@ -16,7 +16,11 @@ use crate::{Bytes, ClassTable, LoopClassTable, RuleTable, VERSION};
 /// | `rules` | its rules over whole fleets |
 ///
 /// A rule:
-/// `{"code":"X0001","name":"one-clock","meaning":"...","severity":"warning","rule":null,"judgesParts":true,"preventsStart":false}`.
+///
+/// ```json
+/// {"code": "X0001", "name": "one-clock", "meaning": "...", "severity": "warning", "rule": null,
+///  "judgesParts": true, "preventsStart": false}
+/// ```
 pub const SECTION: &str = ".saoms.plugin";
 
 /// The function by which a library gives its table: it takes the version of the program's boundary.

@@ -65,7 +65,8 @@ impl Saved {
             .map_err(|error| Failure::new(format!("what was saved cannot be read: {error}")))?;
         if schema != M::SCHEMA {
             return Err(Failure::new(format!(
-                "the earlier build saved {schema}, this one reads {}: read what it saved, or save nothing and start the fleet anew",
+                "the earlier build saved {schema}, this one reads {}: read what it saved, or save nothing and start \
+                 the fleet anew",
                 M::SCHEMA
             )));
         }

@@ -23,8 +23,8 @@ pub struct ShiftProperties {
 
 /// Schedules other components in shifts: it starts them, and they stop after the time that it gives them.
 ///
-/// Their `runOnStartup` is `false`, so that they wait for their first shift. Its reference `tasks` leads to any periodic
-/// component. A new shift starts in the first execution that is due at its time or later.
+/// Their `runOnStartup` is `false`, so that they wait for their first shift. Its reference `tasks` leads to any
+/// periodic component. A new shift starts in the first execution that is due at its time or later.
 #[derive(Debug, Class)]
 #[class(name = "saoms.Shift", periodic, reference("tasks": TaskInterface, many))]
 pub struct Shift {

@@ -138,7 +138,8 @@ impl Declared {
             Some((false, _)) => match declared.subscribes.first() {
                 Some(topic) => Err(Error::new_spanned(
                     topic,
-                    "a passive component is never executed and so receives nothing: make it `periodic`, or drop `subscribes`",
+                    "a passive component is never executed and so receives nothing: make it `periodic`, or drop \
+                     `subscribes`",
                 )),
                 None => Ok(declared),
             },
@@ -182,7 +183,8 @@ impl Declared {
             }
             _ => {
                 return Err(meta.error(
-                    "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, `reference`, `knowledge`, `loops`, `also`",
+                    "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, \
+                     `reference`, `knowledge`, `loops`, `also`",
                 ));
             }
         }

@@ -78,7 +78,8 @@ pub(crate) fn property_field(input: &DeriveInput) -> Result<TokenStream> {
     let Data::Enum(data) = &input.data else {
         return Err(Error::new_spanned(
             &input.ident,
-            "`PropertyField` is derived on enums without data; derive `Properties` on a struct that is a complex property",
+            "`PropertyField` is derived on enums without data; derive `Properties` on a struct that is a complex \
+             property",
         ));
     };
     let variants = unit_variants(input, data)?;

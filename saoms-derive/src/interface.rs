@@ -74,7 +74,8 @@ fn reference(item: &ItemTrait, name: &str, operations: &[Operation<'_>]) -> Toke
     let (ident, visibility) = (&item.ident, &item.vis);
     let reference = format_ident!("{}Reference", ident.unraw());
     let doc = format!(
-        "A handle to call a service with the interface [`{ident}`] through, from [`Context::reference`](::saoms_api::Context::reference)."
+        "A handle to call a service with the interface [`{ident}`] through, from \
+         [`Context::reference`](::saoms_api::Context::reference)."
     );
     let methods = operations.iter().enumerate().map(|(number, operation)| operation.method(visibility, number));
     quote! {
@@ -269,7 +270,8 @@ fn argument(input: &FnArg) -> Result<(&Ident, &Type)> {
     if let Type::Reference(reference) = &*argument.ty {
         return Err(Error::new_spanned(
             reference,
-            "arguments travel as values, perhaps to another process: expected an owned type such as `String` or `Vec<T>`",
+            "arguments travel as values, perhaps to another process: expected an owned type such as `String` or \
+             `Vec<T>`",
         ));
     }
     Ok((&name.ident, &argument.ty))

@@ -105,7 +105,8 @@ impl Declared {
             "reference" => self.references.push(parts::parse_reference(meta.input, &self.references)?),
             _ => {
                 return Err(meta.error(
-                    "expected one of `name`, `knowledge`, `senses`, `effects`, `entries`, `publishes`, `subscribes`, `reference`",
+                    "expected one of `name`, `knowledge`, `senses`, `effects`, `entries`, `publishes`, `subscribes`, \
+                     `reference`",
                 ));
             }
         }

@@ -275,7 +275,8 @@ impl<'a> Property<'a> {
                     property.required_text = true;
                 } else {
                     return Err(meta.error(
-                        "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`, `flatten`",
+                        "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`, \
+                         `flatten`",
                     ));
                 }
                 Ok(())

@@ -19,7 +19,8 @@ use crate::stage::{Action, Stage};
 ///
 /// ```
 /// use saoms_components::grid::Block;
-/// use saoms_components::messages::{EXCEPTIONAL_EVENT, EnvironmentEvent, ENVIRONMENT, ExceptionalEvent, ExceptionalKind};
+/// use saoms_components::messages::{ENVIRONMENT, EXCEPTIONAL_EVENT};
+/// use saoms_components::messages::{EnvironmentEvent, ExceptionalEvent, ExceptionalKind};
 /// use saoms_components::master::MasterEnvironment;
 /// use saoms_testkit::Bench;
 ///

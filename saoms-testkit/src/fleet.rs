@@ -63,8 +63,9 @@ impl Fleet {
     /// ```
     /// use saoms_testkit::Fleet;
     ///
-    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:fleet"
-    ///     xmlns:saoms="urn:saoms:1"><property name="robots" mustSupply="true" saoms:env="ROBOTS"/></composite>"#);
+    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet"
+    ///     targetNamespace="urn:fleet" xmlns:saoms="urn:saoms:1">
+    ///   <property name="robots" mustSupply="true" saoms:env="ROBOTS"/></composite>"#);
     /// assert!(fleet.diagnostics().contains("S2025"), "it has to have a value");
     /// assert!(!fleet.with_variable("ROBOTS", "40").diagnostics().contains("S2025"));
     /// ```
@@ -81,7 +82,8 @@ impl Fleet {
     /// ```
     /// use saoms_testkit::Fleet;
     ///
-    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:fleet">
+    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet"
+    ///   targetNamespace="urn:fleet">
     ///   <property name="unused">1</property>
     /// </composite>"#);
     /// assert!(fleet.diagnostics().starts_with("warning S2026"));

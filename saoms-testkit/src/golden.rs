@@ -58,7 +58,8 @@ fn hold(what: &str, text: &str, path: &Path) {
     let expected = fs::read_to_string(path).unwrap_or_default();
     if let Some(difference) = difference(&expected, text) {
         panic!(
-            "{what} something else than `{}` says:\n{difference}- is expected, + is so; UPDATE_EXPECT=1 writes what is so",
+            "{what} something else than `{}` says:\n{difference}- is expected, + is so; UPDATE_EXPECT=1 writes what \
+             is so",
             path.display()
         );
     }

@@ -62,7 +62,8 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
             Some(format) => format,
             None => {
                 eprint(&format!(
-                    "error: the ending of `{}` says no format\n  = help: known are `.svg`, `.mmd` and `.dot`; `--format` says it for other endings\n",
+                    "error: the ending of `{}` says no format\n  = help: known are `.svg`, `.mmd` and `.dot`; \
+                     `--format` says it for other endings\n",
                     path.display()
                 ));
                 return Exit::WrongInput;

@@ -105,8 +105,8 @@ impl Place {
         about.is_ok_and(|about| about.is_fifo() || about.is_socket())
     }
 
-    /// Tries whether a file can be written, whole or as it grows, without a trace: what is there stays as it is. What is
-    /// no file, [`open`](Self::open) tries.
+    /// Tries whether a file can be written, whole or as it grows, without a trace: what is there stays as it is. What
+    /// is no file, [`open`](Self::open) tries.
     pub(super) fn try_out(&self, grows: bool) -> io::Result<()> {
         let Place::File(path) = self else { return Ok(()) };
         if !grows {

@@ -102,7 +102,8 @@ impl<T: Field> Effector<T> {
         let entry = Entry::of(knowledge, name)?;
         if !knowledge.extras().writable().has(name) {
             return Err(Failure::new(format!(
-                "the loop does not declare that it changes entry `{name}`: write `effects(\"{name}\")`, and ask in `initialize`"
+                "the loop does not declare that it changes entry `{name}`: write `effects(\"{name}\")`, and ask in \
+                 `initialize`"
             )));
         }
         Ok(Effector(entry))

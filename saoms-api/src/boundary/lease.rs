@@ -78,7 +78,8 @@ impl Lease {
             return result;
         }
         let misuse = format!(
-            "what is lent for the time of a call was used {misuses} times from another thread, when no call went on, or by what it called, which was refused"
+            "what is lent for the time of a call was used {misuses} times from another thread, when no call went on, \
+             or by what it called, which was refused"
         );
         Err(Failure::new(match result {
             Ok(()) => misuse,

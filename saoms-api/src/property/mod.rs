@@ -123,7 +123,8 @@ pub trait Properties: Sized {
     fn from_values(values: &[(SmolStr, PropertyValue)]) -> Result<Self, Failure>;
 }
 
-/// Properties that can be written as a composite gives them. Derive it beside [`Properties`], where no field is complex.
+/// Properties that can be written as a composite gives them. Derive it beside [`Properties`], where no field is
+/// complex.
 ///
 /// ```
 /// use saoms_api::Properties;

@@ -31,11 +31,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             true => Place::property("ID").in_component(robot.index),
             false => robot.number_place(fleet),
         };
-        findings.push(
-            Finding::new(place, message)
-                .label(other.number_place(fleet), "the first")
-                .help("a robot has the number that its ID ends with, unless its class name or `number` says another: give one of them its own"),
-        );
+        findings.push(Finding::new(place, message).label(other.number_place(fleet), "the first").help(
+            "a robot has the number that its ID ends with, unless its class name or `number` says another: \
+                    give one of them its own",
+        ));
     }
     findings
 }

@@ -15,7 +15,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",
-        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them are classic ones that sleep, and none is woken.",
+        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them are \
+            classic ones that sleep, and none is woken.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -97,7 +98,8 @@ fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_woken: bool)
     }
     let message = "all robots sleep, and none is woken to bring the luggage of this scenario";
     if !publishes_beside_robots(fleet, ROBOT_STATE.name()) {
-        let help = "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for landings and take-offs";
+        let help = "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for \
+            landings and take-offs";
         return Some((first, message, help));
     }
     let help = "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are woken";

@@ -13,7 +13,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5009",
         name: "unused-world",
-        meaning: "A fleet has a world, and robots, all or some of them, are not wired to it: they move, collect and deposit without it.",
+        meaning: "A fleet has a world, and robots, all or some of them, are not wired to it: they move, collect and \
+            deposit without it.",
         severity: Severity::Warning,
         rule: None,
     },

@@ -13,7 +13,8 @@ use super::{JournalEntry, OutsideRing, Ring, Selection};
 ///
 /// let json = r#"{"records": 2, "overwritten": 0, "lost": 0, "loops": [], "entries": [
 ///     {"id": 1, "time_s": 1.0, "component": "Gate", "phase": "symptom", "text": "a piece waits"},
-///     {"id": 2, "time_s": 1.1, "component": "Robot", "loop": "Path", "phase": "decision", "text": "drives to it", "cause": 1}]}"#;
+///     {"id": 2, "time_s": 1.1, "component": "Robot", "loop": "Path", "phase": "decision",
+///      "text": "drives to it", "cause": 1}]}"#;
 /// let journal: Journal = serde_json::from_str(json)?;
 /// let decision = journal.of("Robot").of_loop("Path").decisions().last().unwrap();
 /// let (reasons, missing) = journal.reasons(decision);

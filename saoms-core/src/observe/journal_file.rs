@@ -11,8 +11,8 @@ use super::{Beginning, Interest, Observer, Records};
 
 /// An observer that writes every record of the journal to a file, as lines of JSON.
 ///
-/// The file is created when the fleet starts, and holds whole lines at any time but while one is written. The first line
-/// holds the format version and the components, the last one the end of the run.
+/// The file is created when the fleet starts, and holds whole lines at any time but while one is written. The first
+/// line holds the format version and the components, the last one the end of the run.
 pub struct JournalFile {
     path: PathBuf,
     /// What is written in place of a file at the path.

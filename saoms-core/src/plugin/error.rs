@@ -36,7 +36,8 @@ impl fmt::Display for PluginError {
             }
             PluginError::NoLibrary { path } => write!(
                 out,
-                "plugin `{}` is no shared library: expected what `cargo build` makes of a crate with `crate-type = [\"cdylib\"]`, an ELF file",
+                "plugin `{}` is no shared library: expected what `cargo build` makes of a crate with `crate-type = \
+                 [\"cdylib\"]`, an ELF file",
                 path.display()
             ),
             PluginError::Broken { path, message } => {
@@ -44,14 +45,16 @@ impl fmt::Display for PluginError {
             }
             PluginError::Machine { path, found } => write!(
                 out,
-                "plugin `{}` was built for {found}, this program runs on {}: build it with `cargo build --target {}-unknown-linux-gnu`",
+                "plugin `{}` was built for {found}, this program runs on {}: build it with `cargo build --target \
+                 {}-unknown-linux-gnu`",
                 path.display(),
                 std::env::consts::ARCH,
                 std::env::consts::ARCH
             ),
             PluginError::NoMetadata { path } => write!(
                 out,
-                "plugin `{}` is a library without a section `{SECTION}`: say `saoms_api::plugin! {{ classes: [...] }}` in its crate, and build it again",
+                "plugin `{}` is a library without a section `{SECTION}`: say `saoms_api::plugin! {{ classes: [...] \
+                 }}` in its crate, and build it again",
                 path.display()
             ),
             PluginError::Metadata { path, message } => {
@@ -62,13 +65,16 @@ impl fmt::Display for PluginError {
                 let api = if api.is_empty() { String::new() } else { format!(" (saoms-api {api})") };
                 write!(
                     out,
-                    "plugin `{}` was built for the {older} version {found} of the boundary{api}, this program has version {VERSION} (saoms-api {API}): build the plugin with saoms-api {API}, by `cargo update -p saoms-api && cargo build --release` in its folder",
+                    "plugin `{}` was built for the {older} version {found} of the boundary{api}, this program has \
+                     version {VERSION} (saoms-api {API}): build the plugin with saoms-api {API}, by `cargo update -p \
+                     saoms-api && cargo build --release` in its folder",
                     path.display()
                 )
             }
             PluginError::Aborts { path, package } => write!(
                 out,
-                "plugin `{}` was built with `panic = \"abort\"`: a panic in it would end the whole program; take that out of the profile in the Cargo.toml of `{package}`, and build it again",
+                "plugin `{}` was built with `panic = \"abort\"`: a panic in it would end the whole program; take that \
+                 out of the profile in the Cargo.toml of `{package}`, and build it again",
                 path.display()
             ),
             PluginError::Unloadable { path, package, message } => {

@@ -41,9 +41,9 @@ use saoms_lang::assembly::{Assembly, ComponentSpec};
 /// # Ok::<(), saoms_core::schedule::StartError>(())
 /// ```
 ///
-/// In real time the fleet runs from [`start`](RunningFleet::start) on. In virtual time it advances only while a caller waits
-/// in [`run_to_end`](RunningFleet::run_to_end) or [`run_until`](RunningFleet::run_until), so that a program can act at exact times.
-/// Dropping a fleet ends it.
+/// In real time the fleet runs from [`start`](RunningFleet::start) on. In virtual time it advances only while a caller
+/// waits in [`run_to_end`](RunningFleet::run_to_end) or [`run_until`](RunningFleet::run_until), so that a program can
+/// act at exact times. Dropping a fleet ends it.
 #[derive(Debug)]
 pub struct RunningFleet {
     handle: Handle,

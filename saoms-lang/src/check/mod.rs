@@ -41,7 +41,8 @@ pub use report::severities::SeveritySetting;
 ///
 /// ```
 /// use saoms_lang::check::{Options, check};
-/// use saoms_lang::{diagnostic::Diagnostics, load::load_file, model::Contribution, registry::Registry, source::Sources};
+/// use saoms_lang::{diagnostic::Diagnostics, load::load_file, model::Contribution};
+/// use saoms_lang::{registry::Registry, source::Sources};
 ///
 /// let text = r#"<composite xmlns="http://www.osoa.org/xmlns/sca/1.0" name="fleet" targetNamespace="urn:fleet">
 ///     <component name="Robot001"><implementation.java class="robot.Robot001"/></component>

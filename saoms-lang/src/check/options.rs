@@ -96,8 +96,9 @@ impl Variable {
     /// use saoms_lang::check::Variable;
     /// use saoms_lang::{diagnostic::Diagnostics, load::load_file, model::Contribution, source::Sources};
     ///
-    /// let text = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:fleet"
-    ///     xmlns:saoms="urn:saoms:1"><property name="robots" saoms:env="ROBOTS">10</property></composite>"#;
+    /// let text = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:saoms="urn:saoms:1"
+    ///     name="fleet" targetNamespace="urn:fleet">
+    ///   <property name="robots" saoms:env="ROBOTS">10</property></composite>"#;
     /// let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     /// let file = sources.add("fleet.composite", text);
     /// let fleet = Contribution::of(load_file(file, &sources, &mut diagnostics).into_iter().collect());

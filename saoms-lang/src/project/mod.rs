@@ -35,7 +35,8 @@ pub use load::{INPUT, Loaded, SET, SEVERITY, read};
 /// use saoms_lang::project::Project;
 /// use saoms_lang::registry::Registry;
 ///
-/// let text = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:fleet">
+/// let text = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet"
+///     targetNamespace="urn:fleet">
 ///     <component name="Robot001"><implementation.java class="robot.Robot001"/></component>
 /// </composite>"#;
 /// let project = Project::new().text("fleet.composite", text).severity("S3001=warning:the class comes later");

@@ -20,7 +20,8 @@ use serde_json::Value;
 /// ```
 /// use saoms_lang::schema::Schema;
 ///
-/// let schema = r#"{"name":"Position","fields":[{"name":"robot","type":"uint32"},{"name":"blocks","type":{"sequence":"int16"}}]}"#;
+/// let schema = r#"{"name":"Position","fields":[{"name":"robot","type":"uint32"},
+///     {"name":"blocks","type":{"sequence":"int16"}}]}"#;
 /// let schema = Schema::parse(schema)?;
 /// let bytes = schema.encode(&serde_json::json!({"robot": 7, "blocks": [1, -1]}))?;
 /// assert_eq!(schema.decode(&bytes)?.to_string(), r#"{"blocks":[1,-1],"robot":7}"#);

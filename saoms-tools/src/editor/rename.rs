@@ -46,7 +46,8 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
     };
     if matches!(found.symbol, Symbol::Component { .. }) && group(&old).is_some() && group(name).is_none() {
         return Err(format!(
-            "`{old}` stands for replicas: the new name has to hold an expression, as the same one, or all would have one name"
+            "`{old}` stands for replicas: the new name has to hold an expression, as the same one, or all would have \
+             one name"
         ));
     }
     if all.iter().any(|one| one.is_in_expression) && (!is_name(name) || name == INDEX) {

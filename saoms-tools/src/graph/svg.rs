@@ -43,7 +43,8 @@ fn draw(diagram: &Diagram, text: &mut Sink<'_>) {
     let Layout { width, height, .. } = layout;
     let _ = writeln!(
         out.text,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
+         {height}\">"
     );
     let _ = writeln!(out.text, "<title>{}</title>\n<style>{STYLE}</style>", xml(&diagram.name));
     let _ = writeln!(out.text, "<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
@@ -252,7 +253,8 @@ impl Out<'_, '_> {
             write!(self.text, "<path class=\"rail\" stroke=\"{color}\" d=\"M{},{middle}H{}\"/>", rail.from, rail.to);
         let _ = write!(
             self.text,
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"8\" fill=\"#fff\" stroke=\"{color}\" stroke-width=\"1.5\"/>"
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"8\" fill=\"#fff\" \
+             stroke=\"{color}\" stroke-width=\"1.5\"/>"
         );
         self.label("", Point { x: x + 10, y: middle + 4 }, &rail.text, SMALL_SIZE, "start");
         self.text.push_str("</g>\n");

@@ -59,7 +59,8 @@ fn of_class(declaration: &ClassDeclaration, registry: &Registry) -> Vec<(String,
         // What expressions in replicas come to is not known.
         if let Some(test) = of_value(property) {
             let values = format!(
-                "property[@name = {name}][not(@source or @file)]/(if (@value) then @value else if (value) then value else .)"
+                "property[@name = {name}][not(@source or @file)]/(if (@value) then @value else if (value) then value \
+                 else .)"
             );
             tests.push((
                 format!(

@@ -41,7 +41,8 @@ impl Names {
         ];
         if !starts || !fits {
             return Err(format!(
-                "found the name `{package}`, expected one for a Rust package: a small letter, then small letters, digits, `-` and `_`, such as `my-robot`"
+                "found the name `{package}`, expected one for a Rust package: a small letter, then small letters, \
+                 digits, `-` and `_`, such as `my-robot`"
             ));
         }
         let taken = if WORDS.contains(&package) {
@@ -73,7 +74,8 @@ pub(super) fn source(api: Option<&str>) -> Result<Source, String> {
                 return Ok(Source::Checkout(checkout.to_owned()));
             }
             Err(format!(
-                "the sources of this program are no longer in `{}`: say where saoms-api comes from, `--api GIT-URL`, `--api FOLDER` or `--api {}`",
+                "the sources of this program are no longer in `{}`: say where saoms-api comes from, `--api GIT-URL`, \
+                 `--api FOLDER` or `--api {}`",
                 checkout.display(),
                 env!("CARGO_PKG_VERSION")
             ))
@@ -85,7 +87,8 @@ pub(super) fn source(api: Option<&str>) -> Result<Source, String> {
         Some(folder) => match Path::new(folder).canonicalize() {
             Ok(folder) if folder.join("saoms-api/Cargo.toml").exists() => Ok(Source::Checkout(folder)),
             _ => Err(format!(
-                "found `--api {folder}`, expected a folder with `saoms-api` in it, the URL of a git repository, or a version"
+                "found `--api {folder}`, expected a folder with `saoms-api` in it, the URL of a git repository, or a \
+                 version"
             )),
         },
     }

@@ -88,7 +88,8 @@ fn plugin(path: &Path, kind: PluginKind, api: Option<&str>) -> Result<String, St
     write_all(path, files::plugin(&names, kind, &source))?;
     let path = path.display();
     Ok(format!(
-        "Made the plugin `{}` in {path}. Next:\n\n  cd {path}\n  cargo test\n  cargo build\n  saoms run fleet.composite --virtual --for 10s --plugin target/debug\n",
+        "Made the plugin `{}` in {path}. Next:\n\n  cd {path}\n  cargo test\n  cargo build\n  saoms run \
+         fleet.composite --virtual --for 10s --plugin target/debug\n",
         names.package
     ))
 }

@@ -53,8 +53,8 @@ fn makespans_differ_by_two_percent_at_most_at_half_the_period() {
 #[test]
 fn a_job_costs_its_blocks_and_its_time() {
     // From (0,1) 4 moves to collect at (4,1), 3 to deposit at (7,1), 7 back: 14 %, and 0.2 % in each second off the
-    // charger: 14 s of moves, 4 s of handling, and at most half a second of decisions. The robot says so after the first
-    // execution at the charger, which gains 0.25 %.
+    // charger: 14 s of moves, 4 s of handling, and at most half a second of decisions. The robot says so after the
+    // first execution at the charger, which gains 0.25 %.
     let run =
         fleet(1, "50ms", "1s", PHYSICAL, "at 1s luggage (4,1) to (7,1)\nat 5min end").run(1, Duration::from_secs(60));
     let journal = run.journal();

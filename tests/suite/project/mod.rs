@@ -1,6 +1,7 @@
 //! The repository: its documents, its files for editors, the order of its modules.
 
 mod architecture;
+mod comments;
 mod editors;
 mod messages;
 mod pages;

@@ -66,14 +66,17 @@ pub(super) fn overloaded(
     let pieces: f64 = usual.iter().map(|line| 60.0 / line.every).sum();
     let each = needed / pieces * 60.0;
     let message = format!(
-        "luggage comes faster for ever than the fleet can bring it and charge: {} pieces a minute, each {how} {} s of a robot's time with its share of charging, keep {needed:.1} robots busy, and there {are} {} {there} with a charger",
+        "luggage comes faster for ever than the fleet can bring it and charge: {} pieces a minute, each {how} {} s of \
+         a robot's time with its share of charging, keep {needed:.1} robots busy, and there {are} {} {there} with a \
+         charger",
         rounded(pieces),
         rounded(each),
         ranges.len(),
     );
     let longer = needed / robots(ranges);
     let help = format!(
-        "have {count} robots with chargers of their own, or let pieces come {longer:.1} times as seldom; lines that end (`100 times`, `until 10min`) are worked off later"
+        "have {count} robots with chargers of their own, or let pieces come {longer:.1} times as seldom; lines that \
+         end (`100 times`, `until 10min`) are worked off later"
     );
     Some(Finding::new(place, message).severity(severity).help(help))
 }

@@ -25,7 +25,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5006",
         name: "unsustainable",
-        meaning: "The robots cannot do the work with the charge that they get: luggage is farther off than a full battery lasts, or comes faster for ever than they can bring it and charge.",
+        meaning: "The robots cannot do the work with the charge that they get: luggage is farther off than a full \
+            battery lasts, or comes faster for ever than they can bring it and charge.",
         severity: Severity::Error,
         rule: None,
     },

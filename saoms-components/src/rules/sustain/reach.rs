@@ -40,7 +40,8 @@ pub(super) fn out_of_reach(
             let is_one = spot.value.block().is_some();
             let most = *ways.most.get_or_insert_with(|| ranges.iter().map(Range::most).max().unwrap_or(0));
             let message = format!(
-                "no robot can bring luggage {} {block}: {nearest} moves from the nearest charger, and a full battery lasts for {most} and back",
+                "no robot can bring luggage {} {block}: {nearest} moves from the nearest charger, and a full battery \
+                 lasts for {most} and back",
                 if spot.bytes == piece.from.bytes { "from" } else { "to" }
             );
             let severity = if is_one { Severity::Error } else { Severity::Warning };

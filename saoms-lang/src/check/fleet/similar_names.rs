@@ -9,8 +9,8 @@ use crate::diagnostic::{Candidates, nearest};
 pub(crate) struct Similar<'t> {
     /// Those of one kind with one type of messages, in the order of their names.
     groups: HashMap<(&'static str, &'t str), Vec<Known<'t>>>,
-    /// The rest of the names that are looked at for all topics together: in a fleet in which each robot has topics of its
-    /// own every search goes through those of all others.
+    /// The rest of the names that are looked at for all topics together: in a fleet in which each robot has topics of
+    /// its own every search goes through those of all others.
     candidates: Candidates,
 }
 

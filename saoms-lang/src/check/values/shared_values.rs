@@ -1,5 +1,5 @@
-//! The values of a property as all who take them share them, and the parts of these that paths lead to: a fleet can give
-//! one long value on through many composites, and take each of its parts in one of these.
+//! The values of a property as all who take them share them, and the parts of these that paths lead to: a fleet can
+//! give one long value on through many composites, and take each of its parts in one of these.
 
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};

@@ -92,8 +92,8 @@ struct Narrower<'f> {
     severity: Severity,
 }
 
-/// Checks the multiplicities of what a composite's reference promotes, and that it may be overridden. What is wrong with
-/// several of them is told once, as one thing is to be changed.
+/// Checks the multiplicities of what a composite's reference promotes, and that it may be overridden. What is wrong
+/// with several of them is told once, as one thing is to be changed.
 pub(crate) fn multiplicities<'f>(
     by: &ReferenceElement,
     found: impl Iterator<Item = ReferenceId<'f>>,

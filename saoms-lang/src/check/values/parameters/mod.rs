@@ -121,8 +121,8 @@ impl<'a> Parameters<'a> {
         self
     }
 
-    /// Declares the properties of a unit of these composites, which may not be there, in place of others. `owner` is the
-    /// component that the first of them implements. Repeated ones are reported.
+    /// Declares the properties of a unit of these composites, which may not be there, in place of others. `owner` is
+    /// the component that the first of them implements. Repeated ones are reported.
     pub(crate) fn declare(
         &mut self,
         unit: usize,

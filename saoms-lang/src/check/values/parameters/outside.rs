@@ -1,4 +1,5 @@
-//! Values of composite properties from outside: what the command line says of them, and those that have to be given one.
+//! Values of composite properties from outside: what the command line says of them, and those that have to be given
+//! one.
 
 use std::collections::{BTreeSet, HashMap};
 
