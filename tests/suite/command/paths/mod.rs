@@ -16,8 +16,13 @@ const ENOUGH: &str = "5min";
 
 /// The picture of a run in virtual time, which must not fail.
 fn drawn(composite: &str, limit: &str) -> String {
+    drawn_after(composite, limit, 0)
+}
+
+/// The picture of a run with this exit code.
+fn drawn_after(composite: &str, limit: &str, code: i32) -> String {
     let output = saoms(&["run", composite, "--virtual", "--for", limit, "--quiet", "--paths", "-"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
 
@@ -182,18 +187,18 @@ fn a_robot_that_stands_with_an_empty_battery_is_marked() {
 }
 
 /// One robot, and this scenario.
-fn alone(test: &str, scenario: &str) -> String {
+fn alone(test: &str, scenario: &str, code: i32) -> String {
     let composite = crowd(test, 1, (13, 10), "");
     let text = fs::read_to_string(&composite).unwrap();
     let (before, rest) = text.split_once("at 1s luggage").unwrap();
     let rest = rest.split_once("</property>").unwrap().1;
     fs::write(&composite, format!("{before}{scenario}</property>{rest}")).unwrap();
-    drawn(&composite, ENOUGH)
+    drawn_after(&composite, ENOUGH, code)
 }
 
 #[test]
 fn a_master_that_gives_luggage_up_is_no_robot() {
-    let text = alone("given-up", "at 1s luggage (2,5) to (10,9); at 2s breakdown 1");
+    let text = alone("given-up", "at 1s luggage (2,5) to (10,9); at 2s breakdown 1", 1);
     assert!(text.contains(">Robot1<") && !text.contains(">Master<"));
     let document = Document::parse(&text).unwrap();
     assert_eq!(Picture::of(&document).all("wait").len(), 1 + 1, "its luggage, and the legend");
@@ -201,7 +206,7 @@ fn a_master_that_gives_luggage_up_is_no_robot() {
 
 #[test]
 fn what_does_not_fit_into_the_legend_is_said_in_fewer_words() {
-    let text = alone("many", "from 1s every 100ms 5 times luggage (2,5) to (10,9)");
+    let text = alone("many", "from 1s every 100ms 5 times luggage (2,5) to (10,9)", 0);
     assert!(text.contains(">delivered 5 pieces \u{b7} ") && !text.contains('\u{2026}'));
 }
 
