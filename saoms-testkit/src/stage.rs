@@ -299,12 +299,7 @@ impl Host for Stage {
     }
 
     fn journal(&mut self, phase: Phase, record: &Record) {
-        let phase = match phase {
-            Phase::Symptom => "symptom",
-            Phase::Decision => "decision",
-            Phase::Effect => "effect",
-        };
-        let line = format!("{}{phase}: {record}", self.acting());
+        let line = format!("{}{}: {record}", self.acting(), phase.name());
         self.log_action(Action::Journal(line));
     }
 

@@ -180,6 +180,17 @@ pub enum Phase {
     Effect,
 }
 
+impl Phase {
+    /// Its name in journals.
+    pub fn name(self) -> &'static str {
+        match self {
+            Phase::Symptom => "symptom",
+            Phase::Decision => "decision",
+            Phase::Effect => "effect",
+        }
+    }
+}
+
 /// The number of a record in the run's journal, for what follows from it; the default one means no record.
 ///
 /// A message carries the cause that its sender had ([`Header::cause`](crate::Header)); a loop that acts on it says so

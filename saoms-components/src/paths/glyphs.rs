@@ -1,7 +1,9 @@
 //! The signs of a picture, each in a square of a given size around a point.
 
+use saoms_api::host::escaped;
+
 use super::palette::Look;
-use super::svg::{Svg, escaped, number};
+use super::svg::{Svg, number};
 
 /// An incident of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

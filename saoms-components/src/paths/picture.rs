@@ -1,5 +1,7 @@
 //! The whole picture: the area with everything in it, and the legend beside or below it.
 
+use saoms_api::host::escaped;
+
 use super::density::{self, Shades};
 use super::frame::{AXIS, Area, Frame};
 use super::glyphs;
@@ -11,7 +13,7 @@ use super::meaning;
 use super::palette::{LOOKS, look};
 use super::path::{Leg, Path, Robot};
 use super::recording::Recording;
-use super::svg::{Svg, escaped, number};
+use super::svg::{Svg, number};
 
 /// The edge of the paper.
 const MARGIN: f64 = 24.0;

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use saoms_api::host::escaped;
+
 /// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from
 /// outside goes through [`escaped`].
 #[derive(Default)]
@@ -66,25 +68,6 @@ impl Svg {
             self.text.push(' ');
         }
     }
-}
-
-/// A text as it can stand inside an element, and in an attribute within quotation marks. Tabs and line ends are written
-/// by their numbers; a character that XML cannot write becomes U+FFFD.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&apos;"),
-            '\t' | '\n' | '\r' => _ = write!(out, "&#{};", u32::from(character)),
-            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
-            _ => out.push(character),
-        }
-    }
-    out
 }
 
 /// A length or a coordinate, to a tenth.

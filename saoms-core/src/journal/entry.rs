@@ -135,21 +135,12 @@ impl PartialEq for JournalEntry {
 impl fmt::Display for JournalEntry {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let JournalEntry { time, component, .. } = self;
-        let (by, phase) = (self.loop_name().unwrap_or("-"), phase_name(self.phase));
+        let (by, phase) = (self.loop_name().unwrap_or("-"), self.phase.name());
         write!(formatter, "{time} {component} {by} {phase}: ")?;
         match &self.what {
             Content::Noted(record) => record.fmt(formatter),
             Content::Read { text, .. } => formatter.write_str(text),
         }
-    }
-}
-
-/// Name of a phase in files.
-pub(super) fn phase_name(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Symptom => "symptom",
-        Phase::Decision => "decision",
-        Phase::Effect => "effect",
     }
 }
 

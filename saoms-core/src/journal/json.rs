@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Map, Value};
 
-use super::entry::{Content, phase_name};
+use super::entry::Content;
 use super::{Journal, JournalEntry, LoopCounts};
 
 /// A record as it is written; fields without a value are left out.
@@ -57,7 +57,7 @@ impl Serialize for JournalEntry {
             time_s: self.time.as_secs_f64(),
             component: &self.component,
             loop_name: self.loop_name(),
-            phase: phase_name(self.phase),
+            phase: self.phase.name(),
             entry,
             text: Text(&self.what),
             values,

@@ -32,8 +32,9 @@ pub use attribute::Attribute;
 pub(crate) use characters::{is_local_name, is_qualified_name};
 pub use document::{Document, ElementId, TokenKind};
 pub use element::Element;
+pub use saoms_api::host::escaped;
 pub(crate) use value::SourceMap;
-pub use writer::{NewElement, escaped};
+pub use writer::NewElement;
 
 use fault::Input;
 use lexer::Lexer;

@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 use std::fmt::Write;
 
-use saoms_api::host::Phase;
 use saoms_api::{Cause, Time};
 use saoms_core::journal::{Chain, JournalDocument, JournalEntry, Why};
 
@@ -115,7 +114,7 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
                 entry.time().to_string(),
                 entry.component(),
                 loop_of(entry),
-                phase(entry.phase()),
+                entry.phase().name(),
                 row.text
             ),
             None => writeln!(text, "  {:>number$}  {}", "", row.text),
@@ -126,12 +125,4 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
 
 fn loop_of(entry: &JournalEntry) -> &str {
     entry.loop_name().unwrap_or("-")
-}
-
-fn phase(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Symptom => "symptom",
-        Phase::Decision => "decision",
-        Phase::Effect => "effect",
-    }
 }

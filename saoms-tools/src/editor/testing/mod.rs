@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
+#[cfg(test)]
+mod composite;
 mod laws;
 
 use std::path::{Path, PathBuf};
@@ -16,6 +18,8 @@ use super::scene::workspace::Surroundings;
 use super::{
     File, Scene, complete, definition, document_symbols, hover, linked_tags, links, references, rename, selections,
 };
+#[cfg(test)]
+pub(crate) use composite::composite;
 pub(super) use laws::hold;
 
 static REGISTRY: LazyLock<Arc<Registry>> = LazyLock::new(|| Arc::new(Registry::linked().unwrap()));
@@ -54,13 +58,6 @@ pub(crate) fn scene_at(path: &Path, text: &str) -> Scene {
 
 fn made(files: Vec<Arc<File>>) -> Scene {
     Scene::new(Surroundings { own: files.len(), known: files.len(), files }, Arc::clone(&REGISTRY))
-}
-
-/// A composite of 1.1 with this inside.
-pub(crate) fn composite(inside: &str) -> String {
-    format!(
-        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:s=\"urn:saoms:1\" name=\"fleet\" targetNamespace=\"urn:f\">\n{inside}\n</composite>"
-    )
 }
 
 /// Asks everything at a byte of a text beside other files. What is answered is in the texts.
