@@ -446,6 +446,10 @@ typedef struct SaomsComponentTable {
     SaomsStatus (*save)(void *component, struct SaomsSink saved, struct SaomsSink error);
     // Continues from the state that a component of an earlier build put, after `initialize`. May be null: it cannot.
     SaomsStatus (*restore)(void *component, struct SaomsBytes saved, struct SaomsSink error);
+    // Puts what the component waits for, which completes "it waits for": it does none of the work that is left until
+    // a message or a call reaches it. Puts nothing where it may act by itself. Asked when nothing has happened in the
+    // fleet for a while. May be null, or beyond the `size` of the table: it may act by itself.
+    SaomsStatus (*waits_for)(void *component, struct SaomsSink text, struct SaomsSink error);
 } SaomsComponentTable;
 
 // A class: how to make components of it, and their functions.

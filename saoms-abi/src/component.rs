@@ -62,4 +62,8 @@ pub struct ComponentTable {
     pub save: Option<unsafe extern "C" fn(component: *mut c_void, saved: Sink, error: Sink) -> Status>,
     /// Continues from the state that a component of an earlier build put, after `initialize`. May be null: it cannot.
     pub restore: Option<unsafe extern "C" fn(component: *mut c_void, saved: Bytes, error: Sink) -> Status>,
+    /// Puts what the component waits for, which completes "it waits for": it does none of the work that is left until
+    /// a message or a call reaches it. Puts nothing where it may act by itself. Asked when nothing has happened in the
+    /// fleet for a while. May be null, or beyond the `size` of the table: it may act by itself.
+    pub waits_for: Option<unsafe extern "C" fn(component: *mut c_void, text: Sink, error: Sink) -> Status>,
 }

@@ -140,6 +140,16 @@ pub trait Component: Send + Sized + 'static {
         let _ = saved;
         Err("the earlier build saved its state, and this one does not implement `restore`".into())
     }
+
+    /// Says what the component waits for, so that a run in which nothing can happen any more names it: asked when
+    /// nothing has happened in the fleet for a while.
+    ///
+    /// `Some` promises that the component does none of the work that is left until a message or a call reaches it,
+    /// however long that takes. The text completes "it waits for". `None`, which is the default, promises nothing. In
+    /// virtual time a run without a limit ends when all promise.
+    fn waits_for(&self) -> Option<String> {
+        None
+    }
 }
 
 /// The declaration of a component, which `#[derive(Class)]` writes.
@@ -165,8 +175,8 @@ pub trait Component: Send + Sized + 'static {
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the
 /// topics, services, references, knowledge and loops of the other one and those that it declares itself; composites
 /// change its loops as those of the other, and rules over fleets take it for one. It calls the functions of the other
-/// where the work of the other belongs, shutdown, save and restore included, and `flatten` gives it the same
-/// properties:
+/// where the work of the other belongs, shutdown, save, restore and `waits_for` included, and `flatten` gives it the
+/// same properties:
 ///
 /// ```
 /// use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
@@ -279,6 +289,11 @@ pub trait DynComponent: Send {
     /// # Errors
     /// As there.
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure>;
+    /// See [`Component::waits_for`].
+    ///
+    /// # Errors
+    /// A component of a library failed to say it.
+    fn waits_for(&self) -> Result<Option<String>, Failure>;
 }
 
 impl<C: Class> DynComponent for C {
@@ -303,5 +318,9 @@ impl<C: Class> DynComponent for C {
 
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         Component::restore(self, saved)
+    }
+
+    fn waits_for(&self) -> Result<Option<String>, Failure> {
+        Ok(Component::waits_for(self))
     }
 }

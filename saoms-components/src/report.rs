@@ -45,6 +45,14 @@ pub(crate) fn counted(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
+/// `luggage 3`, `luggage 3 and 2 more pieces`: the first of several pieces, and how many others there are.
+pub(crate) fn pieces(first: u32, more: usize) -> String {
+    match more {
+        0 => format!("luggage {first}"),
+        more => format!("luggage {first} and {more} more piece{}", if more == 1 { "" } else { "s" }),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

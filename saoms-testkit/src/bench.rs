@@ -265,6 +265,14 @@ impl Bench {
         self.stage.gave_up
     }
 
+    /// What the component [waits for](saoms_api::Component::waits_for) now.
+    ///
+    /// # Errors
+    /// A component of a library failed to say it.
+    pub fn waits_for(&self) -> Result<Option<String>, Failure> {
+        self.component.waits_for()
+    }
+
     /// A value or count of the component in the report.
     pub fn report(&self, path: &str) -> Option<&ReportValue> {
         self.stage.report.iter().rev().find(|(known, _)| known == path).map(|(_, value)| value)

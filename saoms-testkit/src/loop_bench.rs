@@ -226,4 +226,8 @@ impl<K: Knowledge + Send> DynComponent for Subject<K> {
     fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
         Err("a loop alone restores nothing".into())
     }
+
+    fn waits_for(&self) -> Result<Option<String>, Failure> {
+        Ok(None)
+    }
 }

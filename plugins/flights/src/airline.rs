@@ -83,6 +83,10 @@ impl Component for Airline {
         }
         Ok(())
     }
+
+    fn waits_for(&self) -> Option<String> {
+        self.announced.then(|| format!("the luggage of flight {}", self.flight.number))
+    }
 }
 
 #[cfg(test)]

@@ -84,6 +84,10 @@ impl Component for FlightMaster {
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.master.shutdown(context)
     }
+
+    fn waits_for(&self) -> Option<String> {
+        self.master.waits_for()
+    }
 }
 
 #[cfg(test)]

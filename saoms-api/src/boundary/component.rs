@@ -55,6 +55,7 @@ impl<C: DynComponent> ExportedComponent<C> {
         destroy: Self::destroy,
         save: Some(Self::save),
         restore: Some(Self::restore),
+        waits_for: Some(Self::waits_for),
     };
 
     /// # Safety
@@ -124,6 +125,18 @@ impl<C: DynComponent> ExportedComponent<C> {
         // SAFETY: as in `save`.
         unsafe {
             guarded(error, || (*this.cast::<Self>()).component.restore(&Saved::from_bytes(saved.get()?.to_vec())))
+        }
+    }
+
+    unsafe extern "C" fn waits_for(this: *mut c_void, text: Sink, error: Sink) -> Status {
+        // SAFETY: as in `save`.
+        unsafe {
+            guarded(error, || {
+                if let Some(what) = (*this.cast::<Self>()).component.waits_for()? {
+                    text.put(what.as_bytes());
+                }
+                Ok(())
+            })
         }
     }
 

@@ -6,7 +6,7 @@ mod scenario;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use saoms_api::{Class, Component, Context, Failure, Level, Properties, Publisher, Subscription, Time, Work, record};
 
@@ -17,6 +17,7 @@ use crate::messages::{
     AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage, ROBOT_LIST,
     RobotList,
 };
+use crate::report::pieces;
 use crate::validation::MessageValidator;
 
 use player::Player;
@@ -52,8 +53,8 @@ pub struct Environment {
     scenario: Scenario,
     playing: Option<(Time, Player)>,
     played: usize,
-    /// Luggage that is published, but not delivered yet.
-    open: BTreeSet<u32>,
+    /// Luggage that is published, but not delivered yet; true if it was passed on to the robots.
+    open: BTreeMap<u32, bool>,
     luggage: u32,
     map: Option<Map>,
     validator: MessageValidator,
@@ -73,7 +74,7 @@ impl Component for Environment {
             scenario: Scenario::read(&properties.scenario)?,
             playing: None,
             played: 0,
-            open: BTreeSet::new(),
+            open: BTreeMap::new(),
             luggage: 0,
             map: None,
             validator: MessageValidator::default(),
@@ -122,6 +123,22 @@ impl Component for Environment {
         self.playing = Some((start, player));
         Ok(())
     }
+
+    fn waits_for(&self) -> Option<String> {
+        if self.done {
+            return Some("nothing: its scenario is over".to_owned());
+        }
+        let Some((_, player)) = &self.playing else {
+            let waits = self.scenario.needs_area() && self.map.is_none();
+            return waits.then(|| "a `saoms.World`, which says how large the area is".to_owned());
+        };
+        let (first, passed_on) = self.open.first_key_value().filter(|_| player.is_over())?;
+        let pieces = pieces(*first, self.open.len() - 1);
+        Some(match passed_on {
+            true => format!("a robot to bring {pieces}"),
+            false => format!("a master of the environment to pass on {pieces}"),
+        })
+    }
 }
 
 impl Environment {
@@ -145,9 +162,12 @@ impl Environment {
             let counted = match response.stage {
                 LuggageStage::Delivered => -1,
                 LuggageStage::GivenUp => 0,
-                _ => continue,
+                _ => {
+                    self.open.entry(response.luggage).and_modify(|passed_on| *passed_on = true);
+                    continue;
+                }
             };
-            if !self.open.remove(&response.luggage) {
+            if self.open.remove(&response.luggage).is_none() {
                 continue;
             }
             if counted == 0 {
@@ -183,7 +203,7 @@ impl Environment {
             Some(ScenarioEvent::Luggage { from, to }) => {
                 self.luggage += 1;
                 let request = EventLuggage::request(self.luggage, from, to);
-                self.open.insert(self.luggage);
+                self.open.insert(self.luggage, false);
                 if !self.has_world {
                     context.count("luggage.open", 1);
                 }

@@ -8,6 +8,7 @@ use crate::messages::{
     AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT,
     Fault, LuggageStage, ROBOT_LIST, RobotList,
 };
+use crate::report::pieces;
 use crate::validation::{MessageValidator, Problem, Validate};
 
 /// Distributes the events of the environment to their topics: luggage and faults to the robots, exceptional events to
@@ -100,6 +101,13 @@ impl Component for MasterEnvironment {
             context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
         }
         Ok(())
+    }
+
+    fn waits_for(&self) -> Option<String> {
+        Some(match self.open.first() {
+            None => "events".to_owned(),
+            Some((first, more)) => format!("a robot to bring {}", pieces(first, more)),
+        })
     }
 }
 

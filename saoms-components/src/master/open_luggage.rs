@@ -31,6 +31,11 @@ impl OpenLuggage {
         self.changed = true;
     }
 
+    /// The lowest number of open luggage, and the number of other pieces.
+    pub(super) fn first(&self) -> Option<(u32, usize)> {
+        self.pieces.first_key_value().map(|(first, _)| (*first, self.pieces.len() - 1))
+    }
+
     pub(super) fn break_down(&mut self, robot: u32) {
         self.changed |= self.broken.insert(robot);
     }

@@ -136,6 +136,18 @@ impl RobotKnowledge {
         self.block == self.charge_block && self.next == self.charge_block
     }
 
+    /// What it waits for, if it takes no work by itself: nothing waits for it that it knows of. It may still charge.
+    pub(super) fn waits_for(&self) -> Option<String> {
+        if self.shut_down {
+            return Some("assistance".to_owned());
+        }
+        let Variables { transporter, healer, critical, .. } = self.variables;
+        let has_work = self.job.is_some() || self.untold.is_some() || transporter || healer || critical;
+        let knows_work = !self.lists.requests.open().is_empty() || !self.lists.helps.open().is_empty();
+        let is_idle = self.hardware.has_entered() && self.block == self.next && self.trouble.is_none();
+        (is_idle && !has_work && !knows_work && !self.offers_help).then(|| "luggage".to_owned())
+    }
+
     /// Next destination of its job: the block where it collects, then the block where it deposits.
     pub fn destination(&self) -> Option<Block> {
         let job = self.job.as_ref().filter(|_| self.variables.busy)?;

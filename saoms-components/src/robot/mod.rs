@@ -151,6 +151,10 @@ impl Component for Robot {
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         self.knowledge.restore(saved)
     }
+
+    fn waits_for(&self) -> Option<String> {
+        self.knowledge.waits_for()
+    }
 }
 
 impl Robot {

@@ -79,6 +79,12 @@ impl Stock {
         self.open == 0
     }
 
+    /// The open piece with the lowest number, and how many others are open.
+    pub(super) fn first_open(&self) -> Option<(u32, usize)> {
+        let open = self.pieces.iter().filter(|(_, piece)| piece.is_open());
+        open.map(|(luggage, _)| *luggage).min().map(|first| (first, self.open.saturating_sub(1)))
+    }
+
     /// A robot collects a piece from a block. The piece may also be on another robot that is out of service on the
     /// block.
     pub(super) fn collect(

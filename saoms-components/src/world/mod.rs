@@ -15,6 +15,7 @@ use crate::messages::{
     AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, LuggageStage,
     ROBOT_LIST, RobotList,
 };
+use crate::report::pieces;
 use crate::validation::{MessageValidator, Problem};
 
 pub use properties::WorldProperties;
@@ -112,6 +113,15 @@ impl Component for World {
         self.referee.settle(context.now());
         self.vote(context);
         Ok(())
+    }
+
+    fn waits_for(&self) -> Option<String> {
+        let Some((first, more)) = self.stock.first_open() else { return Some("luggage".to_owned()) };
+        let pieces = pieces(first, more);
+        Some(match self.referee.is_empty() {
+            true => format!("a robot with a reference `world` to it, to bring {pieces}"),
+            false => format!("a robot to bring {pieces}"),
+        })
     }
 }
 

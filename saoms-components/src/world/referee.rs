@@ -89,6 +89,11 @@ impl Referee {
         Ok(block)
     }
 
+    /// True if no robot is in this world.
+    pub(super) fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
     fn body(&self, robot: u32) -> Result<&Body, Failure> {
         self.bodies.get(&robot).ok_or_else(|| unknown(robot))
     }

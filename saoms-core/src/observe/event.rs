@@ -5,6 +5,8 @@ use std::time::Duration;
 use saoms_api::host::SharedMessage;
 use saoms_api::{Level, Time};
 
+use crate::report::Standstill;
+
 /// Something that happened in a fleet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunEvent {
@@ -73,6 +75,8 @@ pub enum Occurrence {
     },
     /// The component did not end in time and was abandoned.
     Abandoned,
+    /// Nothing has happened for a long time, although work is left.
+    Standstill(Standstill),
     /// A remark about the whole fleet.
     Note {
         /// Severity.
@@ -95,6 +99,7 @@ impl Occurrence {
             Occurrence::Failed { .. }
             | Occurrence::Restarted { .. }
             | Occurrence::Slow { .. }
+            | Occurrence::Standstill(_)
             | Occurrence::Dropped { .. } => Level::Warning,
         }
     }
@@ -130,6 +135,7 @@ impl fmt::Display for Occurrence {
             Occurrence::Overrun { missed } => {
                 write!(formatter, "stopped, because executions could not start in time: {missed} would be left out")
             }
+            Occurrence::Standstill(standstill) => standstill.fmt(formatter),
             Occurrence::Abandoned => formatter.write_str("did not end in time and is left behind"),
         }
     }

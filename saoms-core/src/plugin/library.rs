@@ -7,6 +7,7 @@ use std::{env, error, fmt, fs, io, process};
 use libloading::{Library, Symbol};
 use saoms_abi::{EntryPoint, PluginTable, VERSION};
 
+use super::boundary::LEAST_COMPONENT_TABLE;
 use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
 
 /// Loads a library. It is never unloaded.
@@ -66,7 +67,7 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
         let loops = tables(table.loops, table.loop_count).map_err(disagrees)?;
         let rules = tables(table.rules, table.rule_count).map_err(disagrees)?;
         for class in &classes {
-            one(class.component).map_err(disagrees)?;
+            check(class.component, LEAST_COMPONENT_TABLE).map_err(disagrees)?;
         }
         for looping in &loops {
             one(looping.looping).map_err(disagrees)?;
@@ -97,18 +98,25 @@ fn copy(path: &Path) -> io::Result<PathBuf> {
 /// # Safety
 /// It is null, or there for as long as the program runs.
 unsafe fn one<T>(table: *const T) -> Result<&'static T, String> {
+    // SAFETY: as the caller promises; when it has the size of the type, all of it is there.
+    unsafe { check(table, size_of::<T>()).map(|()| &*table) }
+}
+
+/// Checks that a table is there and has so many bytes at least. If a table gains fields within a version, that is the
+/// first size of the version, and missing fields are `None`.
+///
+/// # Safety
+/// As [`one`].
+unsafe fn check<T>(table: *const T, least: usize) -> Result<(), String> {
     if table.is_null() {
         return Err("a table is missing".to_owned());
     }
     // SAFETY: as the caller promises; all tables begin with their size.
     let size = unsafe { *table.cast::<usize>() };
-    // If a table gains fields within a version, this has to compare with the first size of that version, and missing
-    // fields are `None`.
-    if size < size_of::<T>() {
-        return Err(format!("a table has {size} bytes, expected {}", size_of::<T>()));
+    if size < least {
+        return Err(format!("a table has {size} bytes, expected {least}"));
     }
-    // SAFETY: as the caller promises; all of it is there.
-    Ok(unsafe { &*table })
+    Ok(())
 }
 
 /// # Safety

@@ -3,9 +3,11 @@
 mod lateness;
 mod run;
 mod sections;
+mod standstill;
 #[cfg(test)]
 mod tests;
 
 pub use lateness::{Lateness, LatenessSummary};
 pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, RunStatus, Votes};
 pub use sections::Sections;
+pub use standstill::{Standstill, Waiting};

@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::LatenessSummary;
+use super::{LatenessSummary, Standstill};
 use crate::journal::Journal;
 
 /// The report of a run, as `saoms run --report` writes it.
@@ -25,6 +25,9 @@ pub struct RunReport {
     pub journal: Journal,
     /// Votes of the components about the work that is left.
     pub votes: Votes,
+    /// The standstill of the run, if there was one: nothing happened for a long time, although work was left.
+    #[serde(default)]
+    pub standstill: Option<Standstill>,
     /// Outcome of the run.
     pub outcome: Outcome,
     /// A digest of everything that happened, 16 hexadecimal digits: equal for equal runs, on every machine. `null` in

@@ -17,7 +17,8 @@ enum Entry {
 }
 
 /// The fields of a report that are not for components to write.
-const RESERVED: [&str; 8] = ["seed", "time_s", "periods", "components", "journal", "votes", "outcome", "trace_hash"];
+const RESERVED: [&str; 9] =
+    ["seed", "time_s", "periods", "components", "journal", "votes", "standstill", "outcome", "trace_hash"];
 
 impl Sections {
     /// True if a path would write over what the program itself reports.

@@ -188,6 +188,7 @@ impl Engine {
     #[cold]
     pub(super) fn deliver_injections(&mut self, now: u64) {
         let mut delivered = false;
+        self.standstill.note_effect(now);
         while let Some(entry) = self.injections.waiting.first_entry().filter(|entry| entry.key().0 <= now) {
             let when = entry.key().0;
             match entry.remove() {

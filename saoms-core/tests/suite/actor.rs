@@ -61,6 +61,9 @@ pub(crate) struct Script {
     /// In each call.
     #[property(default = "")]
     called: String,
+    /// What it waits for.
+    #[property(default = "")]
+    waits: String,
     /// The topics that it publishes.
     #[property(default = "")]
     publishes: String,
@@ -114,6 +117,10 @@ macro_rules! actor {
 
             fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
                 self.ends.run(&self.script.last, context)
+            }
+
+            fn waits_for(&self) -> Option<String> {
+                Some(self.script.waits.clone()).filter(|what| !what.is_empty())
             }
         }
 

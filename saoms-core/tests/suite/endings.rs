@@ -179,6 +179,7 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
             ],
             "journal": {"records": 0, "overwritten": 0, "lost": 0, "loops": [], "entries": []},
             "votes": {"done": 1, "open": [], "given_up": []},
+            "standstill": null,
             "outcome": {"status": "done", "reasons": []},
             "trace_hash": report.trace_hash,
         })

@@ -16,6 +16,7 @@ mod observer;
 mod order;
 mod real_time;
 mod services;
+mod standstill;
 mod start;
 mod tasks;
 mod trace;

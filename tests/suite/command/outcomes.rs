@@ -41,3 +41,80 @@ fn a_run_whose_luggage_was_given_up_is_incomplete() {
     let (output, report) = hall("outcome-given-up-for", breaks, &["--for", "1900ms"]);
     assert_eq!((code(&output), &report["outcome"]["status"]), (1, &Value::from("incomplete")));
 }
+
+/// A change of a composite's text.
+type Change<'a> = &'a dyn Fn(String) -> String;
+
+/// The component of this name, as `hall.composite` has it.
+fn component(name: &str) -> String {
+    let hall = project("composites/hall.composite");
+    let from = hall.find(&format!("  <component name=\"{name}\"")).unwrap();
+    let end = "</component>\n";
+    hall[from..from + hall[from..].find(end).unwrap() + end.len()].to_owned()
+}
+
+#[test]
+fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what() {
+    let wire = "    <reference name=\"world\" target=\"World\"/>\n";
+    let id = "<property name=\"ID\" value=\"Robot7\"/>";
+    let later = format!("{id}<property name=\"runOnStartup\" value=\"false\"/>");
+    let needs_robot = "`World` waits for a robot with a reference `world` to it, to bring luggage 1";
+    let fleets: [(&str, Change<'_>, &str, &[&str]); 4] = [
+        (
+            "robot",
+            &|hall| hall.replace(&component("Robot7"), ""),
+            "1.100 s",
+            &[needs_robot, "`Environment` and 1 more wait for a robot to bring luggage 1"],
+        ),
+        (
+            "started",
+            &|hall| hall.replace(id, &later),
+            "1.100 s",
+            &[needs_robot, "`Environment` and 1 more wait for a robot to bring luggage 1", "`Robot7` is not started"],
+        ),
+        (
+            "master",
+            &|hall| hall.replace(&component("Master"), ""),
+            "1.100 s",
+            &[
+                "`World` waits for a robot to bring luggage 1",
+                "`Environment` waits for a master of the environment to pass on luggage 1",
+                "`Robot7` waits for luggage",
+            ],
+        ),
+        (
+            "world",
+            &|hall| hall.replace(wire, ""),
+            "4.300 s",
+            &[
+                needs_robot,
+                "`Environment` waits for nothing: its scenario is over",
+                "`Master` waits for events",
+                "`Robot7` waits for luggage",
+            ],
+        ),
+    ];
+    for (name, change, since, waits) in fleets {
+        let (output, report) = hall(&format!("outcome-no-{name}"), change, &[]);
+        assert_eq!(code(&output), 1, "{}", text(&output));
+        let told = format!("nothing can happen any more since {since}: {}", waits.join("; "));
+        let (first, rest) = end(&output).split_once('\n').map(|(one, rest)| (one.to_owned(), rest.to_owned())).unwrap();
+        assert!(first.starts_with("incomplete after 6"), "{first}");
+        assert_eq!(rest, format!("  {told}"), "{name}");
+        assert_eq!(report["outcome"], serde_json::json!({"status": "incomplete", "reasons": [told]}));
+        assert_eq!(report["standstill"]["ends"], true, "{name}");
+        // Whoever gives the run a time keeps it, and is told once.
+        let (output, report) = hall(&format!("outcome-no-{name}-for"), change, &["--for", "2h"]);
+        assert_eq!((code(&output), &report["outcome"]["status"]), (0, &Value::from("elapsed")));
+        let line = format!("warning: nothing happens any more since {since}: {}\n", waits.join("; "));
+        assert_eq!(stdout(&output).matches(&line).count(), 1, "{}", text(&output));
+    }
+}
+
+#[test]
+fn a_scenario_with_a_long_pause_is_played_to_its_end() {
+    let pause = |hall: String| hall.replace("to (3,10)<", "to (3,10); at 50min luggage (3,1) to (3,5)<");
+    let (output, report) = hall("outcome-pause", pause, &[]);
+    assert_eq!((code(&output), &report["luggage"]["delivered"]), (0, &Value::from(2)), "{}", text(&output));
+    assert_eq!(report["standstill"], Value::Null);
+}

@@ -125,6 +125,11 @@ impl Component for Busy {
         self.panic_in("shutdown");
         context.send(&Publisher::default(), Sample::default())
     }
+
+    fn waits_for(&self) -> Option<String> {
+        self.panic_in("waits_for");
+        Some("a sample, or two".to_owned())
+    }
 }
 
 impl Adder for Busy {
@@ -167,6 +172,8 @@ fn played(construct: Construct) -> String {
     for inboxes in [vec![vec![]], vec![vec![message(1), message(2)]], vec![vec![message(3)]], vec![]] {
         results.push(busy.execute(&mut Context::new(&mut host, &inboxes)));
     }
+    let waits_for = busy.waits_for();
+    assert_eq!(waits_for, Ok(Some("a sample, or two".to_owned())));
     results.push(busy.shutdown(&mut Context::new(&mut host, &[])));
     let sent: Vec<_> =
         host.sent.iter().map(|(place, message)| (*place, message.header(), message.key(), message.bytes())).collect();

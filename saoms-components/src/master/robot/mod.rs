@@ -63,4 +63,8 @@ impl Component for MasterRobot {
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.loops.shutdown(&mut self.knowledge, context)
     }
+
+    fn waits_for(&self) -> Option<String> {
+        self.knowledge.shifts.is_empty().then(|| "landings and take-offs".to_owned())
+    }
 }

@@ -1,4 +1,5 @@
 use std::ffi::c_void;
+use std::mem::{MaybeUninit, offset_of};
 use std::ptr;
 
 use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
@@ -18,9 +19,9 @@ impl ImportedClass {
     ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](saoms_abi), for as long as the program runs.
-    pub const unsafe fn new(table: &ClassTable) -> ImportedClass {
+    pub unsafe fn new(table: &ClassTable) -> ImportedClass {
         // SAFETY: as the caller promises, the pointer leads to a table.
-        ImportedClass { construct: table.construct, component: unsafe { *table.component } }
+        ImportedClass { construct: table.construct, component: unsafe { read(table.component) } }
     }
 
     /// Makes a component.
@@ -31,6 +32,24 @@ impl ImportedClass {
         // SAFETY: `new`'s caller promised that the function keeps the rules.
         let instance = unsafe { construct(self.construct, values) }?;
         Ok(Box::new(ImportedComponent { table: self.component, instance, lease: Lease::default() }))
+    }
+}
+
+/// The least size of the functions of components: what came later may be missing in libraries built before.
+pub(crate) const LEAST_COMPONENT_TABLE: usize = offset_of!(ComponentTable, waits_for);
+
+/// A copy of the functions of components, with null for those that the library does not have.
+///
+/// # Safety
+/// The pointer leads to a table, which has its size: [`LEAST_COMPONENT_TABLE`] at least.
+unsafe fn read(table: *const ComponentTable) -> ComponentTable {
+    let mut copy = MaybeUninit::<ComponentTable>::zeroed();
+    // SAFETY: as the caller promises, so many bytes are there. All functions that may not be null are among them, and
+    // zeros are a null function.
+    unsafe {
+        let size = (*table.cast::<usize>()).min(size_of::<ComponentTable>());
+        copy.as_mut_ptr().cast::<u8>().copy_from_nonoverlapping(table.cast(), size);
+        copy.assume_init()
     }
 }
 
@@ -120,6 +139,15 @@ impl DynComponent for ImportedComponent {
         let instance = self.instance;
         // SAFETY: as in `save`.
         call(|error| unsafe { restore(instance, Bytes::lend(saved.bytes()), error) })
+    }
+
+    fn waits_for(&self) -> Result<Option<String>, Failure> {
+        let Some(waits_for) = self.table.waits_for else { return Ok(None) };
+        let (instance, mut bytes) = (self.instance, Vec::new());
+        // SAFETY: as in `save`.
+        call_for_bytes(&mut bytes, |text, error| unsafe { waits_for(instance, text, error) })?;
+        let text = String::from_utf8(bytes).map_err(|_| Failure::new("what it waits for is no text in UTF-8"))?;
+        Ok(Some(text).filter(|text| !text.is_empty()))
     }
 }
 

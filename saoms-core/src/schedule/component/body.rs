@@ -37,6 +37,8 @@ pub(crate) struct Part {
     pub(crate) chance: Chance,
     pub(crate) cancelled: Arc<AtomicBool>,
     pub(crate) vote: Option<Ballot>,
+    /// Answer to the question what it waits for.
+    pub(crate) waits_for: Option<String>,
     /// In virtual time, the time at which the present code runs.
     pub(crate) now: u64,
     pub(crate) due: u64,
@@ -60,6 +62,8 @@ pub(crate) enum Job {
     Start,
     /// Execute once.
     Execute,
+    /// Say what it waits for.
+    Ask,
     /// Shut down.
     Shutdown,
 }
@@ -83,6 +87,7 @@ impl Body {
             chance: Chance::new(0),
             cancelled,
             vote: None,
+            waits_for: None,
             now: 0,
             due: 0,
             execution: 0,
@@ -109,6 +114,9 @@ impl Body {
                 };
                 self.call(shared, execute).unwrap_or_else(Err)
             }
+            Job::Ask => self.call(shared, |instance, _| instance.waits_for()).unwrap_or_else(Err).map(|waits_for| {
+                self.part.waits_for = waits_for;
+            }),
             Job::Start => self.start(shared),
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };

@@ -14,11 +14,12 @@ use crate::schedule::settings::nanos;
 impl Engine {
     /// Takes over the journal records of a component.
     #[inline]
-    pub(crate) fn record(&mut self, part: &mut Part) {
+    pub(crate) fn record(&mut self, part: &mut Part, now: u64) {
         let recorder = &mut part.recorder;
         if recorder.is_empty() {
             return;
         }
+        self.standstill.note_effect(now);
         if let Some(trace) = &mut self.trace {
             for head in recorder.batch.heads() {
                 trace.record(head);
@@ -34,7 +35,10 @@ impl Engine {
     /// more, so that no queue can overflow.
     #[inline]
     pub(crate) fn deliver(&mut self, part: &mut Part, now: u64) {
-        self.record(part);
+        self.record(part, now);
+        if !part.outbox.is_empty() {
+            self.standstill.note_effect(now);
+        }
         self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
         for (topic, message) in part.outbox.drain(..) {
             if let Some(trace) = &mut self.trace {

@@ -17,6 +17,8 @@ pub(crate) enum EndCause {
     Interrupted,
     /// No component is left that can run.
     Lost,
+    /// Work is left, and nothing can happen any more.
+    Standstill,
     /// No component is scheduled, and in virtual time none ever will be.
     Idle,
 }

@@ -57,6 +57,7 @@ impl Engine {
         match job {
             Job::Execute => self.begin_execution(index, &mut body, now),
             Job::Shutdown => body.part.due = now,
+            Job::Ask => {}
             Job::Start => {
                 let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
                 slot.instances += 1;
@@ -146,6 +147,9 @@ impl Engine {
                     self.deliver(&mut body.part, ended);
                 }
                 let vote = body.part.vote.take_if(|_| !held);
+                if job == Job::Ask {
+                    self.slots[index as usize].waits_for = body.part.waits_for.take();
+                }
                 if job == Job::Start {
                     body.inboxes.resize_with(body.part.subscriptions.len(), Vec::new);
                 }
@@ -155,6 +159,7 @@ impl Engine {
                 }
                 match job {
                     Job::Execute => self.executed(index, ended),
+                    Job::Ask => self.resume(index, ended),
                     Job::Start => self.started(index, ended),
                     Job::Shutdown => self.left(index, ended),
                 }

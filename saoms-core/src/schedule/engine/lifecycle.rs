@@ -157,13 +157,13 @@ impl Engine {
     /// Handles the failure of a component in any job, by its policy.
     pub(crate) fn fail(&mut self, index: u32, body: &mut Body, job: Job, failure: Failure, now: u64) {
         // The journal keeps its records of the time before the failure.
-        self.record(&mut body.part);
+        self.record(&mut body.part, now);
         let unsent = body.part.outbox.len();
         body.part.outbox.clear();
         body.part.vote = None;
         let doing = match job {
             Job::Start => "could not start: ",
-            Job::Execute => "",
+            Job::Execute | Job::Ask => "",
             Job::Shutdown => "could not shut down: ",
         };
         let mut message = format!("{doing}{failure}");

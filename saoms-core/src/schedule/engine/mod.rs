@@ -8,6 +8,7 @@ mod overrun;
 pub(super) mod queue;
 mod report;
 pub(super) mod slot;
+pub(super) mod standstill;
 pub(super) mod trace;
 pub(super) mod votes;
 
@@ -20,6 +21,7 @@ use saoms_api::{Failure, Time};
 use self::ending::EndCause;
 use self::queue::Queue;
 use self::slot::{NEVER, Slot, SlotState};
+use self::standstill::StandstillDetector;
 use self::trace::{Trace, TraceStep};
 use self::votes::VoteTally;
 use super::component::body::Job;
@@ -75,6 +77,7 @@ pub(crate) struct Engine {
     /// Beginning of the end, in the time of the run and on the machine's clock.
     pub(crate) ended: (u64, u64),
     pub(crate) votes: VoteTally,
+    pub(crate) standstill: StandstillDetector,
     /// Latest end of the run.
     pub(crate) limit: u64,
     /// Time up to which virtual time may advance for now.
@@ -156,6 +159,7 @@ impl Engine {
             reasons: Vec::new(),
             ended: (0, 0),
             votes: VoteTally::default(),
+            standstill: StandstillDetector::default(),
             limit: settings.limit.map_or(NEVER, nanos),
             pause: 0,
             real: settings.clock == ClockKind::Real,
@@ -177,6 +181,14 @@ impl Engine {
                     if self.injections.earliest().is_some_and(|when| when <= now && when < self.limit) {
                         self.deliver_injections(now);
                         continue;
+                    }
+                    if self.standstill.is_quiet(now) {
+                        if let Some(index) = self.next_to_ask(now) {
+                            return Next::Run(index, Job::Ask);
+                        }
+                        if self.phase != RunPhase::Running {
+                            continue;
+                        }
                     }
                     let Some((when, index)) = self.queue.pop_due(now) else {
                         return Next::Wait(self.earliest().unwrap_or(NEVER).min(self.limit));
@@ -233,7 +245,13 @@ impl Engine {
         self.notifications.push(RunEvent { time: Time::from_nanos(now), component, what }.into());
     }
 
+    /// Queues an event about the whole fleet for the observers.
+    pub(crate) fn note(&mut self, now: u64, what: Occurrence) {
+        self.notifications.push(RunEvent { time: Time::from_nanos(now), component: None, what }.into());
+    }
+
     pub(crate) fn step(&mut self, now: u64, index: u32, step: TraceStep) {
+        self.standstill.note_effect(now);
         if let Some(trace) = &mut self.trace {
             trace.step(now, index, step);
         }

@@ -19,6 +19,7 @@ impl Engine {
             components: self.components(),
             journal: self.journal(),
             votes: self.votes_report(),
+            standstill: self.standstill.told.clone(),
             outcome: self.outcome(),
             trace_hash: self.trace.as_ref().map(Trace::digits),
         }
@@ -82,6 +83,10 @@ impl Engine {
             _ if !reasons.is_empty() => RunStatus::Failed,
             _ if self.slots.iter().any(|slot| slot.gave_up) => {
                 reasons.push(self.given_up_reason());
+                RunStatus::Incomplete
+            }
+            Some(EndCause::Standstill) => {
+                reasons.extend(self.standstill.told.as_ref().map(ToString::to_string));
                 RunStatus::Incomplete
             }
             Some(EndCause::Elapsed) => RunStatus::Elapsed,

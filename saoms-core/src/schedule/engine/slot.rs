@@ -47,6 +47,8 @@ pub(crate) struct Slot {
     pub(crate) sees_work: Option<bool>,
     /// True if it said that work was given up.
     pub(crate) gave_up: bool,
+    /// What it waits for, as it said last when it was asked.
+    pub(crate) waits_for: Option<String>,
     pub(crate) statistics: Statistics,
     pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
@@ -204,6 +206,7 @@ impl Slot {
             policy,
             sees_work: None,
             gave_up: false,
+            waits_for: None,
             statistics: Statistics::default(),
             journal: Ring::default(),
             overrun_failure: None,

@@ -67,6 +67,7 @@ impl<'r> ClassIndex<'r> {
 
 /// Finds the class of every component.
 pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options: &Options, report: &mut Report<'_>) {
+    fleet.registry = Some(registry);
     let contribution = fleet.contribution;
     let mut known: HashMap<&str, Option<usize>> = HashMap::new();
     // What is near an unknown name, which a whole fleet may have.

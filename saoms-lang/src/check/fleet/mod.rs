@@ -15,6 +15,7 @@ use crate::check::unfolding::replica::Instance;
 use crate::expression::has_expression;
 use crate::limits::Budget;
 use crate::model::{ComponentElement, Composite, Contribution, ReferenceElement, ServiceElement, WireElement};
+use crate::registry::Registry;
 use crate::source::{FileId, Location};
 use crate::syntax::ElementId;
 
@@ -28,6 +29,8 @@ pub(crate) struct Fleet<'a> {
     pub(crate) scopes: Vec<Scope>,
     pub(crate) units: Vec<Unit<'a>>,
     pub(crate) members: Vec<Member<'a>>,
+    /// The classes that there are, once those of the components are resolved.
+    pub(crate) registry: Option<&'a Registry>,
     /// The classes that occur, once they are resolved.
     pub(crate) classes: Vec<ClassIndex<'a>>,
     /// The replicas of each replicated component of a scope, by its name with `*` for each expression.

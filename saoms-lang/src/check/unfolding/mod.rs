@@ -49,6 +49,7 @@ pub(crate) fn unfold<'a>(
         is_misread: severities.is_misread(report.diagnostics()),
         names: Vec::new(),
         elements: Rc::clone(&elements),
+        registry: None,
     };
     let mut unfolding = Unfolding {
         fleet,

@@ -46,6 +46,7 @@ pub(crate) fn target(
         return Target::Open;
     }
     let Some(uri) = Uri::of(text, (3, Side::Service), (scope, fleet), report) else { return Target::Wrong };
+    let uri = Uri { wants: interface, ..uri };
     let is_elsewhere = || fleet.find(scope, uri.component).is_none() && !fleet.is_missing(scope, uri.component);
     if scope == 0 && options.assume_classes && is_elsewhere() {
         let at = report.part(text, 0..uri.component.len());
@@ -150,7 +151,7 @@ fn bound(
     false
 }
 
-fn fits(offer: Offer, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -> bool {
+pub(super) fn fits(offer: Offer, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -> bool {
     matches!(offer, Offer::Service(provider) if fleet.interface_of(provider) == Some(interface))
 }
 

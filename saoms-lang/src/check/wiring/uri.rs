@@ -2,13 +2,16 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::misread_uri::{inside, misread, unknown_component};
 use super::offer::Side;
+use super::target::fits;
 use crate::check::fleet::Fleet;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::{Budget, WIRE_ENDS};
+use crate::registry::{InterfaceDeclaration, RegisteredClass};
 use crate::source::Text;
 
 /// The component of a URI, and the name behind it.
@@ -24,6 +27,8 @@ pub(crate) struct Uri<'t> {
     pub(crate) component: &'t str,
     pub(crate) part: Option<(&'t str, Range<usize>)>,
     pub(crate) binding: Option<(&'t str, Range<usize>)>,
+    /// The interface that the component has to offer, where that is known.
+    pub(crate) wants: Option<&'t InterfaceDeclaration>,
 }
 
 impl<'t> Uri<'t> {
@@ -42,7 +47,7 @@ impl<'t> Uri<'t> {
             (part, at)
         });
         let (component, _) = parts.next()?;
-        let uri = Self { side, component, part: parts.next(), binding: parts.next() };
+        let uri = Self { side, component, part: parts.next(), binding: parts.next(), wants: None };
         let has_more = parts.next().is_some() || (most < 3 && uri.binding.is_some());
         let inner = [uri.part.as_ref(), uri.binding.as_ref()];
         if component.is_empty() || inner.into_iter().flatten().any(|(part, _)| part.is_empty()) || has_more {
@@ -110,13 +115,31 @@ impl<'t> Uri<'t> {
                 Some(misread) => misread.add_to(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text),
                 None => {
                     let is_promoted = rule == Some(Side::Reference.rule());
-                    unknown_component(self.component, (scope, own), is_promoted, at, message, fleet, report)
+                    let one = unknown_component(self.component, (scope, own), is_promoted, at, message, fleet, report);
+                    match self.wants.and_then(|wants| to_add(wants, scope, fleet)) {
+                        Some(help) if one.suggestions.is_empty() => one.help(help),
+                        _ => one,
+                    }
                 }
             }
         };
         report.push(Diagnostic { rule: rule.or(one.rule), ..one });
         None
     }
+}
+
+/// Advice to add a component of a class that offers an interface, where no component of the scope offers it.
+fn to_add(wants: &InterfaceDeclaration, scope: usize, fleet: &Fleet<'_>) -> Option<String> {
+    if fleet.scopes[scope]
+        .members
+        .iter()
+        .any(|&member| fleet.offers(member).iter().any(|(_, offer)| fits(*offer, wants, fleet)))
+    {
+        return None;
+    }
+    let offers = |class: &&Arc<RegisteredClass>| class.declaration().services.iter().any(|one| one.interface == *wants);
+    let mut classes = fleet.registry?.iter().filter(offers).map(|class| quoted(class.name()));
+    Some(format!("add a component of the class {}", classes.next()?))
 }
 
 /// The texts that a text stands for which names components of a scope: itself, or one for each replica of a group, with

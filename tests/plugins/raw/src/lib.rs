@@ -1,6 +1,7 @@
 //! Tables written by hand, as somebody who writes C could: they do what no safe code can.
 
 use std::ffi::c_void;
+use std::mem::offset_of;
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::{ptr, thread};
 
@@ -264,7 +265,8 @@ unsafe extern "C" fn destroy(this: *mut c_void) {
 }
 
 static COMPONENT: ComponentTable = ComponentTable {
-    size: size_of::<ComponentTable>(),
+    // As of a library that was built before components could say what they wait for.
+    size: offset_of!(ComponentTable, waits_for),
     initialize,
     execute,
     shutdown,
@@ -272,6 +274,7 @@ static COMPONENT: ComponentTable = ComponentTable {
     destroy,
     save: None,
     restore: None,
+    waits_for: None,
 };
 static CLASS: ClassTable =
     ClassTable { size: size_of::<ClassTable>(), construct, component: &raw const COMPONENT };

@@ -31,8 +31,10 @@ fn a_faulty_expression_hides_nothing_else() {
           help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R1`, index 1)
           help: the components are `C` and `R*`
+          help: add a component of the class `example.Gps`
         5:99-106 error S2011: there is no component `Nowhere`
           help: the components are `R*`
+          help: add a component of the class `example.Gps`
     "#]].assert_eq(&by_id);
     let by_count = of(&robot("name=\"R${index}\" saoms:count=\"k\"", "R${index}"));
     expect![[r#"
@@ -44,8 +46,10 @@ fn a_faulty_expression_hides_nothing_else() {
           help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R1`, index 1)
           help: the components are `C` and `R*`
+          help: add a component of the class `example.Gps`
         5:99-106 error S2011: there is no component `Nowhere`
           help: the components are `R*`
+          help: add a component of the class `example.Gps`
     "#]].assert_eq(&by_count);
     let by_table = of(&robot("name=\"R${index}\" saoms:count=\"3\" saoms:overrides=\"none.csv\"", "R${index}"));
     expect![[r#"
@@ -56,8 +60,10 @@ fn a_faulty_expression_hides_nothing_else() {
           help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R1`, index 1)
           help: the components are `C` and `R*`
+          help: add a component of the class `example.Gps`
         5:99-106 error S2011: there is no component `Nowhere`
           help: the components are `R*`
+          help: add a component of the class `example.Gps`
     "#]].assert_eq(&by_table);
     let by_name = of(&robot("name=\"R${inde}\" saoms:count=\"3\"", "R${index}"));
     expect![[r#"
@@ -69,8 +75,10 @@ fn a_faulty_expression_hides_nothing_else() {
           help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody` (in `R${inde}`, index 1)
           help: the components are `C` and `R*`
+          help: add a component of the class `example.Gps`
         5:99-106 error S2011: there is no component `Nowhere`
           help: the components are `R*`
+          help: add a component of the class `example.Gps`
     "#]].assert_eq(&by_name);
     let by_condition = of(&robot("name=\"R2\" saoms:if=\"bogus\"", "R2"));
     expect![[r#"
@@ -82,7 +90,9 @@ fn a_faulty_expression_hides_nothing_else() {
           help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
         4:31-37 error S2011: there is no component `Nobody`
           help: the components are `C`
+          help: add a component of the class `example.Gps`
         5:99-106 error S2011: there is no component `Nowhere`
+          help: add a component of the class `example.Gps`
     "#]].assert_eq(&by_condition);
 }
 

@@ -1,0 +1,138 @@
+//! Detection of a run in which nothing happens any more, although work is left.
+
+use saoms_api::Time;
+use saoms_lang::assembly::ComponentSpec;
+
+use super::Engine;
+use super::ending::EndCause;
+use super::slot::{NEVER, Slot, SlotState};
+use crate::observe::Occurrence;
+use crate::report::{Standstill, Waiting};
+
+/// Time without an effect, in nanoseconds, after which components are asked what they wait for: one minute. If all
+/// wait, nothing can happen any more.
+const QUIET: u64 = 60_000_000_000;
+/// Time without an effect after which the standstill is told even if components may still act: one hour.
+const LONG: u64 = 3_600_000_000_000;
+
+/// State of the detection.
+#[derive(Debug)]
+pub(crate) struct StandstillDetector {
+    /// Time of the last effect: a message, a record of the journal, a vote, or a change in the life of a component.
+    last_effect: u64,
+    /// Time without an effect after which components are asked; [`NEVER`] once a standstill was told.
+    patience: u64,
+    /// The effect and the patience of the present round of questions, and the next component to ask.
+    round: (u64, u64),
+    next: usize,
+    /// The standstill that was told.
+    pub(crate) told: Option<Standstill>,
+}
+
+impl Default for StandstillDetector {
+    fn default() -> StandstillDetector {
+        StandstillDetector { last_effect: 0, patience: QUIET, round: (NEVER, 0), next: 0, told: None }
+    }
+}
+
+impl StandstillDetector {
+    /// Notes that something happened.
+    #[inline]
+    pub(crate) fn note_effect(&mut self, now: u64) {
+        self.last_effect = now;
+    }
+
+    #[inline]
+    pub(crate) fn is_quiet(&self, now: u64) -> bool {
+        now.saturating_sub(self.last_effect) >= self.patience
+    }
+}
+
+impl Engine {
+    /// The next component to ask what it waits for, while nothing happens. When all were asked, the standstill is told,
+    /// or ends the run if nothing can happen any more.
+    pub(crate) fn next_to_ask(&mut self, now: u64) -> Option<u32> {
+        if self.votes.done == self.votes.voters {
+            // No work is left: a fleet may be idle.
+            return None;
+        }
+        let detector = &mut self.standstill;
+        if detector.patience < LONG && now.saturating_sub(detector.last_effect) >= LONG {
+            detector.patience = LONG;
+        }
+        let round = (detector.last_effect, detector.patience);
+        if detector.round != round {
+            (detector.round, detector.next) = (round, 0);
+        }
+        while let Some(slot) = self.slots.get_mut(self.standstill.next) {
+            self.standstill.next += 1;
+            slot.waits_for = None;
+            if slot.state == SlotState::Active && slot.body.is_some() && !slot.held && !slot.isolation.active {
+                return Some(self.standstill.next as u32 - 1);
+            }
+        }
+        if self.standstill.next == self.slots.len() {
+            // Once a round.
+            self.standstill.next += 1;
+            self.judge_standstill(now);
+        }
+        None
+    }
+
+    fn judge_standstill(&mut self, now: u64) {
+        let since = self.standstill.last_effect;
+        let is_certain = self.injections.are_over() && self.slots.iter().all(|slot| !slot.may_act(since));
+        if !is_certain && self.standstill.patience < LONG {
+            return;
+        }
+        let ends = is_certain && !self.real && self.limit == NEVER && self.pause == NEVER;
+        let standstill = self.standstill(since, ends);
+        self.standstill.patience = NEVER;
+        match ends {
+            // The outcome of the run tells it.
+            true => self.begin_stop(EndCause::Standstill, now),
+            false => self.note(now, Occurrence::Standstill(standstill.clone())),
+        }
+        self.standstill.told = Some(standstill);
+    }
+
+    /// What is known of a standstill: first who sees work left, then who does not run, then the others.
+    fn standstill(&self, since: u64, ends: bool) -> Standstill {
+        let mut waiting: Vec<(u8, Waiting)> = Vec::new();
+        for slot in self.slots.iter().filter(|slot| slot.joined && slot.policy.periodic) {
+            let rank = match slot.sees_work {
+                Some(true) => 0,
+                _ if slot.state == SlotState::Idle => 1,
+                _ => 2,
+            };
+            let starts = slot.state == SlotState::Idle;
+            if rank < 2 || slot.waits_for.is_some() {
+                let (component, waits_for) = (slot.name.to_string(), slot.waits_for.clone());
+                waiting.push((rank, Waiting { component, runs: !starts, waits_for }));
+            }
+        }
+        waiting.sort_by_key(|(rank, _)| *rank);
+        let waiting = waiting.into_iter().map(|(_, one)| one).collect();
+        Standstill { since_s: Time::from_nanos(since).as_nanos() as f64 / 1e9, ends, waiting }
+    }
+}
+
+impl Slot {
+    /// True unless the component waits, and knows all that happened up to a time.
+    fn may_act(&self, since: u64) -> bool {
+        match self.state {
+            SlotState::Active if !self.policy.periodic => false,
+            SlotState::Active => {
+                let is_up_to_date = self.last_due.is_some_and(|due| due > since);
+                self.waits_for.is_none() || !is_up_to_date || self.until != NEVER || has_foreign_loops(&self.spec)
+            }
+            SlotState::Starting | SlotState::Leaving => true,
+            SlotState::Idle | SlotState::Failed | SlotState::Abandoned | SlotState::Removed => false,
+        }
+    }
+}
+
+/// True if the component has loops of another library than its class: its class cannot speak for them.
+fn has_foreign_loops(spec: &ComponentSpec) -> bool {
+    spec.loops.iter().any(|one| one.class.origin() != spec.class.origin())
+}

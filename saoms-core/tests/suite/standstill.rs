@@ -1,0 +1,69 @@
+//! Fleets in which nothing happens although work is left.
+
+use saoms_core::schedule::Settings;
+
+use serde_json::json;
+
+use crate::fleet::{check, outcome, run, simulated, start};
+
+/// The outcome and the diary of a fleet that runs without a limit.
+fn endless(fleet: &str) -> (String, String) {
+    let (fleet, diary) = start(fleet, Settings::simulated(7));
+    (outcome(&fleet.unwrap().run_to_end()), diary.lines())
+}
+
+const OPEN: &str = "A actor period=10 each=[0: open] waits=[parcels]";
+
+#[test]
+fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what() {
+    let fleet = format!(
+        "{OPEN}\nB actor period=20 delay=400 waits=[news]\nC actor period=10 waits=[news]\nD actor startup=false\nE callee"
+    );
+    let told = "nothing can happen any more since 0.000 s: `A` waits for parcels; `D` is not started; `B` and 1 more wait for news";
+    let (outcome, diary) = endless(&fleet);
+    assert_eq!(outcome, format!("Incomplete after 60 s\n- {told}"));
+    assert_eq!(diary, "");
+}
+
+#[test]
+fn what_may_still_happen_keeps_a_run_going() {
+    // B is silent for hours, and does not say that it waits: that is told once.
+    let (outcome, diary) = endless(
+        "A actor period=60000 each=[0: open; 201: done] waits=[parcels]
+         B actor period=60000 each=[100: say one; 200: say two] publishes=TALK",
+    );
+    assert_eq!(outcome, "Done after 12060 s");
+    assert_eq!(diary, "[3600.000 s] nothing happens any more since 0.000 s: `A` waits for parcels\n");
+}
+
+#[test]
+fn with_a_limit_a_standstill_is_told_and_the_run_goes_on() {
+    check(
+        OPEN,
+        90_000,
+        "[60.000 s] nothing happens any more since 0.000 s: `A` waits for parcels
+         Elapsed after 90 s",
+    );
+    check("A actor period=10 waits=[parcels]\nB actor period=10 waits=[news]", 90_000, "Elapsed after 90 s");
+    let (report, _) = run(OPEN, simulated(90_000));
+    let waiting = json!([{"component": "A", "runs": true, "waits_for": "parcels"}]);
+    assert_eq!(
+        serde_json::to_value(report.standstill).unwrap(),
+        json!({"since_s": 0.0, "ends": false, "waiting": waiting})
+    );
+}
+
+#[test]
+fn who_has_not_heard_the_last_message_or_leaves_by_itself_may_act() {
+    // B hears what A says only after two minutes, and answers.
+    let (outcome, _) = endless(
+        "A actor period=10 publishes=TALK each=[0: open; 1: say parcel; 13000: done] waits=[parcels]
+         B actor period=120000 delay=120000 publishes=TALK subscribes=TALK each=[hear; say yes] waits=[news]",
+    );
+    assert_eq!(outcome, "Done after 130 s");
+    let (outcome, _) = endless(
+        "A actor period=10 task=B each=[0: open; 1: schedule-for 100000; 13000: done] waits=[parcels]
+         B actor period=10 startup=false waits=[news]",
+    );
+    assert_eq!(outcome, "Done after 130 s");
+}
