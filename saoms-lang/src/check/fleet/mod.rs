@@ -12,6 +12,7 @@ use smol_str::SmolStr;
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::unfolding::expression_scope::Names;
 use crate::check::unfolding::replica::Instance;
+use crate::check::values::faulty_values::FaultyValues;
 use crate::expression::has_expression;
 use crate::limits::Budget;
 use crate::model::{ComponentElement, Composite, Contribution, ReferenceElement, ServiceElement, WireElement};
@@ -45,6 +46,8 @@ pub(crate) struct Fleet<'a> {
     pub(crate) is_misread: bool,
     /// The scopes of expressions in units that have any.
     pub(crate) names: Vec<Option<Rc<Names>>>,
+    /// The values with a fault that is reported.
+    pub(crate) faulty_values: Rc<FaultyValues>,
     /// The rest of the elements that paths of sources may look at.
     pub(crate) elements: Rc<Budget>,
 }

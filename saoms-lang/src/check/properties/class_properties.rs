@@ -2,7 +2,7 @@
 
 use saoms_api::host::PropertyValue;
 
-use super::conversion::{Target, convert};
+use super::conversion::{Source, Target, convert};
 use super::given_values::{PropertyValues, ValuePlace};
 use super::property_table::{PropertyTable, TableEntry};
 use super::{Giver, given_twice, missing};
@@ -129,7 +129,9 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
             places.push(at);
         }
         let entry = &self.table.all[place];
-        let target = Target { outer: None, declaration: entry.main, also: entry.also(), at, source };
+        let (faulty, is_copy) = (&*self.parameters.faulty, self.giver.member.is_copy);
+        let from = source.map(|at| Source { at, faulty, is_copy });
+        let target = Target { outer: None, declaration: entry.main, also: entry.also(), at, source: from };
         let value = convert(found, target, self.report).ok_or(())?;
         self.slots[place].value = Some((value, ValuePlace { property: place, places: places.into(), source }));
         Ok(())

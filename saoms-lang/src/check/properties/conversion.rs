@@ -8,6 +8,7 @@ use saoms_api::host::declaration::PropertyKind;
 use super::wrong_text;
 use crate::check::report::Report;
 use crate::check::unfolding::replica::Instance;
+use crate::check::values::faulty_values::FaultyValues;
 use crate::check::values::raw::{Piece, Raw};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::PropertyDeclaration;
@@ -25,7 +26,16 @@ pub(crate) struct Target<'p> {
     /// The place of diagnostics without a value to point at.
     pub(crate) at: Location,
     /// The `source` that leads to a value elsewhere.
-    pub(crate) source: Option<Location>,
+    pub(crate) source: Option<Source<'p>>,
+}
+
+/// A `source` of a component, and what is known of the values that others take as well.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'p> {
+    pub(crate) at: Location,
+    pub(crate) faulty: &'p FaultyValues,
+    /// True for a component that is a replica, or inside one.
+    pub(crate) is_copy: bool,
 }
 
 /// As in `charger.x`.
@@ -185,14 +195,13 @@ fn given_parts<'e>(elements: &[Element<'e>], target: Target<'_>, report: &mut Re
 
 /// Reports a fault, with what there is to know about the property.
 fn tell(mut one: Diagnostic, target: Target<'_>, report: &mut Report<'_>) {
-    if let Some(source) = target.source {
-        // That it is not of the type of the composite's property is told, or another replica that uses it.
-        if report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, one.location)
-            || report.is_told_of_replicas(one.code, one.location)
-        {
+    if let Some(Source { at, faulty, is_copy }) = target.source {
+        // It is not of the type of the composite's property, or another replica takes it.
+        if faulty.is_mistyped(one.location) || is_copy && faulty.is_refused_of(one.code, one.location, true) {
             return;
         }
-        one = one.label(source, format!("used here as {}", target.quoted()));
+        faulty.add_refused(one.code, one.location, is_copy);
+        one = one.label(at, format!("used here as {}", target.quoted()));
     }
     one.help.extend(target.about());
     report.push(one);

@@ -78,17 +78,6 @@ impl<'a> Report<'a> {
         Report::new(self.sources, diagnostics)
     }
 
-    /// True if something of this code was told at this place.
-    pub(crate) fn has_diagnostic(&self, code: &'static Code, at: Location) -> bool {
-        self.known_copies.contains_key(&(at, code.id))
-            || self.diagnostics.iter().any(|one| one.code == code && one.location == at)
-    }
-
-    /// True if what follows is about a replica, and something of this code was told at this place of another one.
-    pub(crate) fn is_told_of_replicas(&self, code: &'static Code, at: Location) -> bool {
-        self.copy.is_some() && self.known_copies.contains_key(&(at, code.id))
-    }
-
     /// True if something of this code was told of this text anywhere in a file.
     pub(crate) fn has_diagnostic_about(&self, code: &'static Code, file: FileId, text: &str) -> bool {
         let is_it = |one: &Diagnostic| {

@@ -17,7 +17,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             type_and_element(property, "ASM60040", report);
             type_name::named(property, &composite.document, report);
             let typed = Typed { property, document: &composite.document };
-            property.simple_values().for_each(|value| typed.check(value, report));
+            property.simple_values().for_each(|value| typed.check(value, &fleet.faulty_values, report));
             properties::one_value(property, composite.version, report);
         }
         wired_by_implementation::wires(composite, report);

@@ -66,7 +66,8 @@ impl<'a> Unfolding<'a, '_, '_> {
         let owner = owner.map(|owner| &self.fleet.members[owner]);
         self.parameters.declare(unit, (composites, false), owner, report);
         let component = owner.map(|owner| owner.component);
-        Names::of(composites, component, &mut |name| self.parameters.taken_whole(unit, name, report))
+        let faulty = &self.fleet.faulty_values;
+        Names::of(composites, component, faulty, &mut |name| self.parameters.taken_whole(unit, name, report))
     }
 
     /// The composites of a unit and of what it includes: those that are there, and in a unit that is kept away then

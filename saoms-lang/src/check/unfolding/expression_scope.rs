@@ -2,14 +2,16 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashSet};
+use std::rc::Rc;
 
 use crate::check::report::{Report, list};
+use crate::check::values::faulty_values::FaultyValues;
 use crate::check::values::parameters::is_misspelt;
 use crate::check::values::raw::Piece;
 use crate::check::values::shared_values::Answer;
 use crate::check::values::value_type::SimpleType;
 use crate::check::values::{type_name, value_type};
-use crate::diagnostic::{codes, nearest, quoted};
+use crate::diagnostic::{nearest, quoted};
 use crate::expression::{ExpressionError, ExpressionValue, INDEX};
 use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
@@ -20,6 +22,7 @@ pub(crate) struct Names {
     all: BTreeMap<String, Name>,
     /// Those that the component gives values to and the composite does not have, which is reported.
     undeclared: HashSet<String>,
+    faulty: Rc<FaultyValues>,
 }
 
 struct Name {
@@ -42,9 +45,10 @@ impl Names {
     pub(crate) fn of<'a>(
         composites: &[&'a Composite],
         owner: Option<&ComponentElement>,
+        faulty: &Rc<FaultyValues>,
         values: &mut dyn FnMut(&str) -> Answer<'a>,
     ) -> Self {
-        let mut names = Self::default();
+        let mut names = Self { faulty: Rc::clone(faulty), ..Self::default() };
         let declared = composites.iter().flat_map(|composite| &composite.properties);
         let declared: HashSet<&str> = declared.map(|one| one.name.as_str()).collect();
         let is_declared = |name: &str| declared.contains(name);
@@ -83,8 +87,9 @@ impl Names {
     pub(crate) fn report_value(&self, name: &str, report: &mut Report<'_>) -> bool {
         match self.all.get(name) {
             Some(Name { mistyped: Some(property), text: Some(text), .. }) => {
-                let is_told = report.has_diagnostic(&codes::COMPOSITE_VALUE_TYPE, text.location);
-                is_told || report.of_all(|report| !value_type::holds_by_name(property, text, report))
+                let faulty = &self.faulty;
+                faulty.is_mistyped(text.location)
+                    || report.of_all(|report| !value_type::holds_by_name(property, text, faulty, report))
             }
             Some(Name { is_told, text: None, .. }) => is_told.replace(true),
             Some(_) => false,

@@ -48,6 +48,7 @@ pub(crate) fn unfold<'a>(
         conditional: HashMap::new(),
         is_misread: severities.is_misread(report.diagnostics()),
         names: Vec::new(),
+        faulty_values: Rc::default(),
         elements: Rc::clone(&elements),
         registry: None,
     };

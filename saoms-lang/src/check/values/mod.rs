@@ -1,5 +1,6 @@
 //! Values as composites give them: where they come from, which parts paths lead to, and the types of XML Schema.
 
+pub(crate) mod faulty_values;
 pub(crate) mod parameters;
 pub(crate) mod path;
 pub(crate) mod raw;

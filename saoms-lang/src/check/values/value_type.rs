@@ -3,6 +3,7 @@
 
 use std::ops::RangeInclusive;
 
+use super::faulty_values::FaultyValues;
 use super::type_name::local;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, meant_boolean, quoted};
@@ -31,20 +32,26 @@ impl<'a> Typed<'a> {
     }
 
     /// Reports a value that is not of its type.
-    pub(crate) fn check(&self, value: &Text, report: &mut Report<'_>) {
+    pub(crate) fn check(&self, value: &Text, faulty: &FaultyValues, report: &mut Report<'_>) {
         if let Some(of) = self.simple_type() {
-            holds(self.property, of, value, report);
+            holds(self.property, of, value, faulty, report);
         }
     }
 }
 
 /// True if a value is of the type of a property, whatever its prefix means. That it is not is reported.
-pub(crate) fn holds_by_name(property: &Property, value: &Text, report: &mut Report<'_>) -> bool {
+pub(crate) fn holds_by_name(property: &Property, value: &Text, faulty: &FaultyValues, report: &mut Report<'_>) -> bool {
     let of = property.r#type().and_then(|named| Some((named, SimpleType::find(local(named))?)));
-    of.is_none_or(|of| holds(property, of, value, report))
+    of.is_none_or(|of| holds(property, of, value, faulty, report))
 }
 
-fn holds(property: &Property, (named, of): (&Text, &SimpleType), value: &Text, report: &mut Report<'_>) -> bool {
+fn holds(
+    property: &Property,
+    (named, of): (&Text, &SimpleType),
+    value: &Text,
+    faulty: &FaultyValues,
+    report: &mut Report<'_>,
+) -> bool {
     // Many values may be written as a list, as in files of SCA 1.0.
     let is_list = property.many().is_some_and(|many| many.value) && !value.trim().is_empty();
     if of.accepts(value) || is_list && value.split_whitespace().all(|one| of.accepts(one)) {
@@ -54,12 +61,8 @@ fn holds(property: &Property, (named, of): (&Text, &SimpleType), value: &Text, r
     let is_hidden = value.is_empty() && value.location.file == property.tag().file;
     let at = if is_hidden { property.tag() } else { value.location };
     let code = &codes::COMPOSITE_VALUE_TYPE;
-    if report.skip(code, Severity::Error, at) || report.has_diagnostic(code, at) {
-        return false;
-    }
     // The class that takes a value may refuse it as well, which says more.
-    let of_classes = [&codes::VALUE_TYPE, &codes::VALUE_EMPTY, &codes::VALUE_RANGE, &codes::VALUE_NOT_ALLOWED];
-    if of_classes.into_iter().any(|code| report.has_diagnostic(code, value.location)) {
+    if report.skip(code, Severity::Error, at) || faulty.is_refused(value.location) || !faulty.add_mistyped(at) {
         return false;
     }
     let message = format!(

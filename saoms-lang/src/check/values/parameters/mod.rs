@@ -12,6 +12,7 @@ use crate::check::fleet::{Fleet, Member};
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::unfolding::replica::Instance;
+use crate::check::values::faulty_values::FaultyValues;
 use crate::check::values::path::expression;
 use crate::check::values::raw::{Raw, beside_source, raw};
 use crate::check::values::shared_values::{Answer, SharedValues};
@@ -31,6 +32,7 @@ pub(crate) struct Parameters<'a> {
     text: Budget,
     /// The elements that paths of sources look at.
     elements: Rc<Budget>,
+    pub(crate) faulty: Rc<FaultyValues>,
 }
 
 /// The properties of one composite, those of what it includes among them.
@@ -93,7 +95,7 @@ impl<'a> ValueSite<'a> {
 impl<'a> Parameters<'a> {
     /// Collects the properties and gives them what counts in place of their own values.
     pub(crate) fn of(fleet: &Fleet<'a>, options: &'a Options, report: &mut Report<'_>) -> Self {
-        let mut parameters = Self::new(options, &fleet.elements);
+        let mut parameters = Self { faulty: Rc::clone(&fleet.faulty_values), ..Self::new(options, &fleet.elements) };
         for (place, unit) in fleet.units.iter().enumerate() {
             let owner = fleet.scopes[unit.scope].owner.map(|owner| &fleet.members[owner]);
             parameters.declare(place, (&unit.composites, unit.is_absent), owner, report);
@@ -112,6 +114,7 @@ impl<'a> Parameters<'a> {
             values: Budget::of(SOURCE_VALUES),
             text: Budget::of(SOURCE_BYTES),
             elements: Rc::clone(elements),
+            faulty: Rc::default(),
         }
     }
 

@@ -125,7 +125,7 @@ impl<'a> Parameters<'a> {
         let typed = Typed { property, document: &composite.document };
         for piece in &whole.raw.0 {
             if let Piece::Text(text) = piece {
-                typed.check(text, report);
+                typed.check(text, &self.faulty, report);
             }
         }
         if whole.raw.0.is_empty() {
