@@ -15,6 +15,7 @@ impl Loader<'_> {
     /// Reports the attributes that an element of this kind does not have. Foreign ones are kept and not looked at.
     pub(super) fn check_attributes(&mut self, element: Element<'_>, kind: &'static Kind) {
         let mut free: Option<Vec<&'static str>> = None;
+        self.refused.clear();
         for attribute in element.named_attributes() {
             if attribute.namespace().is_empty()
                 && let Some(known) = kind.find(attribute.name(), self.version)
@@ -74,6 +75,7 @@ impl Loader<'_> {
             && !self.version.is_1_1()
             && element.namespace() != SAOMS_NAMESPACE;
         let severity = if passes { Severity::Warning } else { Severity::Error };
+        self.refused.extend((!passes).then_some(attribute.name_span()));
         if self.diagnostics.skip(&codes::UNKNOWN_ATTRIBUTE, severity, location) {
             return;
         }
@@ -113,6 +115,7 @@ impl Loader<'_> {
     /// An attribute in the namespace of SAOMS that is none of SAOMS.
     fn unknown_own(&mut self, element: Element<'_>, attribute: Attribute<'_>, kind: &'static Kind) {
         let name = attribute.local_name();
+        self.refused.push(attribute.name_span());
         let message = format!("{} has no attribute {}", quoted(element.name()), quoted(attribute.name()));
         let one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, attribute.name_location(), message);
         let prefix = attribute.prefix().unwrap_or_default();
@@ -132,6 +135,7 @@ impl Loader<'_> {
 
     /// An attribute of SCA with a prefix: SCA's attributes have none.
     fn prefixed(&mut self, attribute: Attribute<'_>, free: &[&str]) {
+        self.refused.push(attribute.name_span());
         let message = format!("{} has a prefix; attributes of SCA have none", quoted(attribute.name()));
         let one = Diagnostic::new(&codes::UNKNOWN_ATTRIBUTE, attribute.name_location(), message);
         let local = attribute.local_name();

@@ -6,10 +6,10 @@ use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind, LOOP,
 };
-use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
-    ComponentElement, Implementation, ImplementationKind, LoopElement, Origin, Replicas, SAOMS_NAMESPACE,
+    ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Origin, Replicas, SAOMS_NAMESPACE,
 };
 use crate::source::Text;
 use crate::syntax::Element;
@@ -19,9 +19,7 @@ impl Loader<'_> {
         self.check_attributes(element, &COMPONENT);
         self.no_text(element);
         let name = self.name(element);
-        let replicas = self.replicas(element);
-        // A name with an expression is one of replicas, also where nothing says how many there are.
-        let replicas = replicas.or_else(|| is_of_replicas(&name, element).then(Replicas::default));
+        let replicas = self.replicas(element, &name);
         // Lists are allocated at their size: there may be very many components, most with one reference.
         let number_of = |name: &str| element.children().filter(|one| one.local_name() == name).count();
         let mut component = ComponentElement {
@@ -72,16 +70,38 @@ impl Loader<'_> {
         component
     }
 
-    /// Replicas of a component.
-    fn replicas(&mut self, element: Element<'_>) -> Option<Replicas> {
-        let replicas = Replicas {
+    /// Replicas of a component of this name.
+    fn replicas(&mut self, element: Element<'_>, name: &str) -> Option<Replicas> {
+        let mut replicas = Replicas {
             count: self.own(element, "count"),
+            misread_count: None,
             from: self.own(element, "from"),
             overrides: self.own(element, "overrides"),
             table: None,
         };
         let is_given = replicas.count.is_some() || replicas.from.is_some() || replicas.overrides.is_some();
-        is_given.then_some(replicas)
+        // A name with an expression is one of replicas, also where nothing says how many there are.
+        if !is_given && !is_of_replicas(name, element) {
+            return None;
+        }
+        if replicas.count.is_none() {
+            replicas.misread_count = self.misread_count(element);
+        }
+        Some(replicas)
+    }
+
+    /// The reason why the attribute that probably stands for `count` is not read, which is reported.
+    fn misread_count(&mut self, element: Element<'_>) -> Option<MisreadCount> {
+        let mut attributes = element.attributes();
+        let meant = attributes.find(|attribute| nearest(attribute.local_name(), ["count"]).is_some())?;
+        let is_empty = meant.namespace() == SAOMS_NAMESPACE && meant.local_name() == "count";
+        if is_empty || self.refused.contains(&meant.name_span()) {
+            return Some(MisreadCount::Attribute);
+        }
+        self.meant_namespace(meant.namespace(), element.document())?;
+        let names = || (meant.namespace().to_owned(), meant.name().to_owned());
+        self.passed_over.get_or_insert_with(names);
+        Some(MisreadCount::Namespace)
     }
 
     /// The path that a component of an expanded composite keeps.

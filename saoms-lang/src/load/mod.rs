@@ -30,7 +30,7 @@ pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::model::{Composite, SeverityRule, Version};
-use crate::source::{FileId, Sources};
+use crate::source::{FileId, Sources, Span};
 use crate::syntax::{self, ElementId, Parse};
 
 /// Makes the model of a text that was read before: of all that can be understood, also when the text is no well-formed
@@ -60,8 +60,10 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
     }
     let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
     let composite = loader.root(document.root()).then(|| {
+        let document = Arc::new(document);
+        let composite = loader.composite(&document);
         loader.similar_namespaces(&document);
-        loader.composite(&Arc::new(document))
+        composite
     });
     push_faults(faults, sources, diagnostics);
     encoding::contradiction(file, text).into_iter().for_each(|one| diagnostics.push(one));
@@ -104,6 +106,11 @@ struct Loader<'d> {
     /// The misspelt attributes that were reported: their elements, the names that are meant, and those that are
     /// written.
     meant: Vec<(ElementId, &'static str, String)>,
+    /// The attributes of the element at hand that it cannot have, which is an error.
+    refused: Vec<Span>,
+    /// The first attribute that probably says how many replicas there are, and is passed over for its namespace: this
+    /// and its name.
+    passed_over: Option<(String, String)>,
     /// The severity settings.
     severities: Vec<SeverityRule>,
 }
@@ -117,6 +124,8 @@ impl<'d> Loader<'d> {
             diagnostics,
             newer: Vec::new(),
             meant: Vec::new(),
+            refused: Vec::new(),
+            passed_over: None,
             severities: Vec::new(),
         }
     }

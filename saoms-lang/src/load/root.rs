@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::Loader;
 use super::children::renamed;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
 use crate::syntax::{Attribute, Document, Element};
@@ -34,11 +34,10 @@ impl Loader<'_> {
         true
     }
 
-    /// Reports declarations of such namespaces, where elements or attributes are in them. That of the root is judged
-    /// with it.
+    /// Reports declarations of namespaces that are nearly those that count, where elements or attributes are in them.
     pub(super) fn similar_namespaces(&mut self, document: &Document) {
-        let near = document.namespaces().filter(|one| *one != self.namespace && *one != document.root().namespace());
-        let near: Vec<(&str, &str)> = near.filter_map(|one| Some((one, nearly(one)?))).collect();
+        let near = document.namespaces().filter_map(|one| Some((one, self.meant_namespace(one, document)?)));
+        let near: Vec<(&str, &str)> = near.collect();
         if near.is_empty() {
             return;
         }
@@ -56,8 +55,20 @@ impl Loader<'_> {
             let message =
                 format!("what is in the namespace {} is passed over: it is nearly {}", quoted(written), quoted(meant));
             let one = Diagnostic::new(&codes::NAMESPACE_NEAR, at, message);
-            self.report(one.mend(format!("replace it with {}", quoted(meant)), meant));
+            let mut one = one.mend(format!("replace it with {}", quoted(meant)), meant);
+            if let Some((_, name)) = self.passed_over.as_ref().filter(|(namespace, _)| namespace == written) {
+                let name = quoted(name);
+                let why = format!("{name} in it says how many replicas there are, and they cannot be made without");
+                one = one.severity(Severity::Error).help(why);
+            }
+            self.report(one);
         }
+    }
+
+    /// The namespace that counts and is nearly this one. That of the root is judged with it.
+    pub(super) fn meant_namespace(&self, written: &str, document: &Document) -> Option<&'static str> {
+        let is_of_root = written == self.namespace || written == document.root().namespace();
+        nearly(written).filter(|_| !is_of_root)
     }
 }
 

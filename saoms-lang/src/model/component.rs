@@ -129,6 +129,8 @@ pub struct Replicas {
     /// `count`: an expression; how many there are. `None` when only the others are given, or a name that uses the
     /// index.
     pub count: Option<Text>,
+    /// The attribute that probably stands for `count`, where that is not given: it is faulty, which is reported.
+    pub misread_count: Option<MisreadCount>,
     /// `from`: an expression; the index of the first.
     pub from: Option<Text>,
     /// `overrides`: the file of the table.
@@ -136,6 +138,15 @@ pub struct Replicas {
     /// The content of that file; `None` until [`read_values`](crate::contribution::read_values), and where it cannot be
     /// read.
     pub table: Option<Arc<Table>>,
+}
+
+/// The reason why an attribute is not read as the number of replicas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MisreadCount {
+    /// A component has no such attribute, or it is empty.
+    Attribute,
+    /// Its namespace is nearly that of SAOMS.
+    Namespace,
 }
 
 /// A table of what differs from one replica to another.

@@ -22,7 +22,9 @@ mod contract;
 mod contribution;
 mod property;
 
-pub use component::{ComponentElement, Implementation, ImplementationKind, LoopElement, Replicas, Row, Table};
+pub use component::{
+    ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Replicas, Row, Table,
+};
 pub use composite::{ComponentType, Composite, Include, SeverityRule, WireElement};
 pub use contract::{
     Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceElement, ServiceElement,

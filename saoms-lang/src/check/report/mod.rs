@@ -28,6 +28,9 @@ pub(crate) struct Report<'a> {
     said: HashSet<(&'static str, Location, String)>,
     /// The replica that is looked at.
     copy: Option<Copied>,
+    /// The highest severity of what is reported, and a line of help for all of it.
+    most: Severity,
+    help: Option<&'static str>,
     /// Diagnostics about replicas, and where each is by its place and code.
     copies: Vec<ReplicaDiagnostic>,
     known_copies: HashMap<(Location, &'static str), usize>,
@@ -63,6 +66,8 @@ impl<'a> Report<'a> {
             unbound: HashSet::new(),
             said: HashSet::new(),
             copy: None,
+            most: Severity::Error,
+            help: None,
             copies: Vec::new(),
             known_copies: HashMap::new(),
             lines: HashSet::new(),
@@ -76,14 +81,6 @@ impl<'a> Report<'a> {
         'a: 'u,
     {
         Report::new(self.sources, diagnostics)
-    }
-
-    /// True if something of this code was told of this text anywhere in a file.
-    pub(crate) fn has_diagnostic_about(&self, code: &'static Code, file: FileId, text: &str) -> bool {
-        let is_it = |one: &Diagnostic| {
-            one.code == code && one.location.file == file && self.sources.snippet(one.location) == text
-        };
-        self.diagnostics.iter().any(is_it)
     }
 
     /// Takes back what was told of this code at this place, since something else says it better.
@@ -119,6 +116,22 @@ impl<'a> Report<'a> {
         let said = say(self);
         self.copy = copy;
         said
+    }
+
+    /// Lets what is reported inside be of this severity at most.
+    pub(crate) fn at_most<T>(&mut self, most: Severity, check: impl FnOnce(&mut Self) -> T) -> T {
+        let around = std::mem::replace(&mut self.most, most);
+        let found = check(self);
+        self.most = around;
+        found
+    }
+
+    /// Lets what is reported inside have this line of help as well.
+    pub(crate) fn with_help<T>(&mut self, help: Option<&'static str>, check: impl FnOnce(&mut Self) -> T) -> T {
+        let around = std::mem::replace(&mut self.help, help);
+        let found = check(self);
+        self.help = around;
+        found
     }
 
     /// Notes that there is a replica that the line of a table is about which has its name or index here.
@@ -190,7 +203,9 @@ impl<'a> Report<'a> {
     }
 
     /// Adds a diagnostic, unless the same was said of the same place.
-    pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
+    pub(crate) fn push(&mut self, mut diagnostic: Diagnostic) {
+        diagnostic.severity = diagnostic.severity.min(self.most);
+        diagnostic.help.extend(self.help.map(str::to_owned));
         if let Some(copy) = &self.copy {
             return self.push_copy(diagnostic, copy.clone());
         }
@@ -244,7 +259,7 @@ impl<'a> Report<'a> {
     /// True if there are so many diagnostics of this code at this place's file that one more is counted and not shown.
     /// Diagnostics of replicas are reported together, and always wanted.
     pub(crate) fn skip(&mut self, code: &'static Code, severity: Severity, at: Location) -> bool {
-        self.copy.is_none() && self.diagnostics.skip(code, severity, at)
+        self.copy.is_none() && self.diagnostics.skip(code, severity.min(self.most), at)
     }
 
     /// A diagnostic about a name that stands for nothing: with the likeliest right ones as suggestions, or else with

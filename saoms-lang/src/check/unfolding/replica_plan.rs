@@ -8,13 +8,13 @@ use super::expression_scope::Names;
 use super::replica::Instance;
 use crate::check::fleet::is_like;
 use crate::check::report::{Report, replacing};
-use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Edit, Severity, codes, quoted};
 use crate::expression::{
     self, Expression, ExpressionError, ExpressionFault, ExpressionValue, INDEX, boolean, integer, parse, pattern,
     render,
 };
 use crate::limits::{REPLICA_BYTES, REPLICAS};
-use crate::model::{ComponentElement, Property, Replicas, Row, Table};
+use crate::model::{ComponentElement, MisreadCount, Property, Replicas, Row, Table};
 use crate::source::{Location, Text};
 use crate::syntax::{Document, escaped};
 
@@ -43,8 +43,11 @@ impl<'a> Plan<'a> {
         report: &mut Report<'_>,
     ) -> Option<Self> {
         let Some(written) = &replicas.count else {
-            if is_count_misread(component, document, lowers_attributes, report) {
-                return None;
+            match replicas.misread_count {
+                Some(MisreadCount::Namespace) => return None,
+                // Where the error may be let pass, it is not enough.
+                Some(MisreadCount::Attribute) if !lowers_attributes => return None,
+                _ => {}
             }
             let (what, at) = match (&replicas.from, &replicas.overrides) {
                 (Some(from), _) => ("`from` is about".to_owned(), from.location),
@@ -210,34 +213,6 @@ fn without_line<'n>(names: &'n HashMap<String, i64>, table: &Table) -> Vec<&'n s
 pub(crate) fn first_index(replicas: &Replicas, names: &Names) -> Option<i64> {
     let Some(from) = &replicas.from else { return Some(1) };
     parse(from).and_then(|one| integer(&one, &mut |name| names.value(name))).ok()
-}
-
-/// True if a component has an attribute that `count` may be meant by, and that is told as an error, which nobody can
-/// lower: with it nothing is known of the replicas.
-fn is_count_misread(
-    component: &ComponentElement,
-    document: &Document,
-    lowers_attributes: bool,
-    report: &mut Report<'_>,
-) -> bool {
-    let file = document.file();
-    let mut attributes = component.origin.element(document).attributes();
-    let meant = attributes.find(|attribute| nearest(attribute.local_name(), ["count"]).is_some());
-    let Some(meant) = meant else { return false };
-    // Of an empty one the whole is told.
-    let at = [meant.name_span().in_file(file), meant.location()];
-    let is_error = |one: &Diagnostic| at.contains(&one.location) && one.severity == Severity::Error;
-    if !lowers_attributes && report.diagnostics().iter().any(is_error) {
-        return true;
-    }
-    // Its namespace may be nearly that of SAOMS.
-    let is_near = report.has_diagnostic_about(&codes::NAMESPACE_NEAR, file, meant.namespace());
-    if is_near {
-        let why =
-            format!("{} in it says how many replicas there are, and they cannot be made without", quoted(meant.name()));
-        report.diagnostics().escalate(&codes::NAMESPACE_NEAR, file, &why);
-    }
-    is_near
 }
 
 /// Checks that the name of a replicated component differs from replica to replica.

@@ -100,16 +100,11 @@ impl<'f> Wires<'f, '_> {
         let inner = fleet.inner(member).filter(|_| !is_said);
         let declared = inner.into_iter().flat_map(|inner| inner.references()).find(|one| one.name == name);
         for text in declared.map_or(&[][..], |declared| &declared.targets) {
-            let known = report.diagnostics().len();
-            self.add(text, (scope, own), true, interface, &mut ends, report);
-            let is_inside = || inner.is_some_and(|inner| fleet.find(inner.scope, parts(text).0).is_some());
-            if report.diagnostics().len() > known && is_inside() {
-                report.diagnostics().adjust(known, |one| {
-                    one.help.push(
-                        "what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`".to_owned(),
-                    );
-                });
-            }
+            let is_inside = inner.is_some_and(|inner| fleet.find(inner.scope, parts(text).0).is_some());
+            let help = "what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`";
+            report.with_help(is_inside.then_some(help), |report| {
+                self.add(text, (scope, own), true, interface, &mut ends, report);
+            });
         }
         ends
     }

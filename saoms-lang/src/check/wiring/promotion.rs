@@ -36,7 +36,18 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
     let is_outermost = |unit: &&Unit<'_>| fleet.scopes[unit.scope].owner.is_none();
     let inner = fleet.units.iter().filter(|unit| !is_outermost(unit));
     for unit in inner.chain(fleet.units.iter().filter(is_outermost)) {
-        let known = report.diagnostics().len();
+        // No component here takes what a composite offers that runs by itself: it runs the same with faults in it, and
+        // other programs report those of SCA 1.0. A component that it implements is another matter.
+        let is_lenient = is_outermost(&unit) && unit.composites.iter().all(|composite| !composite.version.is_1_1());
+        let most = if is_lenient { Severity::Warning } else { Severity::Error };
+        report.at_most(most, |report| all.add(unit, fleet, report));
+    }
+    all
+}
+
+impl<'f> Promoted<'f> {
+    /// Adds what a composite promotes. Faults are reported.
+    fn add(&mut self, unit: &'f Unit<'_>, fleet: &'f Fleet<'_>, report: &mut Report<'_>) {
         let owner = Owner {
             name: &|| "the composite".to_owned(),
             code: &codes::COMPOSITE_PART_REPEATED,
@@ -50,54 +61,53 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
                 promoted::service(service, found, fleet, report);
             }
         }
-        let owner = fleet.scopes[unit.scope].owner;
-        for reference in unit.references() {
-            if reference.promote.is_empty() {
-                all.dangling.add(unit.scope, None, fleet);
-            }
-            let mut found: Vec<Found<'f>> = Vec::new();
-            for promote in &reference.promote {
-                for (text, _) in spread(promote, unit.scope, fleet) {
-                    match find(&text, Side::Reference, unit, fleet, report) {
-                        Some(one) => found.push((one, text.location)),
-                        None => all.dangling.add(unit.scope, Some(promote), fleet),
-                    }
-                }
-            }
-            promoted::multiplicities(reference, found.iter().map(|(inner, _)| *inner), fleet, report);
-            let is_one = promoted::reference(reference, &found, fleet, report);
-            // What is taken as given wires itself.
-            let found = found.into_iter().map(|(inner, _)| inner);
-            let found: Vec<ReferenceId<'f>> =
-                found.filter(|(member, _)| fleet.members[*member].kind != Kind::Given).collect();
-            if !is_one {
-                all.differing.extend(&found);
-            }
-            match owner {
-                Some(owner) => {
-                    for inner in found {
-                        all.to.entry(inner).or_default().push((owner, &reference.name));
-                    }
-                }
-                None => {
-                    let has_address = || has_address(&reference.contract().bindings);
-                    let needs_target = || found.iter().any(|inner| needs_target(*inner, fleet));
-                    if reference.targets.is_empty() && !has_address() && needs_target() {
-                        unwired(reference, report);
-                    }
-                    for inner in found {
-                        all.outermost.entry(inner).or_default().extend(&reference.targets);
-                    }
+        unit.references().for_each(|reference| self.reference(reference, unit, fleet, report));
+    }
+
+    /// Adds what a composite's reference promotes.
+    fn reference(
+        &mut self,
+        reference: &'f ReferenceElement,
+        unit: &'f Unit<'_>,
+        fleet: &'f Fleet<'_>,
+        report: &mut Report<'_>,
+    ) {
+        if reference.promote.is_empty() {
+            self.dangling.add(unit.scope, None, fleet);
+        }
+        let mut found: Vec<Found<'f>> = Vec::new();
+        for promote in &reference.promote {
+            for (text, _) in spread(promote, unit.scope, fleet) {
+                match find(&text, Side::Reference, unit, fleet, report) {
+                    Some(one) => found.push((one, text.location)),
+                    None => self.dangling.add(unit.scope, Some(promote), fleet),
                 }
             }
         }
-        // What a composite offers that runs by itself nobody here takes: it runs the same with faults in it, and other
-        // programs say so of those of SCA 1.0. A component that it implements is another matter.
-        if owner.is_none() && unit.composites.iter().all(|composite| !composite.version.is_1_1()) {
-            report.diagnostics().adjust(known, |one| one.severity = one.severity.min(Severity::Warning));
+        promoted::multiplicities(reference, found.iter().map(|(inner, _)| *inner), fleet, report);
+        let is_one = promoted::reference(reference, &found, fleet, report);
+        // What is taken as given wires itself.
+        let found = found.into_iter().map(|(inner, _)| inner);
+        let found: Vec<ReferenceId<'f>> =
+            found.filter(|(member, _)| fleet.members[*member].kind != Kind::Given).collect();
+        if !is_one {
+            self.differing.extend(&found);
+        }
+        if let Some(owner) = fleet.scopes[unit.scope].owner {
+            for inner in found {
+                self.to.entry(inner).or_default().push((owner, &reference.name));
+            }
+            return;
+        }
+        let has_address = || has_address(&reference.contract().bindings);
+        let needs_target = || found.iter().any(|inner| needs_target(*inner, fleet));
+        if reference.targets.is_empty() && !has_address() && needs_target() {
+            unwired(reference, report);
+        }
+        for inner in found {
+            self.outermost.entry(inner).or_default().extend(&reference.targets);
         }
     }
-    all
 }
 
 /// True if a binding says where calls go, so that nothing else has to.
