@@ -9,7 +9,7 @@ use crate::check::report::findings::Subject;
 /// Everything that is found out about one component.
 #[derive(Default)]
 pub(crate) struct ComponentCheck<'a> {
-    pub(crate) state: State,
+    pub(crate) state: ComponentState,
     /// The values of its properties; nothing for a component without a class.
     pub(crate) given: PropertyValues,
     /// Its loops; `None` where they have a fault, which is reported.
@@ -18,13 +18,13 @@ pub(crate) struct ComponentCheck<'a> {
     pub(crate) task: Option<TaskProperties>,
 }
 
-/// The knowledge about a component.
+/// Soundness of a component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum State {
+pub(crate) enum ComponentState {
     /// It has no class here.
     #[default]
     WithoutClass,
-    /// It has a class, and a fault that is reported: what follows from the fault is not told.
+    /// It has a class, and a fault that is reported: what follows from the fault is not.
     Faulty,
     /// Its class can construct it.
     Sound,
@@ -33,7 +33,7 @@ pub(crate) enum State {
 impl ComponentCheck<'_> {
     /// True for a component that can be constructed.
     pub(crate) fn is_sound(&self) -> bool {
-        self.state == State::Sound
+        self.state == ComponentState::Sound
     }
 
     /// The component as findings are about it.

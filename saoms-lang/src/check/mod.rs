@@ -3,11 +3,12 @@
 //! [`check`] is pure: it knows no clock, no thread, no network, and reads nothing but its arguments. It is a sequence
 //! of phases, and the one place where their order is written down. Each phase looks at everything, so that all faults
 //! come in one run, from cheap rules to expensive ones. What depends on a faulty part is not looked at: one mistake
-//! gives one diagnostic. `component::State` says of a component that it is faulty.
+//! gives one diagnostic. A part that is faulty carries that itself: `judged::Faulty`.
 
 mod assemble;
 mod component;
 mod fleet;
+mod judged;
 mod loops;
 mod occurrences;
 mod options;

@@ -10,6 +10,7 @@ use std::rc::Rc;
 use smol_str::SmolStr;
 
 use crate::check::fleet::classes::ClassIndex;
+use crate::check::judged::Faulty;
 use crate::check::unfolding::expression_scope::Names;
 use crate::check::unfolding::replica::Instance;
 use crate::check::values::faulty_values::FaultyValues;
@@ -42,8 +43,8 @@ pub(crate) struct Fleet<'a> {
     pub(crate) absent_wires: HashSet<(usize, FileId, ElementId)>,
     /// The includes and wires with conditions, and whether any of them is there.
     pub(crate) conditional: HashMap<(FileId, ElementId), bool>,
-    /// True if a file has faults of syntax or structure, which are reported: elements may be missing in it.
-    pub(crate) is_misread: bool,
+    /// The fault of syntax or structure of a file: elements may be missing in it.
+    pub(crate) misread: Option<Faulty>,
     /// The scopes of expressions in units that have any.
     pub(crate) names: Vec<Option<Rc<Names>>>,
     /// The values with a fault that is reported.
@@ -62,8 +63,8 @@ pub(crate) struct Scope {
     pub(crate) members: Vec<usize>,
     /// The symbol table: its components by their names.
     pub(crate) by_name: HashMap<SmolStr, usize>,
-    /// True if a fault that is reported leaves some of it unknown.
-    pub(crate) is_faulty: bool,
+    /// A fault that leaves some of it unknown.
+    pub(crate) fault: Option<Faulty>,
     /// Names of components that could not be made for such a fault, with `*` for unknown parts.
     pub(crate) missing: Vec<String>,
 }
@@ -113,8 +114,8 @@ pub(crate) struct Member<'a> {
     /// True if it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is
     /// said of what others would share with it.
     pub(crate) is_partial: bool,
-    /// True if it has the name of an earlier one, which is reported.
-    pub(crate) is_repeated: bool,
+    /// The fault of having the name of an earlier one.
+    pub(crate) repeated: Option<Faulty>,
     /// Its path, where that is more than its name.
     path: Option<String>,
 }
@@ -145,7 +146,7 @@ impl<'a> Member<'a> {
             is_copy: false,
             is_absent: false,
             is_partial: false,
-            is_repeated: false,
+            repeated: None,
             path: None,
         }
     }

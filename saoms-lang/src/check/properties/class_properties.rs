@@ -6,6 +6,7 @@ use super::conversion::{Source, Target, convert};
 use super::given_values::{PropertyValues, ValuePlace};
 use super::property_table::{PropertyTable, TableEntry};
 use super::{Giver, given_twice, missing};
+use crate::check::judged::{Faulty, Judged};
 use crate::check::report::Report;
 use crate::check::values::parameters::Parameters;
 use crate::check::values::raw::{Piece, Raw, raw};
@@ -100,7 +101,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
     }
 
     /// Finds the value of a property, and converts it. None is left where its `source` has none.
-    fn value(&mut self, place: usize, property: &'a Property) -> Result<(), ()> {
+    fn value(&mut self, place: usize, property: &'a Property) -> Judged<()> {
         let (raw, source) = self.parameters.taken(self.giver.member, property, self.report)?;
         if source.is_none() && property.source().is_some() && raw.0.is_empty() {
             self.slots[place].is_unset = true;
@@ -123,7 +124,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
     }
 
     /// Converts what was found for a property to what the class takes.
-    fn convert(&mut self, place: usize, found: Raw<'_>, at: Location, source: Option<Location>) -> Result<(), ()> {
+    fn convert(&mut self, place: usize, found: Raw<'_>, at: Location, source: Option<Location>) -> Judged<()> {
         let mut places: Vec<Location> = found.0.iter().map(Piece::location).collect();
         if places.is_empty() {
             places.push(at);
@@ -132,7 +133,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         let (faulty, is_copy) = (&*self.parameters.faulty, self.giver.member.is_copy);
         let from = source.map(|at| Source { at, faulty, is_copy });
         let target = Target { outer: None, declaration: entry.main, also: entry.also(), at, source: from };
-        let value = convert(found, target, self.report).ok_or(())?;
+        let value = convert(found, target, self.report).ok_or(Faulty)?;
         self.slots[place].value = Some((value, ValuePlace { property: place, places: places.into(), source }));
         Ok(())
     }
@@ -149,7 +150,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         };
         let unit = self.giver.member.unit;
         if let (true, Some(source)) = (slot.is_unset, property.source())
-            && !self.parameters.is_told(unit, source)
+            && !self.parameters.is_lack_reported(unit, source)
         {
             let message = format!("the property {} has no value: its source has none", quoted(&declaration.name));
             let one = Diagnostic::new(&codes::PROPERTY_MISSING, source.location, message);

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::check::component::{ComponentCheck, State};
+use crate::check::component::{ComponentCheck, ComponentState};
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
@@ -154,7 +154,7 @@ pub(crate) fn check_all(
             }
         }
     }
-    let faulty = all().filter(|(member, check, _)| check.state == State::Faulty && !member.lacks_table());
+    let faulty = all().filter(|(member, check, _)| check.state == ComponentState::Faulty && !member.lacks_table());
     for (member, check, class) in faulty.filter(|(.., class)| is_asked(class.class.origin())) {
         report.about(member);
         partly(check.subject(member), class, &check.given.unknown, repeated, report);

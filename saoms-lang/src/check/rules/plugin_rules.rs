@@ -42,13 +42,13 @@ pub(crate) fn check<'s>(
             missing.push(class.map(declarations));
         }
     };
-    if fleet.scopes.iter().any(|scope| scope.is_faulty) {
+    if fleet.scopes.iter().any(|scope| scope.fault.is_some()) {
         miss(&mut missing, None);
     }
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
         let class = fleet.class_of(place);
         // Of two components of one name nobody can say which is meant.
-        if member.runs() && !member.is_repeated && check.is_sound() && class.is_some() {
+        if member.runs() && member.repeated.is_none() && check.is_sound() && class.is_some() {
             indices.push(Some(parts.len()));
             parts.push(place);
             continue;

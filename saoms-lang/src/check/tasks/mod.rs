@@ -11,7 +11,7 @@ use std::collections::HashSet;
 use saoms_api::PropertyField;
 
 use crate::assembly::{OF_RESTART, Restart, TaskProperties};
-use crate::check::component::{ComponentCheck, State};
+use crate::check::component::{ComponentCheck, ComponentState};
 use crate::check::fleet::classes::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::properties::given_values::{GivenValue, PropertyValues};
@@ -196,8 +196,8 @@ pub(crate) fn check_all<'a>(
         topics.add(member, (index, class), &renamed, report);
         let is_sound = check.given.is_sound && check.loops.is_some();
         check.state = match is_sound && is_periodic == check.task.is_some() {
-            true => State::Sound,
-            false => State::Faulty,
+            true => ComponentState::Sound,
+            false => ComponentState::Faulty,
         };
     }
     report.about_all();

@@ -5,6 +5,7 @@
 use std::rc::Rc;
 
 use crate::check::fleet::Unit;
+use crate::check::judged::{Faulty, Judged};
 use crate::check::unfolding::Unfolding;
 use crate::check::unfolding::expression_scope::Names;
 use crate::check::unfolding::replica::{Instance, all_complex_texts};
@@ -109,11 +110,11 @@ impl<'a> Unfolding<'a, '_, '_> {
         included.all
     }
 
-    /// True if a condition in a unit is true; `None` for a faulty one, which is reported.
-    pub(crate) fn holds(&mut self, text: &Text, unit: usize) -> Option<bool> {
+    /// True if a condition in a unit is true.
+    pub(crate) fn holds(&mut self, text: &Text, unit: usize) -> Judged<bool> {
         let names = self.names(unit);
         let holds = condition(text, &names, &mut |name| names.value(name), self.report);
-        if holds.is_none() {
+        if holds.is_err() {
             self.fault(unit);
         }
         holds
@@ -123,7 +124,7 @@ impl<'a> Unfolding<'a, '_, '_> {
     pub(crate) fn is_there(&mut self, condition: Option<&Text>, origin: Origin, unit: usize) -> bool {
         let Some(condition) = condition else { return true };
         let holds = self.holds(condition, unit);
-        if holds.is_none() {
+        if holds.is_err() {
             // Names that lead nowhere may be those of its components.
             self.miss(unit, "*".to_owned());
         }
@@ -152,7 +153,7 @@ impl<'a> Unfolding<'a, '_, '_> {
     /// Remembers that parts of a unit are not as they are meant.
     pub(crate) fn fault(&mut self, unit: usize) {
         let scope = self.fleet.units[unit].scope;
-        self.fleet.scopes[scope].is_faulty = true;
+        self.fleet.scopes[scope].fault = Some(Faulty);
     }
 
     /// Remembers that components of a unit with names like this could not be made.

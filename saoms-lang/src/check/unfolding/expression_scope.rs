@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 
+use crate::check::judged::{Faulty, Judged};
 use crate::check::report::{Report, list};
 use crate::check::values::faulty_values::FaultyValues;
 use crate::check::values::parameters::is_misspelt;
@@ -30,12 +31,11 @@ struct Name {
     is_used: Cell<bool>,
     /// The property, where its value is not of its type.
     mistyped: Option<Property>,
-    /// True if it has no value, and that is told.
-    is_told: Cell<bool>,
-    /// True if what gives it its value has a fault, which whoever collects the values of sources reports.
-    is_faulty: bool,
-    /// The text of the value and where it stands.
-    text: Option<Text>,
+    /// The fault that it has no value, once it is reported.
+    lack: Cell<Option<Faulty>>,
+    /// The text of the value and where it stands; `None` where it has no simple one. A fault of what gives it its value
+    /// is reported with the values of sources.
+    text: Judged<Option<Text>>,
     value: Result<ExpressionValue, ExpressionError>,
 }
 
@@ -56,18 +56,18 @@ impl Names {
             for property in composite.properties.iter().filter(|property| !property.name.is_empty()) {
                 names.all.entry(property.name.to_string()).or_insert_with(|| {
                     let values = values(&property.name);
-                    let pieces = values.as_ref().map(|values| &values.raw.0[..]);
-                    let text = match pieces {
-                        Ok([Piece::Text(text)]) => Some(text.clone().into_owned()),
-                        Ok([Piece::Whole(text, ..)]) => Some((*text).clone()),
+                    let text = values.as_ref().map_err(|fault| *fault).map(|values| match &values.raw.0[..] {
+                        [Piece::Text(text)] => Some(text.clone().into_owned()),
+                        [Piece::Whole(text, ..)] => Some((*text).clone()),
                         _ => None,
-                    };
-                    let (is_faulty, is_unset) = (pieces.is_err(), pieces.is_ok_and(<[_]>::is_empty));
-                    let value = value(property, text.as_ref(), is_unset);
-                    let mistyped = (value.is_err() && text.is_some()).then(|| property.clone());
+                    });
+                    let is_unset = values.is_ok_and(|values| values.raw.0.is_empty());
+                    let known = text.as_ref().ok().and_then(Option::as_ref);
+                    let value = value(property, known, is_unset);
+                    let mistyped = (value.is_err() && known.is_some()).then(|| property.clone());
                     let is_misspelt = |owner: &ComponentElement| is_misspelt(&property.name, owner, is_declared);
-                    let is_told = is_faulty || is_unset && owner.is_some_and(is_misspelt);
-                    Name { is_used: Cell::new(false), mistyped, is_told: Cell::new(is_told), is_faulty, text, value }
+                    let lack = (is_unset && owner.is_some_and(is_misspelt)).then_some(Faulty);
+                    Name { is_used: Cell::new(false), mistyped, lack: Cell::new(lack), text, value }
                 });
             }
         }
@@ -83,15 +83,16 @@ impl Names {
         self.all.get(name).map_or_else(|| Err(self.unknown(name)), |found| found.value.clone())
     }
 
-    /// True if it is told that a name has no value, or one that is not of its type. That is told once.
+    /// True if it is reported that a name has no value, or one that is not of its type; that is reported once.
     pub(crate) fn report_value(&self, name: &str, report: &mut Report<'_>) -> bool {
         match self.all.get(name) {
-            Some(Name { mistyped: Some(property), text: Some(text), .. }) => {
+            Some(Name { mistyped: Some(property), text: Ok(Some(text)), .. }) => {
                 let faulty = &self.faulty;
                 faulty.is_mistyped(text.location)
                     || report.of_all(|report| !value_type::holds_by_name(property, text, faulty, report))
             }
-            Some(Name { is_told, text: None, .. }) => is_told.replace(true),
+            Some(Name { text: Err(Faulty), .. }) => true,
+            Some(Name { lack, text: Ok(None), .. }) => lack.replace(Some(Faulty)).is_some(),
             Some(_) => false,
             None => self.undeclared.contains(name),
         }
@@ -99,7 +100,7 @@ impl Names {
 
     /// The place of the value of a name.
     pub(crate) fn place(&self, name: &str) -> Option<Location> {
-        Some(self.all.get(name)?.text.as_ref()?.location)
+        Some(self.all.get(name)?.text.as_ref().ok()?.as_ref()?.location)
     }
 
     /// Notes that a name is asked for.
@@ -109,7 +110,7 @@ impl Names {
 
     /// True if what gives a name its value has a fault.
     pub(crate) fn is_faulty(&self, name: &str) -> bool {
-        self.all.get(name).is_some_and(|found| found.is_faulty)
+        self.all.get(name).is_some_and(|found| found.text.is_err())
     }
 
     /// The names that were asked for.

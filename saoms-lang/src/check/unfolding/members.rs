@@ -4,6 +4,7 @@ use super::Unfolding;
 use super::conditions::Presence;
 use super::replica::Instance;
 use crate::check::fleet::Member;
+use crate::check::judged::Faulty;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Naming};
 use crate::syntax::Element;
@@ -52,7 +53,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             }
             Some(first) if is_partial || !self.fleet.members[first].is_partial => {
                 if !is_partial {
-                    self.fleet.members[index].is_repeated = true;
+                    self.fleet.members[index].repeated = Some(Faulty);
                     self.report.about(&self.fleet.members[index]);
                     self.repeated(component, first);
                     self.report.about_all();

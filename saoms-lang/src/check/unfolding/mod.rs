@@ -15,6 +15,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
 use crate::check::fleet::{Fleet, Scope, Unit, names};
+use crate::check::judged::Faulty;
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::report::severities::Severities;
@@ -46,7 +47,7 @@ pub(crate) fn unfold<'a>(
         absent: HashMap::default(),
         absent_wires: HashSet::new(),
         conditional: HashMap::new(),
-        is_misread: severities.is_misread(report.diagnostics()),
+        misread: severities.is_misread(report.diagnostics()).then_some(Faulty),
         names: Vec::new(),
         faulty_values: Rc::default(),
         elements: Rc::clone(&elements),

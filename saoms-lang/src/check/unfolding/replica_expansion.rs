@@ -8,6 +8,7 @@ use super::conditions::Presence;
 use super::expression_scope::Names;
 use super::replica::{Instance, Partial, Replica};
 use super::replica_plan::{Plan, condition, first_index};
+use crate::check::judged::Faulty;
 use crate::expression::pattern;
 use crate::model::{ComponentElement, Replicas, Table};
 
@@ -18,12 +19,12 @@ impl<'a> Unfolding<'a, '_, '_> {
         let (unit, document) = (open.unit, &open.composite.document);
         let Some(replicas) = component.replicas.as_ref() else {
             let condition = component.condition.as_ref();
-            let holds = condition.map_or(Some(true), |condition| self.holds(condition, unit));
+            let holds = condition.map_or(Ok(true), |condition| self.holds(condition, unit));
             let presence = holds.map_or(Presence::Unknown, Presence::of);
             return self.member(component, component, None, presence);
         };
         let names = self.names(unit);
-        let Some(plan) = Plan::of(
+        let Ok(plan) = Plan::of(
             component,
             replicas,
             document,
@@ -106,8 +107,8 @@ impl<'a> Unfolding<'a, '_, '_> {
         let value = &mut |name: &str| instance.value(name);
         let holds = asked.map(|text| condition(text, &instance.names, value, self.report));
         self.report.about_all();
-        let is_faulty = !faults.is_empty() || holds == Some(None);
-        (made, is_faulty, Presence::of(holds != Some(Some(false))))
+        let is_faulty = !faults.is_empty() || holds == Some(Err(Faulty));
+        (made, is_faulty, Presence::of(holds != Some(Ok(false))))
     }
 
     /// Adds one that stands for replicas that are not made.

@@ -7,6 +7,7 @@ use std::rc::Rc;
 use super::expression_scope::Names;
 use super::replica::Instance;
 use crate::check::fleet::is_like;
+use crate::check::judged::{Faulty, Judged};
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, quoted};
 use crate::expression::{
@@ -33,7 +34,7 @@ pub(crate) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// The plan of at most `left` replicas of a component; `None` with a fault, which is reported.
+    /// The plan of at most `left` replicas of a component.
     pub(crate) fn of(
         component: &'a ComponentElement,
         replicas: &'a Replicas,
@@ -41,12 +42,12 @@ impl<'a> Plan<'a> {
         names: &Rc<Names>,
         (left, lowers_attributes): (u64, bool),
         report: &mut Report<'_>,
-    ) -> Option<Self> {
+    ) -> Judged<Self> {
         let Some(written) = &replicas.count else {
             match replicas.misread_count {
-                Some(MisreadCount::Namespace) => return None,
+                Some(MisreadCount::Namespace) => return Err(Faulty),
                 // Where the error may be let pass, it is not enough.
-                Some(MisreadCount::Attribute) if !lowers_attributes => return None,
+                Some(MisreadCount::Attribute) if !lowers_attributes => return Err(Faulty),
                 _ => {}
             }
             let (what, at) = match (&replicas.from, &replicas.overrides) {
@@ -57,7 +58,7 @@ impl<'a> Plan<'a> {
             let message = format!("{what} replicas, and nothing says how many there are");
             let one = Diagnostic::new(&codes::REPLICAS, at, message);
             report.push(one.help("add `saoms:count=\"...\"`"));
-            return None;
+            return Err(Faulty);
         };
         let is_readable = replicas.overrides.is_none() || replicas.table.is_some();
         if let (Some(file), false) = (&replicas.overrides, is_readable || report.has_errors()) {
@@ -65,7 +66,7 @@ impl<'a> Plan<'a> {
             report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
         }
         let count = number(written, names, report);
-        let from = replicas.from.as_ref().map_or(Some(1), |from| number(from, names, report));
+        let from = replicas.from.as_ref().map_or(Ok(1), |from| number(from, names, report));
         let is_named = has_index(component, names, report);
         let (count, from) = (count?, from?);
         let span = component.origin.element(document).span();
@@ -93,12 +94,12 @@ impl<'a> Plan<'a> {
                 let mut plan = Self { component, names, first: from, left: from..end, cost, rows: HashMap::new() };
                 // With faults in its lines all others count.
                 replicas.table.iter().for_each(|table| plan.rows(table, report));
-                return (is_readable && is_named).then_some(plan);
+                return if is_readable && is_named { Ok(plan) } else { Err(Faulty) };
             }
         };
         let one = Diagnostic::new(&codes::REPLICAS, written.location, message).help(help);
         report.push(with_values(one, written, names));
-        None
+        Err(Faulty)
     }
 
     /// The instance of an index.
@@ -258,9 +259,9 @@ pub(crate) fn as_index(text: &str) -> Option<String> {
 }
 
 /// The number that an attribute comes to. Faults are reported.
-fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Option<i64> {
+fn number(text: &Text, names: &Names, report: &mut Report<'_>) -> Judged<i64> {
     let value = parse(text).and_then(|one| integer(&one, &mut |name| names.value(name)));
-    value.map_err(|fault| report_faults(text, &[fault], names, report)).ok()
+    value.map_err(|fault| report_faults(text, &[fault], names, report))
 }
 
 /// True if a condition is true. Faults are reported.
@@ -269,13 +270,13 @@ pub(crate) fn condition(
     names: &Names,
     value: &mut dyn FnMut(&str) -> Result<ExpressionValue, ExpressionError>,
     report: &mut Report<'_>,
-) -> Option<bool> {
+) -> Judged<bool> {
     let holds = parse(text).and_then(|one| boolean(&one, value));
-    holds.map_err(|fault| report_faults(text, &[fault], names, report)).ok()
+    holds.map_err(|fault| report_faults(text, &[fault], names, report))
 }
 
 /// Reports what is wrong with the expressions in a text.
-pub(crate) fn report_faults(text: &Text, faults: &[ExpressionFault], names: &Names, report: &mut Report<'_>) {
+pub(crate) fn report_faults(text: &Text, faults: &[ExpressionFault], names: &Names, report: &mut Report<'_>) -> Faulty {
     let parts = report.parts(text);
     for fault in faults {
         let written = text.get(fault.at.clone()).unwrap_or_default();
@@ -283,6 +284,7 @@ pub(crate) fn report_faults(text: &Text, faults: &[ExpressionFault], names: &Nam
             report.push(wrong(written, parts.part(fault.at.clone()), &fault.problem, names));
         }
     }
+    Faulty
 }
 
 /// A diagnostic with the places of the values that an expression asks for.

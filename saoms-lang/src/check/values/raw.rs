@@ -5,6 +5,7 @@ use std::rc::Rc;
 use std::slice;
 
 use super::type_name::local;
+use crate::check::judged::{Faulty, Judged};
 use crate::check::report::Report;
 use crate::check::unfolding::replica::Instance;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -126,13 +127,13 @@ pub(crate) fn raw<'a>(
     document: &'a Document,
     instance: Option<&'a Instance>,
     report: &mut Report<'_>,
-) -> Result<Raw<'a>, ()> {
+) -> Judged<Raw<'a>> {
     if let (Some(file), None, None) = (property.file(), property.document(), property.from_file()) {
         // As a rule it was reported by who tried to read it.
         if !report.has_errors() {
             report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
         }
-        return Err(());
+        return Err(Faulty);
     }
     let mut ways = ways(property, document, instance).into_iter();
     match (ways.next(), ways.next()) {
@@ -143,7 +144,7 @@ pub(crate) fn raw<'a>(
                     .label(first, "the other one")
                     .help("write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`"),
             );
-            Err(())
+            Err(Faulty)
         }
         (only, _) => Ok(only.map_or_else(|| Raw(Vec::new()), |(_, raw)| raw)),
     }

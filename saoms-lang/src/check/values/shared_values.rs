@@ -8,6 +8,7 @@ use std::rc::Rc;
 
 use super::path::{POSITION, PathFault, Predicate, Test, attribute, ends, no_step, one_of, steps};
 use super::raw::{Piece, Raw};
+use crate::check::judged::Judged;
 use crate::limits::{Budget, PATH_STEPS, TABLE_ELEMENTS};
 use crate::model::Property;
 use crate::syntax::Element;
@@ -25,8 +26,8 @@ pub(crate) struct SharedValues<'a> {
     kept: Cell<usize>,
 }
 
-/// The values of a property; `Err` with a fault, which is reported.
-pub(crate) type Answer<'a> = Result<Rc<SharedValues<'a>>, ()>;
+/// The values of a property.
+pub(crate) type Answer<'a> = Judged<Rc<SharedValues<'a>>>;
 
 /// Elements by the value that a step asks for.
 type ByValue<'a> = HashMap<String, Vec<Element<'a>>>;

@@ -42,7 +42,7 @@ pub(crate) fn target(
     report: &mut Report<'_>,
 ) -> Target {
     // An expression that is still there has a fault, which is reported.
-    if options.assume_classes && is_address(text) || fleet.scopes[scope].is_faulty && has_expression(text) {
+    if options.assume_classes && is_address(text) || fleet.scopes[scope].fault.is_some() && has_expression(text) {
         return Target::Open;
     }
     let Some(uri) = Uri::of(text, (3, Side::Service), (scope, fleet), report) else { return Target::Wrong };

@@ -33,7 +33,7 @@ impl Wires<'_, '_> {
         let mut is_required = of_class(declared).is_required();
         loop {
             if self.promoted.outermost.contains_key(&place) {
-                return fleet.is_misread;
+                return fleet.misread.is_some();
             }
             is_required |= fleet.given_multiplicity(place).is_some_and(Multiplicity::is_required);
             let reference = fleet.members[place.0].component.reference(place.1);
@@ -41,7 +41,7 @@ impl Wires<'_, '_> {
                 reference.wired_by_impl.is_some_and(|wired| wired.value) || has_address(&reference.contract().bindings)
             };
             if reference.is_some_and(is_wired_elsewhere) {
-                return fleet.is_misread;
+                return fleet.misread.is_some();
             }
             is_autowired |= self.is_autowired(place, reference);
             match self.promoted.to.get(&place).and_then(|outer| outer.first()) {
@@ -58,14 +58,14 @@ impl Wires<'_, '_> {
         let dangling = [&self.dangling, &self.promoted.dangling];
         if empty.is_some_and(|element| element.has_text())
             || fleet.lacks_include(own.scope)
-            || own.is_repeated
+            || own.repeated.is_some()
             || dangling.iter().any(|one| one.means(place, fleet))
             || is_misspelt(place, fleet)
         {
             return true;
         }
         // A wire or a promotion of a component that does not exist may be meant for this one.
-        let is_unknown = fleet.is_misread || dangling.iter().any(|one| one.lost.contains_key(&own.scope));
+        let is_unknown = fleet.misread.is_some() || dangling.iter().any(|one| one.lost.contains_key(&own.scope));
         if !is_required {
             return is_unknown;
         }

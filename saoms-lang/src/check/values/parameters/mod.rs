@@ -9,6 +9,7 @@ use std::rc::Rc;
 use outside::{from_outside, is_asked_for};
 
 use crate::check::fleet::{Fleet, Member};
+use crate::check::judged::{Faulty, Judged};
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::unfolding::replica::Instance;
@@ -39,10 +40,10 @@ pub(crate) struct Parameters<'a> {
 #[derive(Default)]
 struct Declared<'a> {
     by_name: BTreeMap<&'a str, Parameter<'a>>,
-    /// True if a `source` leads to none of them: one of them is probably meant.
-    has_wrong_source: bool,
-    /// True if one of them has no name, which is reported.
-    has_nameless: bool,
+    /// The fault of a `source` that leads to none of them: any of them may be meant.
+    source: Option<Faulty>,
+    /// The fault of one of them without a name: any name may be meant for it.
+    name: Option<Faulty>,
     /// The component that the composite implements.
     owner: Option<&'a ComponentElement>,
 }
@@ -52,7 +53,7 @@ struct Parameter<'a> {
     property: &'a Property,
     given: Option<Given<'a>>,
     /// True if it has to be given a value, and what the component says that the composite implements comes to none.
-    is_unset: bool,
+    lacks_value: bool,
     is_used: bool,
     /// Its values, once somebody asked for them.
     whole: Option<Rc<SharedValues<'a>>>,
@@ -187,9 +188,9 @@ impl<'a> Parameters<'a> {
         place: ValueSite<'a>,
         property: &'a Property,
         report: &mut Report<'_>,
-    ) -> Result<(Rc<SharedValues<'a>>, Option<Location>), ()> {
+    ) -> Judged<(Rc<SharedValues<'a>>, Option<Location>)> {
         if place.instance.is_some_and(|instance| instance.hides(property, &place.composite.document)) {
-            return Err(());
+            return Err(Faulty);
         }
         if let Some(source) = property.source() {
             let whole = self.resolve(place.unit, source, report)?;
@@ -212,7 +213,7 @@ impl<'a> Parameters<'a> {
         member: &Member<'a>,
         property: &'a Property,
         report: &mut Report<'_>,
-    ) -> Result<(Raw<'a>, Option<Location>), ()> {
+    ) -> Judged<(Raw<'a>, Option<Location>)> {
         let (values, source) = self.shared(ValueSite::of(member), property, report)?;
         Ok((values.into_raw().inside_elements_of(property), source))
     }
@@ -255,9 +256,9 @@ impl<'a> Parameters<'a> {
         Some((name, self.units[unit].by_name.get(name)?))
     }
 
-    /// True if it is told why the composite property that a `source` names has no value: it is misspelt where it is
-    /// given, or comes from a file, as those of components can.
-    pub(crate) fn is_told(&self, unit: usize, source: &str) -> bool {
+    /// True if the reason is reported why the composite property that a `source` names has no value: it is misspelt
+    /// where it is given, or comes from a file, as those of components can.
+    pub(crate) fn is_lack_reported(&self, unit: usize, source: &str) -> bool {
         let declared = &self.units[unit];
         let Some((name, Parameter { composite, property, .. })) = self.named_by(unit, source) else {
             return false;
@@ -269,13 +270,13 @@ impl<'a> Parameters<'a> {
 
     /// Lets any property of a composite be meant by what is wrong in it.
     pub(crate) fn leave_open(&mut self, unit: usize) {
-        self.units[unit].has_wrong_source = true;
+        self.units[unit].source = Some(Faulty);
     }
 
     /// Counts what composites of which not all is known take from those around them.
     fn pass_on(&mut self, fleet: &Fleet<'a>) {
         for unit in (0..self.units.len()).rev() {
-            let is_open = self.units[unit].has_wrong_source || fleet.scopes[fleet.units[unit].scope].is_faulty;
+            let is_open = self.units[unit].source.is_some() || fleet.scopes[fleet.units[unit].scope].fault.is_some();
             let open = self.units[unit].by_name.values().filter(|parameter| is_open || parameter.is_used);
             let from: Vec<(usize, &'a str)> = open
                 .filter_map(|parameter| match parameter.given {
@@ -306,7 +307,7 @@ impl<'a> Parameters<'a> {
             let help = format!("each component that {has}: is this what is meant?");
             report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message).help(help));
         }
-        Err(())
+        Err(Faulty)
     }
 
     /// Reports the properties that have to have a value and have none, and those that nothing uses.
@@ -327,7 +328,7 @@ impl<'a> Parameters<'a> {
                 }
                 let name = &property.name;
                 let is_declared = |name: &str| declared.by_name.contains_key(name);
-                let is_given = parameter.given.is_some() && !parameter.is_unset
+                let is_given = parameter.given.is_some() && !parameter.lacks_value
                     || owner.is_some_and(|owner| is_misspelt(name, owner.component, is_declared));
                 if is_asked_for(property) && !is_given {
                     owner.into_iter().for_each(|owner| report.about(owner));
@@ -335,7 +336,7 @@ impl<'a> Parameters<'a> {
                     report.about_all();
                 }
                 let origin = property.origin;
-                let is_open = declared.has_wrong_source || fleet.scopes[unit.scope].is_faulty;
+                let is_open = declared.source.is_some() || fleet.scopes[unit.scope].fault.is_some();
                 // No `source` can name one that is of the wrong form, which is reported.
                 let is_open = is_open || name.contains(char::is_whitespace);
                 if !used.contains(&(origin.file(), origin.element)) && !is_open {
@@ -354,10 +355,10 @@ fn declared<'a>(composites: &[&'a Composite], is_absent: bool, report: &mut Repo
     let properties = composites.iter().flat_map(|one| one.properties.iter().map(move |property| (*one, property)));
     for (composite, property) in properties {
         if property.name.is_empty() {
-            all.has_nameless = true;
+            all.name = Some(Faulty);
             continue;
         }
-        let parameter = Parameter { composite, property, given: None, is_unset: false, is_used: false, whole: None };
+        let parameter = Parameter { composite, property, given: None, lacks_value: false, is_used: false, whole: None };
         match all.by_name.get(property.name.as_str()) {
             Some(first) if std::ptr::eq(first.property, property) => {}
             // What is not there may say otherwise what another composite says that is there in place of it.

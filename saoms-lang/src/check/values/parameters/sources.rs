@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use super::{Given, Parameters};
 use crate::check::fleet::Fleet;
+use crate::check::judged::{Faulty, Judged};
 use crate::check::report::{Report, replacing};
 use crate::check::values::path::{FORMS, PathFault, PathFaultKind, expression};
 use crate::check::values::raw::{Piece, Raw, raw};
@@ -58,8 +59,7 @@ impl<'a> Parameters<'a> {
         let known = &self.units[place].by_name;
         let simple = expression(source).filter(|(name, _)| known.contains_key(name) || is_name(name));
         let Some((name, path)) = simple else {
-            self.no_path(place, source, report);
-            return Err(());
+            return Err(self.no_path(place, source, report));
         };
         self.named(place, source, name, report)?;
         let Some(path) = path else { return self.taken_whole(place, name, report) };
@@ -70,16 +70,16 @@ impl<'a> Parameters<'a> {
     }
 
     /// Finds the property that a `source` names, and notes that it is used. One that is not there is reported.
-    fn named(&mut self, place: usize, source: &Text, name: &str, report: &mut Report<'_>) -> Result<(), ()> {
+    fn named(&mut self, place: usize, source: &Text, name: &str, report: &mut Report<'_>) -> Judged<()> {
         let unit = &mut self.units[place];
         if let Some(parameter) = unit.by_name.get_mut(name) {
             parameter.is_used = true;
             return Ok(());
         }
-        unit.has_wrong_source = true;
+        unit.source = Some(Faulty);
         // That it is not there is told where a component gives it a value, or where one is declared without its name.
-        if unit.has_nameless || unit.owner.is_some_and(|owner| owner.property(name).is_some()) {
-            return Err(());
+        if unit.name.is_some() || unit.owner.is_some_and(|owner| owner.property(name).is_some()) {
+            return Err(Faulty);
         }
         let names = unit.by_name.keys().copied();
         let at = report.part(source, 1..1 + name.len());
@@ -90,7 +90,7 @@ impl<'a> Parameters<'a> {
             true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
             false => one,
         });
-        Err(())
+        Err(Faulty)
     }
 
     /// The values of a property of this name as a whole, as components take them.
@@ -107,7 +107,7 @@ impl<'a> Parameters<'a> {
 
     /// The whole value of a property that is there.
     pub(super) fn whole(&mut self, place: usize, name: &str, report: &mut Report<'_>) -> Answer<'a> {
-        let Some(parameter) = self.units[place].by_name.get_mut(name) else { return Err(()) };
+        let Some(parameter) = self.units[place].by_name.get_mut(name) else { return Err(Faulty) };
         if let Some(known) = &parameter.whole {
             return Ok(Rc::clone(known));
         }
@@ -116,7 +116,7 @@ impl<'a> Parameters<'a> {
         let mut whole = match given {
             Some(Given::Outside(value)) => SharedValues::new(Raw::one(value)),
             Some(Given::Component(outside, outer)) => self.shared(outside, outer, report)?.0,
-            Some(Given::Unknown) => return Err(()),
+            Some(Given::Unknown) => return Err(Faulty),
             None => SharedValues::new(Raw(Vec::new())),
         };
         if let (true, Some(value)) = (whole.raw.0.is_empty(), variable) {
@@ -134,9 +134,9 @@ impl<'a> Parameters<'a> {
         if whole.raw.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {
             // Reported where it should have been supplied.
             if let Some(parameter) = self.units[place].by_name.get_mut(name) {
-                parameter.is_unset = true;
+                parameter.lacks_value = true;
             }
-            return Err(());
+            return Err(Faulty);
         }
         let whole = whole.given_to(property);
         if let Some(parameter) = self.units[place].by_name.get_mut(name) {
@@ -146,9 +146,9 @@ impl<'a> Parameters<'a> {
     }
 
     /// Reports a `source` that is no path from a property.
-    fn no_path(&mut self, place: usize, source: &Text, report: &mut Report<'_>) {
+    fn no_path(&mut self, place: usize, source: &Text, report: &mut Report<'_>) -> Faulty {
         let unit = &mut self.units[place];
-        unit.has_wrong_source = true;
+        unit.source = Some(Faulty);
         if source.contains(['$', '(']) {
             let fault = braced(source).unwrap_or_else(|| {
                 PathFault::unknown(0..source.len(), format!("{} is no path from a property", quoted(source)))
@@ -162,10 +162,11 @@ impl<'a> Parameters<'a> {
             one = one.suggest("insert `$`", source.location, escaped(&format!("${source}")));
         }
         report.push(one);
+        Faulty
     }
 
     /// Reports a fault of a `source`, whose bytes count from a place in it. Another program may understand any XPath.
-    fn malformed(&mut self, source: &Text, start: usize, fault: PathFault, report: &mut Report<'_>) {
+    fn malformed(&mut self, source: &Text, start: usize, fault: PathFault, report: &mut Report<'_>) -> Faulty {
         let PathFault { step, message, kind, instead } = fault;
         let step = start + step.start..start + step.end;
         let at = report.part(source, step.clone());
@@ -174,7 +175,7 @@ impl<'a> Parameters<'a> {
                 let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message);
                 report.push(one.help("ask for parts by their names, by an attribute or by a place, without `//`"));
             }
-            return;
+            return Faulty;
         }
         let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, at, message);
         if let Some((name, meant)) = instead
@@ -193,6 +194,7 @@ impl<'a> Parameters<'a> {
             };
         }
         report.push(one);
+        Faulty
     }
 }
 
