@@ -92,7 +92,7 @@ impl Component for MasterEnvironment {
         for (header, said) in context.receive(&self.responses).with_headers() {
             self.hear(context, header, said);
         }
-        for (luggage, from, to) in self.open.take_hopeless() {
+        for (luggage, from, to) in self.open.take_hopeless(context.now()) {
             context.log(
                 Level::Error,
                 format_args!("gives up luggage {luggage} from {from} to {to}: no robot can bring it"),
@@ -138,7 +138,7 @@ impl MasterEnvironment {
                 context.count("faults.ignored", 1);
                 self.validator.log_rejection(context, header, fault, problem);
             } else {
-                self.open.break_down(fault.robot);
+                self.open.break_down(fault.robot, context.now());
                 context.send(&self.faults, fault.clone())?;
             }
         }

@@ -1,4 +1,7 @@
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use saoms_api::Time;
 
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage, RobotList};
@@ -7,8 +10,10 @@ use crate::messages::{EventLuggage, LuggageStage, RobotList};
 #[derive(Debug, Default)]
 pub(super) struct OpenLuggage {
     pieces: BTreeMap<u32, Piece>,
-    /// Robots that report that they are active.
-    active: BTreeSet<u32>,
+    /// Robots that report that they are active, with their period.
+    active: BTreeMap<u32, Duration>,
+    /// Active robots that are told to break, with the time until which they can say so themselves.
+    breaking: BTreeMap<u32, Time>,
     /// Active robots that are broken.
     broken: BTreeSet<u32>,
     /// True once there was a robot.
@@ -36,18 +41,21 @@ impl OpenLuggage {
         self.pieces.first_key_value().map(|(first, _)| (*first, self.pieces.len() - 1))
     }
 
-    pub(super) fn break_down(&mut self, robot: u32) {
-        self.changed |= self.broken.insert(robot);
+    /// A robot is told to break. It has two executions to say so itself, before its luggage is given up.
+    pub(super) fn break_down(&mut self, robot: u32, now: Time) {
+        let period = self.active.get(&robot).copied().unwrap_or_default();
+        self.breaking.entry(robot).or_insert(now + period.saturating_mul(2));
     }
 
     pub(super) fn hear_robot(&mut self, robot: &RobotList) {
         self.seen = true;
         self.changed |= if robot.active {
-            self.active.insert(robot.robot)
+            self.active.insert(robot.robot, Duration::from_micros(robot.period)).is_none()
         } else {
             // A robot that reports itself again was repaired.
             self.broken.remove(&robot.robot);
-            self.active.remove(&robot.robot)
+            self.breaking.remove(&robot.robot);
+            self.active.remove(&robot.robot).is_some()
         };
     }
 
@@ -65,12 +73,17 @@ impl OpenLuggage {
 
     /// Removes luggage that no robot can bring: every robot refused it, or no robot is left. Returns number, origin and
     /// destination of each piece.
-    pub(super) fn take_hopeless(&mut self) -> Vec<(u32, Block, Block)> {
+    pub(super) fn take_hopeless(&mut self, now: Time) -> Vec<(u32, Block, Block)> {
+        for (robot, _) in self.breaking.extract_if(.., |_, until| *until <= now) {
+            self.changed |= self.broken.insert(robot);
+        }
         if !std::mem::take(&mut self.changed) || !self.seen {
             return Vec::new();
         }
         let OpenLuggage { pieces, active, broken, .. } = self;
-        let can = |piece: &Piece| active.difference(broken).any(|robot| !piece.refused.contains(robot));
+        let can = |piece: &Piece| {
+            active.keys().filter(|robot| !broken.contains(robot)).any(|robot| !piece.refused.contains(robot))
+        };
         let hopeless = pieces.extract_if(.., |_, piece| !can(piece));
         hopeless.map(|(luggage, piece)| (luggage, piece.from, piece.to)).collect()
     }
@@ -84,12 +97,20 @@ mod tests {
         RobotList { robot, active, ..RobotList::default() }
     }
 
+    fn at(millis: u64) -> Time {
+        Time::START + Duration::from_millis(millis)
+    }
+
     fn refusal(luggage: u32, robot: u32) -> EventLuggage {
         EventLuggage { luggage, robot, stage: LuggageStage::Refused, ..EventLuggage::default() }
     }
 
     fn hopeless(open: &mut OpenLuggage) -> Vec<u32> {
-        open.take_hopeless().into_iter().map(|(luggage, ..)| luggage).collect()
+        hopeless_at(open, 0)
+    }
+
+    fn hopeless_at(open: &mut OpenLuggage, millis: u64) -> Vec<u32> {
+        open.take_hopeless(at(millis)).into_iter().map(|(luggage, ..)| luggage).collect()
     }
 
     #[test]
@@ -107,8 +128,22 @@ mod tests {
         assert_eq!(hopeless(&mut open), [2]);
         open.hear_response(&EventLuggage { stage: LuggageStage::Delivered, luggage: 1, ..refusal(1, 1) });
         open.hear_response(&refusal(3, 1));
-        open.break_down(2);
+        open.break_down(2, at(0));
         assert_eq!(hopeless(&mut open), [3], "the other one is broken down");
+    }
+
+    #[test]
+    fn who_is_told_to_break_can_say_so_first() {
+        let mut open = OpenLuggage::default();
+        for number in [1, 2] {
+            open.hear_robot(&RobotList { period: 500_000, ..robot(number, true) });
+            open.add(number, Block::new(0, 0), Block::new(1, 0));
+            open.break_down(number, at(1000));
+        }
+        assert_eq!(hopeless_at(&mut open, 1900), [0; 0]);
+        open.hear_robot(&robot(2, false));
+        assert_eq!(hopeless_at(&mut open, 1950), [0; 0], "the other one may still bring it");
+        assert_eq!(hopeless_at(&mut open, 2000), [1, 2], "it says nothing");
     }
 
     #[test]

@@ -31,8 +31,11 @@ fn a_run_whose_luggage_was_given_up_is_incomplete() {
     let breaks = |composite: String| composite.replace("to (3,10)<", "to (3,10); at 1500ms breakdown Robot7<");
     let (output, report) = hall("outcome-given-up", breaks, &[]);
     assert_eq!(code(&output), 1, "{}", text(&output));
+    let shown = stdout(&output);
+    let line = |what: &str| shown.find(what).unwrap_or_else(|| panic!("no `{what}`: {shown}"));
+    assert!(line("Robot7         error: broke down at (2,6)") < line("gives up luggage 1"), "{shown}");
     let end = end(&output);
-    assert!(end.starts_with("incomplete after 1.600 s: 0 of 1 pieces of luggage delivered, 1 given up, no"), "{end}");
+    assert!(end.starts_with("incomplete after 1.800 s: 0 of 1 pieces of luggage delivered, 1 given up, no"), "{end}");
     assert!(end.ends_with("\n  work was given up, as told by `World`, `Environment`, `Master`"), "{end}");
     assert_eq!(report["outcome"]["status"], "incomplete");
     assert_eq!(report["luggage"]["given_up"], 1);
