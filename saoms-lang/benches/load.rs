@@ -1,4 +1,5 @@
-//! Speed of reading a composite: `cargo bench -p saoms-lang --bench load -- [MEGABYTES] [KIND]`.
+//! Speed of reading a composite: `cargo bench -p saoms-lang --bench load -- [MEGABYTES] [KIND]`. It measures the steps
+//! that parse and load, each alone.
 //!
 //! For each kind of text it prints the megabytes per second of one core for roxmltree's tree, for ours, and for the
 //! model with all checks of the vocabulary (memory given back included), the best of five, and the peak memory of the

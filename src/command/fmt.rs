@@ -6,11 +6,7 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use saoms_lang::contribution::composites_below;
-use saoms_lang::diagnostic::{Diagnostics, human};
-use saoms_lang::project::{INPUT, read};
-use saoms_lang::source::{FileId, Sources};
-use saoms_lang::syntax::{self, Document, Parse};
+use saoms_lang::project::{INPUT, composite_files, document};
 use saoms_tools::format::Formatted;
 
 use crate::Exit;
@@ -47,16 +43,9 @@ pub(crate) struct FmtArguments {
 
 pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     let (mut is_wrong, mut has_failed) = (false, false);
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let mut files: Vec<PathBuf> = Vec::with_capacity(arguments.files.len());
-    for path in &arguments.files {
-        match path.is_dir() {
-            true => files.extend(composites_below(path, &mut sources, &mut diagnostics)),
-            false => files.push(path.clone()),
-        }
-    }
-    if diagnostics.has_errors() {
-        eprint(&human(&diagnostics.into_sorted(), &sources, io::stderr().is_terminal()));
+    let (mut files, refused) = composite_files(&arguments.files);
+    if let Some(refused) = refused {
+        eprint(&refused.text(io::stderr().is_terminal()));
         is_wrong = true;
     }
     let mut seen = HashSet::with_capacity(files.len());
@@ -99,12 +88,9 @@ enum Outcome {
 
 fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
     let is_input = path == Path::new(INPUT);
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let file = read(path, arguments.max_size, &mut sources, &mut diagnostics);
-    let document = file.and_then(|file| well_formed(file, &sources, &mut diagnostics));
-    let Some(document) = document else {
-        let diagnostics = diagnostics.into_sorted();
-        return Outcome::Wrong(human(&diagnostics, &sources, io::stderr().is_terminal()));
+    let document = match document(path, arguments.max_size) {
+        Ok(document) => document,
+        Err(refused) => return Outcome::Wrong(refused.text(io::stderr().is_terminal())),
     };
     let formatted = Formatted { document: &document, width: arguments.width };
     let is_same = is_same(&formatted, document.text());
@@ -125,14 +111,6 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
         },
     };
     written.map_or_else(Outcome::NotWritten, |()| Outcome::Formatted)
-}
-
-/// The document, unless the file is not well-formed.
-fn well_formed(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Document> {
-    let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
-    let is_well_formed = faults.is_empty();
-    faults.into_iter().for_each(|fault| diagnostics.push(fault));
-    is_well_formed.then_some(document)
 }
 
 /// True if the value is displayed as this text, found without keeping it.

@@ -1,10 +1,11 @@
 //! The one way from files to an [`Assembly`], or to the diagnostics that say why there is none.
 //!
-//! A [`Project`] says what is compiled and how; a [`Compilation`] holds what came of it. Nobody outside of this crate
-//! takes the steps between them by hand.
+//! A [`Project`] says what is compiled and how; a [`Compilation`] holds the outcome. The command and the tools take the
+//! steps between them through this module alone; tests of one step call that step alone.
 
 mod classes;
 mod compilation;
+mod document;
 mod each;
 mod folder;
 mod libraries;
@@ -26,6 +27,7 @@ use crate::source::OpenTexts;
 
 pub use classes::{ClassPath, Classes, LibraryResolver, PluginFault};
 pub use compilation::Compilation;
+pub use document::{Refused, composite_files, document};
 pub use each::{Compilations, FleetOutput};
 pub use load::{INPUT, Loaded, SET, SEVERITY, read};
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use saoms_lang::check::Occurrences;
 use saoms_lang::diagnostic::Diagnostic;
 use saoms_lang::project::{Compilation, Project};
 use saoms_lang::registry::Registry;
@@ -48,6 +49,11 @@ impl Input {
     /// Compiles it with these settings, within the memory that it may take.
     pub(crate) fn compiled(&self, settings: Settings, registry: &Registry) -> Compilation {
         self.measured(settings, |project| project.compile(registry))
+    }
+
+    /// Counts its components with these settings, within the memory that it may take.
+    pub(crate) fn counted(&self, settings: Settings, registry: &Registry) -> Compilation<Occurrences> {
+        self.measured(settings, |project| project.census(registry))
     }
 
     fn measured<T>(&self, settings: Settings, compile: impl FnOnce(Project) -> T) -> T {

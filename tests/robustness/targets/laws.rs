@@ -22,7 +22,7 @@ const GIVEN: Settings = |project| project.assume_classes(true).wiring(true).set_
 pub(crate) fn holds(input: &Input, registry: &Registry) {
     let fleet = examined(input, KNOWN, registry);
     assert_eq!(fleet.output.is_none(), fleet.has_errors(), "{}", fleet.text());
-    draw(&fleet.contribution, registry, &fleet.sources);
+    draw(&input.counted(KNOWN, registry), registry);
     mended(input, &fleet, KNOWN, registry);
     if let Some(assembly) = &fleet.output {
         written_out(input, &fleet, assembly, registry);

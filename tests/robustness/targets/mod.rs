@@ -10,13 +10,14 @@ use std::sync::Arc;
 use saoms_api::Time;
 use saoms_core::journal::read as read_journal;
 use saoms_lang::assembly::TaskProperties;
-use saoms_lang::check::{Occurrences, Options};
+use saoms_lang::check::Occurrences;
 use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes, human, json, sarif};
 use saoms_lang::expression::{
     ExpressionError, ExpressionFault, ExpressionValue, boolean, has_expression, integer, names, parse, pattern, render,
 };
 use saoms_lang::load::{MAX_SIZE, load_file, read_from};
-use saoms_lang::model::{Composite, Contribution};
+use saoms_lang::model::Composite;
+use saoms_lang::project::Compilation;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{FileId, Location, Sources};
 use saoms_lang::syntax::{self, Document};
@@ -115,9 +116,9 @@ pub(crate) fn journal(bytes: &[u8]) {
 }
 
 /// Draws a fleet in every format.
-pub(crate) fn draw(fleet: &Contribution, registry: &Registry, sources: &Sources) {
-    let census = Occurrences::of(fleet, registry, &Options::default(), sources, &mut Diagnostics::new());
-    let diagram = Diagram::of(fleet, registry, &census);
+pub(crate) fn draw(fleet: &Compilation<Occurrences>, registry: &Registry) {
+    let Some(census) = &fleet.output else { return };
+    let diagram = Diagram::of(&fleet.contribution, registry, census);
     let pictures = [svg(&diagram).to_string(), dot(&diagram).to_string(), mermaid(&diagram).to_string()];
     assert!(syntax::parse(FileId(0), &Arc::new(pictures[0].clone())).faults.is_empty(), "{}", pictures[0]);
 }
@@ -139,6 +140,7 @@ thread_local! {
     pub(crate) static REGISTRY: Registry = Registry::linked().unwrap();
 }
 
+/// The outcome of the step that reads a composite, alone: a project takes texts, and these are bytes.
 struct Loaded {
     composite: Option<Composite>,
     sources: Sources,

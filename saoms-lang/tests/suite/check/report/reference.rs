@@ -188,7 +188,7 @@ fn checked_with(
     compiled(&others.iter().fold(project, |project, (name, text)| project.other_text(name, text)))
 }
 
-/// Reads a file that cannot be read.
+/// Reads a file that cannot be read, by the step of a project that reads: some of these paths would be folders to it.
 fn unreadable(id: &str) -> (Vec<Diagnostic>, Sources) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("fleet.composite");
