@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use super::component::ComponentCheck;
-use super::fleet::{Fleet, classes};
-use super::wiring::Wiring;
 use crate::assembly::{Assembly, ComponentSpec, Wire, WireTarget};
+use crate::check::classes;
+use crate::check::component::ComponentCheck;
+use crate::check::fleet::Fleet;
+use crate::check::wiring::Wiring;
 use crate::source::Sources;
 
 /// The assembly of a fleet without errors; `None` if something is taken as given.

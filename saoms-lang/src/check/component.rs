@@ -3,8 +3,8 @@
 use crate::assembly::TaskProperties;
 use crate::check::fleet::Member;
 use crate::check::loops;
+use crate::check::properties::findings::Subject;
 use crate::check::properties::given_values::PropertyValues;
-use crate::check::report::findings::Subject;
 
 /// Everything that is found out about one component.
 #[derive(Default)]
@@ -30,7 +30,12 @@ pub(crate) enum ComponentState {
     Sound,
 }
 
-impl ComponentCheck<'_> {
+impl<'a> ComponentCheck<'a> {
+    /// The component with these values and loops, of which no task is known yet.
+    pub(crate) fn new((given, loops): (PropertyValues, Option<loops::Resolved<'a>>)) -> Self {
+        Self { given, loops, ..Self::default() }
+    }
+
     /// True for a component that can be constructed.
     pub(crate) fn is_sound(&self) -> bool {
         self.state == ComponentState::Sound

@@ -6,12 +6,15 @@
 //! gives one diagnostic. A part that is faulty carries that itself: `judged::Faulty`.
 
 mod assemble;
+mod classes;
 mod component;
+mod contracts;
 mod fleet;
 mod judged;
 mod loops;
 mod occurrences;
 mod options;
+mod parameters;
 mod properties;
 mod report;
 mod rules;
@@ -26,12 +29,12 @@ use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::Sources;
 
-use fleet::classes;
+use component::ComponentCheck;
+use parameters::Parameters;
 use report::Report;
 use report::severities::Severities;
-use rules::unique_values::RepeatedValues;
+use tasks::unique_values::RepeatedValues;
 use unfolding::append_list::AppendList;
-use values::parameters::Parameters;
 
 pub use occurrences::{Occurrences, TopicUse};
 pub use options::{Options, Setting, Variable};
@@ -74,8 +77,9 @@ pub fn check(
     classes::resolve(&mut fleet, registry, options, report);
 
     // Each component alone: properties, loops, tasks.
-    let mut checks = properties::check_all(&fleet, &mut parameters, report);
-    loops::resolve(&mut fleet, &mut checks, (registry, options), &mut parameters, report);
+    let given = properties::check_all(&fleet, &mut parameters, report);
+    let loops = loops::resolve(&mut fleet, &given, (registry, options), &mut parameters, report);
+    let mut checks: Vec<_> = given.into_iter().zip(loops).map(ComponentCheck::new).collect();
     parameters.finish(&fleet, report);
     // From here on only components that are there count: rules below compare several.
     unfolding::remove_absent::remove(&mut fleet, &mut checks);
@@ -84,11 +88,11 @@ pub fn check(
     let repeated = if severities.mentions(&codes::NOT_UNIQUE) { RepeatedValues::default() } else { repeated };
 
     // Services, references, promotions and wires.
-    rules::check_written(&fleet, report);
-    let promoted = wiring::promotion::check(&fleet, report);
-    let wiring = wiring::check(&fleet, &promoted, options, report);
+    contracts::check(&fleet, report);
+    let wiring = wiring::check(&fleet, options, report);
 
-    rules::check_resolved(&fleet, (&checks, &wiring), &repeated, (registry, options), report);
+    // Constructors, and rules of crates of components: the expensive ones.
+    rules::check(&fleet, (&checks, &wiring), &repeated, (registry, options), report);
 
     // Severities count at the end, and an error anywhere keeps the fleet from running.
     if options.assume_classes {

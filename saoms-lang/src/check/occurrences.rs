@@ -4,17 +4,17 @@ use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 use crate::assembly::TopicRenames;
-use crate::check::fleet::classes;
+use crate::check::classes;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
 use crate::check::options::Options;
+use crate::check::parameters::Parameters;
 use crate::check::properties;
 use crate::check::report::Report;
 use crate::check::report::severities::Severities;
 use crate::check::tasks::Task;
 use crate::check::unfolding;
 use crate::check::unfolding::append_list::AppendList;
-use crate::check::values::parameters::Parameters;
 use crate::diagnostic::Diagnostics;
 use crate::model::{Contribution, Origin};
 use crate::registry::{ClassTopic, Registry};
@@ -153,15 +153,15 @@ fn topics<'a>(
     let mut unheard = Diagnostics::new();
     let report = &mut Report::new(sources, &mut unheard);
     classes::resolve(fleet, registry, options, report);
-    let mut checks = properties::check_all(fleet, &mut parameters, report);
-    loops::resolve(fleet, &mut checks, (registry, options), &mut parameters, report);
+    let given = properties::check_all(fleet, &mut parameters, report);
+    loops::resolve(fleet, &given, (registry, options), &mut parameters, report);
     let mut declared: HashMap<*const ClassTopic, Rc<ClassTopic>> = HashMap::new();
     let mut all: HashMap<ElementPath, Vec<TopicUse>> = HashMap::new();
     for (at, member) in fleet.members.iter().enumerate().filter(|(_, member)| !member.is_absent) {
         let Kind::Class(index) = member.kind else { continue };
         let class = &fleet.classes[index];
         let is_periodic = class.class.declaration().is_periodic();
-        let task = Task { component: member.component, class, given: &checks[at].given };
+        let task = Task { component: member.component, class, given: &given[at] };
         let renamed = if is_periodic { task.renamed(report) } else { Vec::new() };
         let renames = TopicRenames(renamed.into_iter().map(|one| (one.old, one.new)).collect());
         let published = class.publishes.iter().map(|topic| (*topic, true));

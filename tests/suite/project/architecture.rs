@@ -5,16 +5,30 @@ use std::path::{Path, PathBuf};
 
 use crate::support::{project, root};
 
-/// The crates with an order of modules: each module may use those before it, none after it.
-const ORDERS: &[(&str, &[&str])] = &[
+/// The folders with an order of modules, each with the path of its modules: a module may use those before it, none
+/// after it.
+const ORDERS: &[(&str, &str, &[&str])] = &[
     (
-        "saoms-lang",
+        "saoms-lang/src",
+        "crate::",
         &[
             "limits", "source", "diagnostic", "expression", "syntax", "model", "load", "contribution", "schema",
             "registry", "assembly", "check", "project",
         ],
     ),
-    ("saoms-core", &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"]),
+    (
+        "saoms-lang/src/check",
+        "crate::check::",
+        &[
+            "judged", "options", "report", "values", "fleet", "parameters", "unfolding", "classes", "properties",
+            "loops", "component", "tasks", "contracts", "wiring", "rules", "assemble", "occurrences",
+        ],
+    ),
+    (
+        "saoms-core/src",
+        "crate::",
+        &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"],
+    ),
 ];
 
 /// The sources in a folder and below it, but what is built of them.
@@ -31,12 +45,12 @@ pub(super) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The first path segments that follow `crate::` in the file, with their lines; comments do not count.
-fn crate_paths(text: &str) -> Vec<(usize, String)> {
+/// The path segments that follow `prefix` in the file, with their lines; comments do not count.
+fn paths_behind(prefix: &str, text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (number, line) in text.lines().enumerate() {
         let code = line.split("//").next().unwrap_or_default();
-        for after in code.split("crate::").skip(1) {
+        for after in code.split(prefix).skip(1) {
             let names = match after.strip_prefix('{') {
                 Some(list) => list.split('}').next().unwrap_or_default().split(',').map(str::trim).collect(),
                 None => vec![after],
@@ -53,18 +67,18 @@ fn crate_paths(text: &str) -> Vec<(usize, String)> {
 #[test]
 fn a_module_uses_only_modules_before_it() {
     let mut wrong = Vec::new();
-    for (name, order) in ORDERS {
-        let source = root().join(name).join("src");
+    for (name, prefix, order) in ORDERS {
+        let source = root().join(name);
         for file in rust_files(&source) {
             let relative = file.strip_prefix(&source).unwrap();
             let module = relative.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs");
-            if module == "lib" {
+            if ["lib", "mod"].contains(&module) {
                 continue;
             }
             let Some(place) = order.iter().position(|name| *name == module) else {
                 panic!("module `{module}` of {name} has no place in the order {order:?}");
             };
-            for (line, used) in crate_paths(&fs::read_to_string(&file).unwrap()) {
+            for (line, used) in paths_behind(prefix, &fs::read_to_string(&file).unwrap()) {
                 if order.iter().position(|name| *name == used).is_some_and(|other| other > place) {
                     let file = file.display();
                     wrong.push(format!("{file}:{line}: `{module}` comes before `{used}` and must not use it"));

@@ -1,22 +1,24 @@
 //! All components of all composites as one fleet.
 
-pub(crate) mod classes;
-pub(crate) mod names;
-pub(crate) mod similar_names;
+pub(crate) mod class_index;
+pub(crate) mod property_table;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
 use smol_str::SmolStr;
 
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::judged::Faulty;
-use crate::check::unfolding::expression_scope::Names;
-use crate::check::unfolding::replica::Instance;
+use crate::check::report::Report;
+use crate::check::values::expression_scope::Names;
 use crate::check::values::faulty_values::FaultyValues;
+use crate::check::values::replica::Instance;
 use crate::expression::has_expression;
 use crate::limits::Budget;
-use crate::model::{ComponentElement, Composite, Contribution, ReferenceElement, ServiceElement, WireElement};
+use crate::model::{
+    ComponentElement, ComponentType, Composite, Contribution, ReferenceElement, ServiceElement, WireElement,
+};
 use crate::registry::Registry;
 use crate::source::{FileId, Location};
 use crate::syntax::ElementId;
@@ -133,6 +135,31 @@ pub(crate) enum Kind {
     Given,
 }
 
+/// A side of a wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Service,
+    Reference,
+}
+
+impl Side {
+    /// As people say it.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Service => "service",
+            Self::Reference => "reference",
+        }
+    }
+
+    /// The rule of SCA that says that what is promoted has to be there.
+    pub(crate) const fn rule(self) -> &'static str {
+        match self {
+            Self::Service => "ASM60004",
+            Self::Reference => "ASM60007",
+        }
+    }
+}
+
 impl<'a> Member<'a> {
     pub(crate) fn new(composite: &'a Composite, unit: usize, scope: usize, component: &'a ComponentElement) -> Self {
         Self {
@@ -177,7 +204,26 @@ impl<'a> Member<'a> {
     }
 }
 
+impl Report<'_> {
+    /// Lets what follows be about this component.
+    pub(crate) fn about(&mut self, member: &Member<'_>) {
+        match member.is_copy {
+            true => self.about_replica(member.path(), member.instance.map(|instance| instance.index)),
+            false => self.about_all(),
+        }
+    }
+}
+
 impl<'a> Fleet<'a> {
+    /// The component type beside the implementation of a component.
+    pub(crate) fn component_type(&self, member: usize) -> Option<&'a ComponentType> {
+        if !self.contribution.describes_any() {
+            return None;
+        }
+        let implementation = self.members[member].component.implementation.as_ref()?;
+        self.contribution.component_type(implementation.origin)
+    }
+
     /// The component of this name in a scope.
     pub(crate) fn find(&self, scope: usize, name: &str) -> Option<usize> {
         self.scopes[scope].by_name.get(name).copied()

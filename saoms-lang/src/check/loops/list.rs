@@ -7,7 +7,7 @@ use saoms_api::host::PropertyValue;
 
 use super::{Planned, order};
 use crate::check::fleet::Member;
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::options::Options;
 use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::{Report, list, replacing};

@@ -10,15 +10,14 @@ use std::sync::Arc;
 use smol_str::SmolStr;
 
 use crate::assembly::LoopSpec;
-use crate::check::component::ComponentCheck;
+use crate::check::fleet::property_table::PropertyTable;
 use crate::check::fleet::{Fleet, Kind, Member};
 use crate::check::options::Options;
-use crate::check::properties::given_values::ValuePlace;
-use crate::check::properties::property_table::PropertyTable;
+use crate::check::parameters::Parameters;
+use crate::check::properties::findings::Subject;
+use crate::check::properties::given_values::{PropertyValues, ValuePlace};
 use crate::check::properties::{self, Giver};
 use crate::check::report::Report;
-use crate::check::report::findings::Subject;
-use crate::check::values::parameters::Parameters;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{LoopElement, Property};
 use crate::registry::{RegisteredLoop, Registry};
@@ -58,35 +57,37 @@ struct Planned<'a> {
 }
 
 /// Finds the loops of all components. The class of a component with loops becomes one that uses the topics and
-/// references of these as well.
+/// references of these as well. `None` for loops with a fault, which is reported, and for components without a class.
 pub(crate) fn resolve<'a>(
     fleet: &mut Fleet<'a>,
-    checks: &mut [ComponentCheck<'a>],
+    given: &[PropertyValues],
     (registry, options): (&'a Registry, &Options),
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) {
+) -> Vec<Option<Resolved<'a>>> {
     // The class of each place together with these loops.
     let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
     // The loops of components that say nothing about them, with the place of their class together with these: by the
     // place of the class alone, and the value that chooses among its lists of loops.
     let mut usual = HashMap::new();
-    for (place, check) in checks.iter_mut().enumerate() {
+    let mut all = Vec::with_capacity(given.len());
+    for (place, given) in given.iter().enumerate() {
         let member = &fleet.members[place];
         report.about(member);
         let Kind::Class(index) = member.kind else {
             without_class(member, parameters, report);
+            all.push(None);
             continue;
         };
         let class = &fleet.classes[index];
         let says_nothing = member.component.loops.is_empty();
-        let choice = says_nothing.then(|| (index, list::choice(class, &check.given).map(SmolStr::new)));
+        let choice = says_nothing.then(|| (index, list::choice(class, given).map(SmolStr::new)));
         if let Some((with, specs)) = choice.as_ref().and_then(|choice| usual.get(choice)) {
             fleet.members[place].kind = Kind::Class(*with);
-            check.loops = Some(Resolved { specs: Arc::clone(specs), changed: Vec::new() });
+            all.push(Some(Resolved { specs: Arc::clone(specs), changed: Vec::new() }));
             continue;
         }
-        let (loops, is_planned) = list::plan(member, class, &check.given, (registry, options), report);
+        let (loops, is_planned) = list::plan(member, class, given, (registry, options), report);
         let is_team = is_planned && team::check(member, class, &loops, report);
         let used: Vec<&Arc<RegisteredLoop>> = loops.iter().filter_map(|one| one.class).collect();
         let mut with = index;
@@ -100,12 +101,14 @@ pub(crate) fn resolve<'a>(
             fleet.members[place].kind = Kind::Class(with);
         }
         let resolved = resolved(&loops, &fleet.members[place], parameters, report);
-        check.loops = resolved.filter(|_| is_team);
-        if let (Some(choice), Some(resolved)) = (choice, &check.loops) {
+        let resolved = resolved.filter(|_| is_team);
+        if let (Some(choice), Some(resolved)) = (choice, &resolved) {
             usual.insert(choice, (with, Arc::clone(&resolved.specs)));
         }
+        all.push(resolved);
     }
     report.about_all();
+    all
 }
 
 /// Loops with their values; `None` where any of them is wrong.

@@ -2,7 +2,7 @@
 
 use super::Planned;
 use crate::check::fleet::Member;
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::registry::{LoopDeclaration, Team, TeamFault};

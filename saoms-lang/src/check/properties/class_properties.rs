@@ -4,11 +4,11 @@ use saoms_api::host::PropertyValue;
 
 use super::conversion::{Source, Target, convert};
 use super::given_values::{PropertyValues, ValuePlace};
-use super::property_table::{PropertyTable, TableEntry};
 use super::{Giver, given_twice, missing};
+use crate::check::fleet::property_table::{PropertyTable, TableEntry};
 use crate::check::judged::{Faulty, Judged};
+use crate::check::parameters::Parameters;
 use crate::check::report::Report;
-use crate::check::values::parameters::Parameters;
 use crate::check::values::raw::{Piece, Raw, raw};
 use crate::diagnostic::{Diagnostic, codes, nearest_equal, quoted};
 use crate::expression::has_expression;

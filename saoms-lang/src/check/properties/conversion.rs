@@ -7,9 +7,9 @@ use saoms_api::host::declaration::PropertyKind;
 
 use super::wrong_text;
 use crate::check::report::Report;
-use crate::check::unfolding::replica::Instance;
 use crate::check::values::faulty_values::FaultyValues;
 use crate::check::values::raw::{Piece, Raw};
+use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};

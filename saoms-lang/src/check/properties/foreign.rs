@@ -1,9 +1,9 @@
 //! Components of which nothing is known here but what a file beside their implementation says.
 
+use crate::check::fleet::Side;
 use crate::check::fleet::{Fleet, Kind, Member};
+use crate::check::parameters::Parameters;
 use crate::check::report::{Report, replacing};
-use crate::check::values::parameters::Parameters;
-use crate::check::wiring::offer::Side;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};
 use crate::model::{ComponentElement, ComponentType, ImplementationKind, Part, ReferenceElement, ServiceElement};
 use crate::source::{Location, Text};

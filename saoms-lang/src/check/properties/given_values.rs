@@ -3,7 +3,7 @@
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-use super::property_table::PropertyTable;
+use crate::check::fleet::property_table::PropertyTable;
 use crate::source::{Location, Text};
 
 /// The values of the properties of a component or a loop: each converted once, with its place from then on.

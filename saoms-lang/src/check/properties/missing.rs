@@ -1,8 +1,8 @@
 //! Properties that are not there: given and not declared, or declared and not given.
 
 use super::Giver;
-use super::property_table::PropertyTable;
 use crate::assembly::TaskProperties;
+use crate::check::fleet::property_table::PropertyTable;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, nearest, nearest_equal, quoted};
 use crate::model::Property;

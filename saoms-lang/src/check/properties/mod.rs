@@ -3,20 +3,21 @@
 mod class_properties;
 mod composite_properties;
 pub(crate) mod conversion;
+pub(crate) mod findings;
 pub(crate) mod foreign;
 pub(crate) mod given_values;
 pub(crate) mod missing;
-pub(crate) mod property_table;
 mod wrong_text;
 
-use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Kind, Member};
+use crate::check::parameters::Parameters;
 use crate::check::report::Report;
-use crate::check::values::parameters::Parameters;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentType, LoopElement, Origin, Property};
 use crate::source::Text;
 use crate::syntax::Document;
+
+use given_values::PropertyValues;
 
 pub(crate) use class_properties::check;
 pub(crate) use composite_properties::one_value;
@@ -55,20 +56,20 @@ impl<'m, 'a> Giver<'m, 'a> {
     }
 }
 
-/// Checks the properties of all components.
+/// Checks the properties of all components: the values of each, none without a class.
 pub(crate) fn check_all<'a>(
     fleet: &Fleet<'a>,
     parameters: &mut Parameters<'a>,
     report: &mut Report<'_>,
-) -> Vec<ComponentCheck<'a>> {
+) -> Vec<PropertyValues> {
     let mut all = Vec::with_capacity(fleet.members.len());
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
         parameters.types(member, report);
-        let mut component = ComponentCheck::default();
+        let mut given = PropertyValues::default();
         if let Kind::Class(index) = member.kind {
             let giver = Giver::component(member, fleet.component_type(place));
-            component.given = check(&giver, &fleet.classes[index].table, parameters, report);
+            given = check(&giver, &fleet.classes[index].table, parameters, report);
         } else {
             composite_properties::repeated(member.component, report);
             match fleet.inner(place) {
@@ -76,7 +77,7 @@ pub(crate) fn check_all<'a>(
                 None => foreign::properties(member, fleet.known(place), parameters, report),
             }
         }
-        all.push(component);
+        all.push(given);
     }
     report.about_all();
     all

@@ -4,8 +4,8 @@ use saoms_api::host::declaration::{PropertyKind, parse_scalar};
 
 use super::conversion::Target;
 use crate::check::report::replacing;
-use crate::check::unfolding::replica::COUNTERS;
 use crate::check::unfolding::replica_plan::as_index;
+use crate::check::values::replica::COUNTERS;
 use crate::diagnostic::{Code, Diagnostic, codes, meant_boolean, nearest, quoted};
 use crate::expression::{INDEX, has_expression, is_name};
 use crate::registry::PropertyDeclaration;

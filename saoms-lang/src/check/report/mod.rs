@@ -1,12 +1,10 @@
 //! The report: collects diagnostics, removes duplicates, and joins those of replicas.
 
-pub(crate) mod findings;
 pub(crate) mod severities;
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use crate::check::fleet::Member;
 pub(crate) use crate::diagnostic::replacing;
 use crate::diagnostic::{
     Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest_equal, quoted,
@@ -88,16 +86,10 @@ impl<'a> Report<'a> {
         self.diagnostics.withdraw(code, at);
     }
 
-    /// Lets what follows be about this component. What is said at one place of several replicas is told once, with how
-    /// many.
-    pub(crate) fn about(&mut self, member: &Member<'_>) {
-        let index = member.instance.map(|instance| instance.index);
-        self.copy = member.is_copy.then(|| Copied { path: member.path().into(), index });
-    }
-
-    /// Lets what follows be about the replica of this name and index.
-    pub(crate) fn about_replica(&mut self, name: &str, index: i64) {
-        self.copy = Some(Copied { path: name.into(), index: Some(index) });
+    /// Lets what follows be about the replica of this path, or a component inside one, which has no index of its own.
+    /// What is found at one place of several is reported once, with how many.
+    pub(crate) fn about_replica(&mut self, path: &str, index: Option<i64>) {
+        self.copy = Some(Copied { path: path.into(), index });
     }
 
     /// True if what follows is about a replica that has an index of its own.

@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use crate::check::component::{ComponentCheck, ComponentState};
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
 use crate::check::options::Options;
+use crate::check::properties::findings::{Subject, diagnostic};
 use crate::check::report::Report;
-use crate::check::report::findings::{Subject, diagnostic};
-use crate::check::rules::unique_values::RepeatedValues;
+use crate::check::tasks::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::PropertyDeclaration;
 use saoms_api::host::declaration::PropertyKind;

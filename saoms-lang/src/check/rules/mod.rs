@@ -1,35 +1,20 @@
-//! Rules that stand alone, each in a file. A new one is called from here, in the place where it runs.
+//! Rules over the resolved fleet, each in a file: they run last, and those of components run code of these.
 
-mod bindings;
-mod component_types;
 mod constructors;
-mod contracts;
-pub(crate) mod interface;
-pub(crate) mod multiplicity;
 mod plugin_rules;
-pub(crate) mod repeated_names;
+mod similar_names;
 pub(crate) mod traffic;
-pub(crate) mod unique_values;
-mod wired_by_implementation;
-mod written;
 
-use super::component::ComponentCheck;
-use super::fleet::Fleet;
-use super::options::Options;
-use super::report::Report;
-use super::wiring::Wiring;
+use crate::check::component::ComponentCheck;
+use crate::check::fleet::Fleet;
+use crate::check::options::Options;
+use crate::check::report::Report;
+use crate::check::tasks::unique_values::RepeatedValues;
+use crate::check::wiring::Wiring;
 use crate::registry::Registry;
-use unique_values::RepeatedValues;
 
-/// Runs the rules over what is written, before it is known where wires lead.
-pub(crate) fn check_written(fleet: &Fleet<'_>, report: &mut Report<'_>) {
-    written::check(fleet, report);
-    contracts::check(fleet, report);
-    component_types::check(fleet, report);
-}
-
-/// Runs the rules over the resolved fleet, which are the expensive ones: they run code of components.
-pub(crate) fn check_resolved(
+/// Runs the rules of constructors and of crates of components.
+pub(crate) fn check(
     fleet: &Fleet<'_>,
     (checks, wiring): (&[ComponentCheck<'_>], &Wiring),
     repeated: &RepeatedValues,

@@ -7,9 +7,9 @@ use saoms_api::host::{TopicKind, format_duration};
 
 use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic};
 use crate::check::component::ComponentCheck;
-use crate::check::fleet::similar_names::{Name, Similar};
 use crate::check::fleet::{Fleet, Member};
 use crate::check::report::Report;
+use crate::check::rules::similar_names::{Name, Similar};
 use crate::check::tasks::Task;
 use crate::check::tasks::renames::Renamed;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};

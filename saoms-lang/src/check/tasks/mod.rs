@@ -5,6 +5,7 @@ pub(crate) mod renames;
 #[cfg(test)]
 mod tests;
 pub(crate) mod topic_types;
+pub(crate) mod unique_values;
 
 use std::collections::HashSet;
 
@@ -12,12 +13,12 @@ use saoms_api::PropertyField;
 
 use crate::assembly::{OF_RESTART, Restart, TaskProperties};
 use crate::check::component::{ComponentCheck, ComponentState};
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::properties::given_values::{GivenValue, PropertyValues};
 use crate::check::report::{Report, list};
-use crate::check::rules::unique_values::{RepeatedValues, Unique};
 use crate::check::tasks::renames::{Renamed, Renames};
+use crate::check::tasks::unique_values::{RepeatedValues, Unique};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Part};
 use crate::source::{Location, Text};

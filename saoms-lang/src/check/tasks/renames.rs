@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use crate::assembly::topic_rename::{self, RenameFault};
 use crate::check::fleet::Fleet;
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{Location, Text};

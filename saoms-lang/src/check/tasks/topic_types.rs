@@ -6,7 +6,7 @@ use saoms_api::host::TopicKind;
 
 use super::renames::Renamed;
 use crate::check::fleet::Member;
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::ClassTopic;

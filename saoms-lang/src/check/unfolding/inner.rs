@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::Unfolding;
-use crate::check::fleet::{Kind, Scope, names};
+use super::{Unfolding, names};
+use crate::check::fleet::{Kind, Scope};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::{COMPONENTS, COMPOSITE_DEPTH};
 use crate::model::{Composite, Contribution, Link, Naming};

@@ -2,9 +2,9 @@
 
 use super::Unfolding;
 use super::conditions::Presence;
-use super::replica::Instance;
 use crate::check::fleet::Member;
 use crate::check::judged::Faulty;
+use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Naming};
 use crate::syntax::Element;

@@ -3,26 +3,25 @@
 
 pub(crate) mod append_list;
 pub(crate) mod conditions;
-pub(crate) mod expression_scope;
 mod inner;
 mod members;
+mod names;
 pub(crate) mod remove_absent;
-pub(crate) mod replica;
 pub(crate) mod replica_expansion;
 pub(crate) mod replica_plan;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
-use crate::check::fleet::{Fleet, Scope, Unit, names};
+use crate::check::fleet::{Fleet, Scope, Unit};
 use crate::check::judged::Faulty;
 use crate::check::options::Options;
+use crate::check::parameters::Parameters;
 use crate::check::report::Report;
 use crate::check::report::severities::Severities;
 use crate::check::unfolding::append_list::{AppendList, Appender};
-use crate::check::unfolding::replica::Replica;
 use crate::check::unfolding::replica_plan::Plan;
-use crate::check::values::parameters::Parameters;
+use crate::check::values::replica::Replica;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::{Budget, PATH_ELEMENTS, REPLICAS};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};

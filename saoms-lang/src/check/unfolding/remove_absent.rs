@@ -1,10 +1,9 @@
 //! Taking away what conditions keep away, once all that can be known about it is checked.
 
-use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Kind};
 
-/// Removes the components that are not there, and what belongs to them.
-pub(crate) fn remove<'a>(fleet: &mut Fleet<'a>, checks: &mut Vec<ComponentCheck<'a>>) {
+/// Removes the components that are not there, and what belongs to them. `checks` is what is found out about each.
+pub(crate) fn remove<T>(fleet: &mut Fleet<'_>, checks: &mut Vec<T>) {
     if fleet.units.iter().all(|unit| !unit.is_absent) && fleet.members.iter().all(|member| !member.is_absent) {
         return;
     }

@@ -5,10 +5,10 @@ use std::rc::Rc;
 
 use super::Unfolding;
 use super::conditions::Presence;
-use super::expression_scope::Names;
-use super::replica::{Instance, Partial, Replica};
 use super::replica_plan::{Plan, condition, first_index};
 use crate::check::judged::Faulty;
+use crate::check::values::expression_scope::Names;
+use crate::check::values::replica::{Instance, Partial, Replica};
 use crate::expression::pattern;
 use crate::model::{ComponentElement, Replicas, Table};
 
@@ -101,7 +101,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         row: Option<(&Table, usize)>,
     ) -> (ComponentElement, bool, Presence) {
         let (made, faults) = instance.of(component, row);
-        self.report.about_replica(&made.name, instance.index);
+        self.report.about_replica(&made.name, Some(instance.index));
         self.faults(&instance.names, &faults);
         let asked = component.condition.as_ref();
         let value = &mut |name: &str| instance.value(name);

@@ -4,11 +4,11 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::rc::Rc;
 
-use super::expression_scope::Names;
-use super::replica::Instance;
 use crate::check::fleet::is_like;
 use crate::check::judged::{Faulty, Judged};
 use crate::check::report::{Report, replacing};
+use crate::check::values::expression_scope::Names;
+use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, quoted};
 use crate::expression::{
     self, Expression, ExpressionError, ExpressionFault, ExpressionValue, INDEX, boolean, integer, parse, pattern,

@@ -12,7 +12,7 @@ use std::ops::Range;
 use super::raw::{Piece, Raw};
 use super::type_name::local;
 use crate::check::report::list;
-use crate::check::unfolding::replica::Instance;
+use crate::check::values::replica::Instance;
 use crate::diagnostic::{nearest, quoted};
 use crate::limits::{LISTED_PARTS, PATH_ELEMENTS, SEARCHED_PARTS};
 use crate::source::Text;

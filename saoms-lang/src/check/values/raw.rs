@@ -7,7 +7,7 @@ use std::slice;
 use super::type_name::local;
 use crate::check::judged::{Faulty, Judged};
 use crate::check::report::Report;
-use crate::check::unfolding::replica::Instance;
+use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Part, Property, ValueDocument};
 use crate::source::{Located, Location, Text};

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::offer::Offer;
-use super::target::Provider;
+use crate::check::contracts::offer::Offer;
+use crate::check::contracts::offer::Provider;
 use crate::check::fleet::Fleet;
 use crate::registry::InterfaceDeclaration;
 

@@ -3,7 +3,7 @@
 //! A call runs inside the caller's execution. A component that is called back by the one it is calling is busy and
 //! cannot answer, so such a circle of wires is a fault of the composite.
 
-use super::target::Provider;
+use crate::check::contracts::offer::Provider;
 use crate::check::fleet::Fleet;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};

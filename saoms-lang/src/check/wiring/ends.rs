@@ -1,9 +1,10 @@
 //! The ends of references: what `target`, bindings of SCA, wires, promotions and autowire give a reference.
 
 use super::Wires;
-use super::promotion::ReferenceId;
-use super::target::{Provider, Target, target, uri};
-use super::uri::{has_room, parts, spread};
+use super::target::{Target, target, uri};
+use super::uri::{has_room, spread};
+use crate::check::contracts::offer::ReferenceId;
+use crate::check::contracts::offer::{Provider, parts};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};

@@ -3,31 +3,32 @@
 //! A reference of a component of a class collects its targets from the inside out: those of its own component, and
 //! those of every component around it that a composite's reference promotes it to.
 
-pub(crate) mod autowire;
-pub(crate) mod call_cycle;
+mod autowire;
+mod call_cycle;
 mod ends;
-pub(crate) mod misread_uri;
-pub(crate) mod offer;
-pub(crate) mod promoted;
-pub(crate) mod promotion;
-pub(crate) mod target;
+mod misread_uri;
+mod promoted;
+mod promotion;
+mod target;
 #[cfg(test)]
 mod tests;
-pub(crate) mod too_many;
-pub(crate) mod unwired;
-pub(crate) mod uri;
-pub(crate) mod wire;
+mod too_many;
+mod unwired;
+mod uri;
+mod wire;
 
 use std::collections::{BTreeMap, HashSet};
 
+use crate::check::contracts::offer::Provider;
+use crate::check::contracts::offer::ReferenceId;
 use crate::check::fleet::Fleet;
 use crate::check::options::Options;
 use crate::check::report::Report;
 use crate::check::wiring::autowire::Autowire;
 use crate::check::wiring::call_cycle::CallCycles;
 use crate::check::wiring::ends::{End, Ends};
-use crate::check::wiring::promotion::{Promoted, ReferenceId};
-use crate::check::wiring::target::{Provider, target};
+use crate::check::wiring::promotion::Promoted;
+use crate::check::wiring::target::target;
 use crate::check::wiring::unwired::DanglingNames;
 use crate::check::wiring::wire::{Wire, wires};
 use crate::diagnostic::Severity;
@@ -39,12 +40,13 @@ use crate::source::Location;
 /// from being known, which is reported, or that are taken as given.
 pub(crate) type Wiring = Vec<Vec<Option<Vec<Provider>>>>;
 
-/// Resolves all targets and wires, and checks what they come to.
-pub(crate) fn check(fleet: &Fleet<'_>, promoted: &Promoted<'_>, options: &Options, report: &mut Report<'_>) -> Wiring {
+/// Resolves all promotions, targets and wires, and checks what they come to.
+pub(crate) fn check(fleet: &Fleet<'_>, options: &Options, report: &mut Report<'_>) -> Wiring {
+    let promoted = promotion::check(fleet, report);
     let ends_left = Budget::of(WIRE_ENDS);
     let (wires, dangling) = wires(fleet, options, &ends_left, report);
     let autowire = Autowire::default();
-    let mut all = Wires { fleet, options, promoted, wires, dangling, autowire, ends_left };
+    let mut all = Wires { fleet, options, promoted: &promoted, wires, dangling, autowire, ends_left };
     let mut circles = CallCycles::default();
     let mut wiring = Wiring::with_capacity(fleet.members.len());
     for member in 0..fleet.members.len() {

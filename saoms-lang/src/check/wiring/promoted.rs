@@ -1,12 +1,12 @@
 //! What composites say of the services and references that they promote: interfaces, multiplicities, and that nothing
 //! overrides them.
 
-use super::offer::Offer;
-use super::promotion::ReferenceId;
-use super::uri::parts;
+use crate::check::contracts::interface;
+use crate::check::contracts::offer::Offer;
+use crate::check::contracts::offer::ReferenceId;
+use crate::check::contracts::offer::parts;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::report::{Report, list};
-use crate::check::rules::interface;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Multiplicity, Part, ReferenceElement, ServiceElement};
 use crate::registry::InterfaceDeclaration;

@@ -2,19 +2,17 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::offer::Side;
 use super::promoted::{self, Found};
 use super::unwired::DanglingNames;
-use super::uri::{Uri, parts, spread};
+use super::uri::{Uri, spread};
+use crate::check::contracts::offer::{ReferenceId, parts};
+use crate::check::contracts::repeated_names::Owner;
+use crate::check::fleet::Side;
 use crate::check::fleet::{Fleet, Kind, Unit};
 use crate::check::report::{Report, list};
-use crate::check::rules::repeated_names::Owner;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Binding, Part, ReferenceElement};
 use crate::source::Text;
-
-/// A reference of a component, by its name.
-pub(crate) type ReferenceId<'f> = (usize, &'f str);
 
 /// The references that are promoted.
 #[derive(Default)]

@@ -1,23 +1,16 @@
 //! Targets: the services that URIs such as `Robot001/move` lead to.
 
 use super::misread_uri::{inside, unknown_component};
-use super::offer::{Offer, Side};
 use super::uri::{Uri, is_address};
+use crate::check::contracts::offer::{Offer, Provider};
 use crate::check::fleet::Fleet;
+use crate::check::fleet::Side;
 use crate::check::options::Options;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
 use crate::registry::InterfaceDeclaration;
 use crate::source::Text;
-
-/// A service of a component of a class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct Provider {
-    pub(crate) member: usize,
-    /// The place of the service in the class.
-    pub(crate) service: usize,
-}
 
 /// The end of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,11 +4,12 @@
 use std::collections::{HashMap, HashSet};
 
 use super::Wires;
-use super::promotion::{ReferenceId, has_address};
-use super::uri::parts;
+use super::promotion::has_address;
+use crate::check::contracts::multiplicity::of_class;
+use crate::check::contracts::offer::ReferenceId;
+use crate::check::contracts::offer::parts;
 use crate::check::fleet::Fleet;
 use crate::check::report::Report;
-use crate::check::rules::multiplicity::of_class;
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
 use crate::limits::DANGLING_NAMES;
 use crate::model::{Multiplicity, ReferenceElement};

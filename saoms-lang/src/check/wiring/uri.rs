@@ -5,20 +5,15 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::misread_uri::{inside, misread, unknown_component};
-use super::offer::Side;
 use super::target::fits;
+use crate::check::contracts::offer::parts;
 use crate::check::fleet::Fleet;
+use crate::check::fleet::Side;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::{Budget, WIRE_ENDS};
 use crate::registry::{InterfaceDeclaration, RegisteredClass};
 use crate::source::Text;
-
-/// The component of a URI, and the name behind it.
-pub(crate) fn parts(uri: &str) -> (&str, Option<&str>) {
-    let (component, rest) = uri.split_once('/').map_or((uri, None), |(component, rest)| (component, Some(rest)));
-    (component, rest.map(|rest| rest.split('/').next().unwrap_or(rest)))
-}
 
 /// The parts of `component/part/binding`, each with its bytes.
 pub(crate) struct Uri<'t> {

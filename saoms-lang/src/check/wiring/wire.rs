@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::offer::{Offer, Side};
-use super::promotion::ReferenceId;
 use super::target::target;
 use super::unwired::DanglingNames;
-use super::uri::{Uri, has_room, parts, spread};
+use super::uri::{Uri, has_room, spread};
+use crate::check::contracts::offer::Offer;
+use crate::check::contracts::offer::ReferenceId;
+use crate::check::contracts::offer::parts;
+use crate::check::fleet::Side;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::options::Options;
 use crate::check::report::{Report, list};

@@ -7,13 +7,13 @@ use std::rc::Rc;
 use crate::check::judged::{Faulty, Judged};
 use crate::check::report::{Report, list};
 use crate::check::values::faulty_values::FaultyValues;
-use crate::check::values::parameters::is_misspelt;
 use crate::check::values::raw::Piece;
 use crate::check::values::shared_values::Answer;
 use crate::check::values::value_type::SimpleType;
 use crate::check::values::{type_name, value_type};
 use crate::diagnostic::{nearest, quoted};
 use crate::expression::{ExpressionError, ExpressionValue, INDEX};
+use crate::limits::MISSPELT_NAMES;
 use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
 
@@ -179,4 +179,10 @@ fn value(property: &Property, text: Option<&Text>, is_unset: bool) -> Result<Exp
         }),
         _ => Ok(ExpressionValue::Text(text.value.clone())),
     }
+}
+
+/// True if the component that a composite implements gives this property under a misspelt name, which is reported.
+pub(crate) fn is_misspelt(name: &str, owner: &ComponentElement, is_declared: impl Fn(&str) -> bool) -> bool {
+    let unknown = owner.properties.iter().filter(|given| !is_declared(&given.name));
+    unknown.take(MISSPELT_NAMES).any(|given| nearest(&given.name, [name]).is_some())
 }

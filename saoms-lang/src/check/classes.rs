@@ -2,68 +2,17 @@
 
 use std::collections::HashMap;
 use std::path::Path;
-use std::sync::Arc;
 
-use super::{Fleet, Kind};
+use crate::check::fleet::class_index::ClassIndex;
+use crate::check::fleet::{Fleet, Kind};
 use crate::check::options::Options;
-use crate::check::properties::property_table::PropertyTable;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};
 use crate::expression::has_expression;
 use crate::limits::OFFERED_NAMES;
 use crate::model::{ComponentElement, Contribution, ImplementationKind, LibraryLink, Part};
-use crate::registry::{
-    ClassTopic, LoopDeclaration, ReferenceDeclaration, RegisteredClass, Registry, ServiceDeclaration,
-};
+use crate::registry::Registry;
 use crate::source::{Sources, Text};
-
-/// A class of the fleet, with its declaration at hand; where components of it have loops, together with these.
-pub(crate) struct ClassIndex<'r> {
-    pub(crate) class: &'r Arc<RegisteredClass>,
-    pub(crate) table: PropertyTable<'r>,
-    /// Its services, those that the host serves for it included.
-    pub(crate) services: Vec<&'r ServiceDeclaration>,
-    /// Those of its loops included, like its topics.
-    pub(crate) references: Vec<&'r ReferenceDeclaration>,
-    pub(crate) publishes: Vec<&'r ClassTopic>,
-    pub(crate) subscribes: Vec<&'r ClassTopic>,
-}
-
-impl<'r> ClassIndex<'r> {
-    fn new(class: &'r Arc<RegisteredClass>) -> Self {
-        let declaration = class.declaration();
-        let services = declaration.offers().collect();
-        Self {
-            class,
-            table: PropertyTable::of_class(class),
-            services,
-            references: declaration.references.iter().collect(),
-            publishes: declaration.publishes.iter().collect(),
-            subscribes: declaration.subscribes.iter().collect(),
-        }
-    }
-
-    /// The same together with what these loops use.
-    pub(crate) fn with(&self, loops: impl Iterator<Item = &'r LoopDeclaration>) -> Self {
-        let mut all = Self::new(self.class);
-        for one in loops {
-            // A topic that is declared twice in the same way is one; where two differ, both stay to be compared.
-            all.publishes.extend(one.publishes.iter().filter(|topic| !self.publishes.contains(topic)));
-            all.subscribes.extend(one.subscribes.iter().filter(|topic| !self.subscribes.contains(topic)));
-            for reference in &one.references {
-                if all.references.iter().all(|known| known.name != reference.name) {
-                    all.references.push(reference);
-                }
-            }
-        }
-        all
-    }
-
-    /// True if the topics it declares are any.
-    pub(crate) fn has_topics(&self) -> bool {
-        !self.publishes.is_empty() || !self.subscribes.is_empty()
-    }
-}
 
 /// Finds the class of every component.
 pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options: &Options, report: &mut Report<'_>) {

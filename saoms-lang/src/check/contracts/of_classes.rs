@@ -2,9 +2,9 @@
 
 use super::repeated_names::Owner;
 use super::{interface, multiplicity};
+use crate::check::contracts::offer::Offer;
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
-use crate::check::wiring::offer::Offer;
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, quoted};
 use crate::model::{Binding, Multiplicity, Part, ServiceElement};
 use crate::source::Text;

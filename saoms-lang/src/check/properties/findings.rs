@@ -4,8 +4,8 @@ use saoms_api::host::PropertyValue;
 use saoms_api::{Finding, Place};
 use smol_str::SmolStr;
 
-use super::{Report, replacing};
 use crate::check::properties::given_values::ValuePlace;
+use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::source::Location;
 use crate::syntax::escaped;

@@ -1,25 +1,14 @@
 //! Names in component types: held against each other, against the classes that they describe, and against the
 //! components that use them.
 
+use crate::check::contracts::of_classes::unknown;
+use crate::check::contracts::repeated_names::Owner;
 use crate::check::fleet::Fleet;
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::properties::foreign;
 use crate::check::report::Report;
-use crate::check::rules::contracts::unknown;
-use crate::check::rules::repeated_names::Owner;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{ComponentType, Part};
-
-impl<'a> Fleet<'a> {
-    /// The component type beside the implementation of a component.
-    pub(crate) fn component_type(&self, member: usize) -> Option<&'a ComponentType> {
-        if !self.contribution.describes_any() {
-            return None;
-        }
-        let implementation = self.members[member].component.implementation.as_ref()?;
-        self.contribution.component_type(implementation.origin)
-    }
-}
 
 pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for described in fleet.contribution.component_types() {

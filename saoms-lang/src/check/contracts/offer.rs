@@ -1,12 +1,26 @@
 //! Services and references of components, whatever implements them.
 
-use super::promotion::ReferenceId;
-use super::target::Provider;
-use super::uri::parts;
+use crate::check::contracts::multiplicity::of_class;
 use crate::check::fleet::{Fleet, Kind};
-use crate::check::rules::multiplicity::of_class;
 use crate::model::Multiplicity;
 use crate::registry::InterfaceDeclaration;
+
+/// A reference of a component, by its name.
+pub(crate) type ReferenceId<'f> = (usize, &'f str);
+
+/// A service of a component of a class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Provider {
+    pub(crate) member: usize,
+    /// The place of the service in the class.
+    pub(crate) service: usize,
+}
+
+/// The component of a URI, and the name behind it.
+pub(crate) fn parts(uri: &str) -> (&str, Option<&str>) {
+    let (component, rest) = uri.split_once('/').map_or((uri, None), |(component, rest)| (component, Some(rest)));
+    (component, rest.map(|rest| rest.split('/').next().unwrap_or(rest)))
+}
 
 /// The meaning of the name of a service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,31 +31,6 @@ pub(crate) enum Offer {
     Open,
     /// Nothing.
     Missing,
-}
-
-/// True if services or references are meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
-    Service,
-    Reference,
-}
-
-impl Side {
-    /// As people say it.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Service => "service",
-            Self::Reference => "reference",
-        }
-    }
-
-    /// The rule of SCA that says that what is promoted has to be there.
-    pub(crate) const fn rule(self) -> &'static str {
-        match self {
-            Self::Service => "ASM60004",
-            Self::Reference => "ASM60007",
-        }
-    }
 }
 
 impl<'a> Fleet<'a> {

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::Fleet;
+use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, quoted};
 use crate::model::{Composite, Missing, Naming, Version};

@@ -6,10 +6,10 @@ use saoms_api::host::PropertyValue;
 use saoms_api::host::declaration::{PropertyKind, Scalar, parse_scalar};
 use smol_str::SmolStr;
 
-use crate::check::fleet::classes::ClassIndex;
+use crate::check::fleet::class_index::ClassIndex;
+use crate::check::fleet::property_table::TableEntry;
 use crate::check::fleet::{Fleet, Member};
 use crate::check::properties::given_values::PropertyValues;
-use crate::check::properties::property_table::TableEntry;
 use crate::check::report::Report;
 use crate::check::unfolding::replica_plan::with_index;
 use crate::diagnostic::{Diagnostic, codes, quoted};

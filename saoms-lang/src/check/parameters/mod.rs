@@ -12,14 +12,15 @@ use crate::check::fleet::{Fleet, Member};
 use crate::check::judged::{Faulty, Judged};
 use crate::check::options::Options;
 use crate::check::report::Report;
-use crate::check::unfolding::replica::Instance;
+use crate::check::values::expression_scope::is_misspelt;
 use crate::check::values::faulty_values::FaultyValues;
 use crate::check::values::path::expression;
 use crate::check::values::raw::{Raw, beside_source, raw};
+use crate::check::values::replica::Instance;
 use crate::check::values::shared_values::{Answer, SharedValues};
 use crate::check::values::value_type::{Typed, check_match};
-use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::limits::{Budget, MISSPELT_NAMES, SOURCE_BYTES, SOURCE_VALUES};
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::limits::{Budget, SOURCE_BYTES, SOURCE_VALUES};
 use crate::model::{ComponentElement, Composite, Property};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
@@ -372,10 +373,4 @@ fn declared<'a>(composites: &[&'a Composite], is_absent: bool, report: &mut Repo
         }
     }
     all
-}
-
-/// True if the component that a composite implements gives this property under a misspelt name, which is reported.
-pub(crate) fn is_misspelt(name: &str, owner: &ComponentElement, is_declared: impl Fn(&str) -> bool) -> bool {
-    let unknown = owner.properties.iter().filter(|given| !is_declared(&given.name));
-    unknown.take(MISSPELT_NAMES).any(|given| nearest(&given.name, [name]).is_some())
 }
