@@ -248,8 +248,10 @@ impl<'a> Context<'a> {
         self.host.journal(phase, record);
     }
 
-    pub(crate) fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
-        self.host.changed(entry, before, after);
+    /// Writes to the journal that an entry of the knowledge changed by itself, such as a measured level. What a loop
+    /// changes in its plan and execution is written by itself.
+    pub fn changed(&mut self, entry: &'static str, before: impl Into<Value>, after: impl Into<Value>) {
+        self.host.changed(entry, before.into(), after.into());
     }
 
     pub(crate) fn enter_loop(&mut self, place: u32) {

@@ -218,6 +218,10 @@ impl Recorder {
         let cause = self.chain().cause_of_effect();
         let fingerprint = fingerprint(Phase::Effect, &record);
         let id = self.push(stamp, Phase::Effect, fingerprint, cause, true, &record).id;
+        if cause == Cause::default() {
+            // A measured value explains nothing: what follows has its own reasons.
+            return;
+        }
         self.chain().newest = id;
         let by = self.present.unwrap_or(OUTSIDE);
         match self.changes.iter_mut().find(|(name, place, _)| *name == entry && *place == by) {

@@ -27,16 +27,22 @@ fn a_symptom_without_a_reason_follows_from_what_the_loop_senses() {
     let (mut recorder, ids) = recorder();
     let senses = ["battery".to_owned(), "busy".to_owned()];
     recorder.enter(Some(0), 0);
+    recorder.changed(stamp(&ids), "battery", Value::Number(2.0), Value::Number(1.0));
+    recorder.write(stamp(&ids), Phase::Symptom, &record!("luggage waits"), &senses);
     recorder.changed(stamp(&ids), "busy", Value::Bool(false), Value::Bool(true));
     recorder.changed(stamp(&ids), "next", Value::Pair(1, 1), Value::Pair(1, 2));
     recorder.enter(Some(1), 0);
     recorder.changed(stamp(&ids), "battery", Value::Number(1.0), Value::Number(0.5));
     recorder.write(stamp(&ids), Phase::Symptom, &record!("has a job"), &senses);
-    assert_eq!(causes(&recorder).last(), Some(&(4, 1)), "neither its own change nor what it does not sense");
+    assert_eq!(
+        causes(&recorder).last(),
+        Some(&(6, 3)),
+        "neither its own change, nor what it does not sense, nor a measured value"
+    );
     recorder.enter(Some(2), 0);
     recorder.because(Cause(2));
     recorder.write(stamp(&ids), Phase::Symptom, &record!("moves"), &senses);
-    assert_eq!(causes(&recorder).last(), Some(&(5, 2)), "what the loop says itself counts more");
+    assert_eq!(causes(&recorder).last(), Some(&(7, 2)), "what the loop says itself counts more");
 }
 
 #[test]

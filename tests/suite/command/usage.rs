@@ -405,3 +405,17 @@ fn loops_and_knowledge_are_described() {
     assert_eq!(code(&unknown), 2);
     assert!(stderr(&unknown).contains("did you mean `saoms.CollisionMS`"), "{}", stderr(&unknown));
 }
+
+#[test]
+fn the_classic_console_shows_what_robots_of_the_default_policy_do() {
+    let shown = stdout(&saoms(&["run", "composites/airport.composite", "--virtual", "--console", "classic"]));
+    for line in [
+        "is a new healer for Robot",
+        "now is awake",
+        "says: I've arrived to charge position.",
+        "is now fully charged and ready",
+        "RISK OF COLLISION DETECTED AND AVOIDED!",
+    ] {
+        assert!(shown.contains(line), "no `{line}`: {shown}");
+    }
+}

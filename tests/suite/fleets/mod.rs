@@ -11,3 +11,4 @@ mod physics;
 mod replace;
 mod shifts;
 mod sustained;
+mod waiting;

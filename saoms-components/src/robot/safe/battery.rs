@@ -24,7 +24,12 @@ pub struct SafeBattery {
     turned: Cause,
     /// Its own charger, while it charges at another one.
     own: Option<Block>,
+    /// Battery level that the journal has.
+    noted: Option<f64>,
 }
+
+/// Change of the battery level that is written to the journal, in percent.
+const LEVEL_STEP: f64 = 5.0;
 
 /// State of the battery.
 #[derive(Clone, Copy, Debug)]
@@ -292,18 +297,34 @@ impl SafeBattery {
     fn use_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
         if !knowledge.is_at_charger() {
             (self.charging, self.in_charge) = (false, false);
-            return knowledge.use_battery();
+            knowledge.use_battery();
+            return self.note_level(knowledge, context);
         }
         let charging = !knowledge.battery.is_full();
         let charged = std::mem::replace(&mut self.charging, charging);
         if charging && !charged {
-            context.info(format_args!("charges (battery {} %)", knowledge.battery));
+            let (name, battery) = (&knowledge.name, &knowledge.battery);
+            context.console(format_args!("{name} says: I've arrived to charge position."));
+            context.info(format_args!("charges (battery {battery} %)"));
         }
         if charging {
             knowledge.charge_battery();
         } else if charged {
+            let (name, asleep) = (&knowledge.name, knowledge.variables.asleep);
+            let still = if asleep { " (but still asleep)" } else { "" };
+            context.console(format_args!("{name} is now fully charged and ready{still}"));
             context.info(format_args!("is fully charged"));
         }
+        self.note_level(knowledge, context);
         self.in_charge = charging || knowledge.variables.asleep;
+    }
+
+    /// Writes the battery level to the journal, where it has changed so much.
+    fn note_level(&mut self, knowledge: &RobotKnowledge, context: &mut Context<'_>) {
+        let (before, now) = (self.noted, knowledge.charge);
+        if before.is_none_or(|before| (now - before).abs() >= LEVEL_STEP) {
+            self.noted = Some(now);
+            context.changed("battery", before.unwrap_or(now), now);
+        }
     }
 }

@@ -118,8 +118,13 @@ impl Loop for SafeCollision {
         &mut self,
         decision: SafeCollisionDecision,
         knowledge: &mut RobotKnowledge,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        let avoided = matches!(decision, SafeCollisionDecision::Wait(..)) && self.waits.is_none();
+        if avoided {
+            let name = &knowledge.name;
+            context.console(format_args!("{name}: RISK OF COLLISION DETECTED AND AVOIDED!"));
+        }
         self.waits = match decision {
             SafeCollisionDecision::Wait(block, robot) => Some((block, robot)),
             SafeCollisionDecision::GoOn => None,

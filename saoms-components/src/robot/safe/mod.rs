@@ -22,6 +22,7 @@ mod patience;
 mod robot_list;
 mod robot_state;
 mod traffic;
+mod waiting;
 
 pub use battery::SafeBattery;
 pub use collision::SafeCollision;

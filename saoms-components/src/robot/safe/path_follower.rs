@@ -8,9 +8,7 @@ use crate::robot::{RobotKnowledge, Variables};
 
 use super::leg::Urgency;
 use super::traffic::Claim;
-
-/// Number of executions of waiting after which a robot reports that it waits.
-const TELLING_WAIT: u32 = 3;
+use super::waiting::Waiting;
 
 /// Drives the wheels on the way to the robot's goal, and announces the block that it wants next.
 #[derive(Debug, Default, LoopClass)]
@@ -23,6 +21,7 @@ const TELLING_WAIT: u32 = 3;
 )]
 pub struct SafePathFollower {
     said: Option<Position>,
+    waiting: Waiting,
     positions: Publisher<Position>,
 }
 
@@ -120,6 +119,7 @@ impl Loop for SafePathFollower {
         }
         knowledge.set_leg(context.now());
         if self.rests(knowledge) {
+            self.waiting.end(context);
             return Ok(None);
         }
         Ok(Some(match knowledge.leg.goal {
@@ -159,6 +159,7 @@ impl Loop for SafePathFollower {
         }
         let goes_on = match decision {
             SafePathDecision::Hold => {
+                self.waiting.end(context);
                 knowledge.next = knowledge.block;
                 knowledge.traffic.stay(knowledge.next);
                 let position = Position { priority: IMMOVABLE, ..knowledge.position() };
@@ -172,9 +173,7 @@ impl Loop for SafePathFollower {
         if position.wanted != position.next {
             knowledge.show_move(context, position.wanted);
         }
-        if knowledge.traffic.waited() == TELLING_WAIT {
-            context.info(format_args!("waits at {} for others", position.next));
-        }
+        self.waiting.note(knowledge, context);
         self.say_if_news(context, position)
     }
 

@@ -184,6 +184,8 @@ impl Loop for SafeRobotState {
                 self.sent = Cause::default();
                 knowledge.stands_in_for = Some(emulate).filter(|emulate| *emulate > 0);
                 context.info(format_args!("awakes"));
+                let (name, heals) = (&knowledge.name, emulate > 0);
+                context.console(format_args!("{name} {}now is awake", if heals { "is a healer and " } else { "" }));
             }
             SafeRobotDecision::StayAwake => {}
             SafeRobotDecision::Finish => {

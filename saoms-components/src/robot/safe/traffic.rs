@@ -97,9 +97,13 @@ impl Traffic {
         self.near.iter().find(|peer| peer.holds(block) || peer.wanted == block).map(|peer| peer.robot)
     }
 
-    /// Number of executions for which the robot wanted to move and could not.
-    pub(super) fn waited(&self) -> u32 {
-        self.waited
+    /// The robot on the block that is wanted, or else on the one that leads to a goal, or else the closest one.
+    pub(super) fn blocker(&self, at: Block, goal: Block, routes: &Routes) -> Option<u32> {
+        let wanted = self.wanted(at).and_then(|block| self.in_the_way(block));
+        let ahead = || self.in_the_way(first_toward(at, Some(goal), routes)?);
+        let closest =
+            || self.near.iter().min_by_key(|peer| (peer.block.distance(at), peer.robot)).map(|peer| peer.robot);
+        wanted.or_else(ahead).or_else(closest)
     }
 
     /// Records that the robot enters the block that it wanted.
@@ -174,9 +178,7 @@ impl Traffic {
             // The holder makes way only if it is asked again.
             return;
         }
-        let toward = |block: &Block| claim.goal.map_or(0, |goal| routes.to_goal(*block, goal));
-        let first = || claim.at.neighbours().into_iter().filter(|block| routes.is_free(*block)).min_by_key(toward);
-        let blocked = self.wanted(claim.at).or_else(first);
+        let blocked = self.wanted(claim.at).or_else(|| first_toward(claim.at, claim.goal, routes));
         self.avoided = blocked.and_then(|block| Some((block, self.holder(block)?)));
         self.wanted = None;
     }
@@ -223,6 +225,12 @@ impl Traffic {
         }
         Some(standing)
     }
+}
+
+/// The free neighbour of a block that is the closest to a goal.
+fn first_toward(at: Block, goal: Option<Block>, routes: &Routes) -> Option<Block> {
+    let toward = |block: &Block| goal.map_or(0, |goal| routes.to_goal(*block, goal));
+    at.neighbours().into_iter().filter(|block| routes.is_free(*block)).min_by_key(toward)
 }
 
 impl Position {

@@ -209,6 +209,8 @@ impl Loop for SafeCriticalSituation {
                 self.was_healer = std::mem::replace(&mut knowledge.variables.healer, true);
                 knowledge.variables.busy = true;
                 (self.said_at, self.said) = (knowledge.block, context.cause());
+                let critical = situation.critical;
+                context.console(format_args!("Robot{} is a new healer for Robot{critical}", knowledge.number));
                 self.respond(knowledge, context, situation, CriticalStage::Intention)?;
             }
             SafeCriticalDecision::Postpone { critical, needs } => {
@@ -244,6 +246,8 @@ impl Loop for SafeCriticalSituation {
                     substitution.ask(sleeper);
                 }
                 context.info(format_args!("awakes robot {sleeper} in place of robot {robot}"));
+                let name = &knowledge.name;
+                context.console(format_args!("{name} is a healer and awakes another robot"));
                 self.awake(context, sleeper, robot)?;
             }
             SafeCriticalDecision::Rest { robot } => {

@@ -1,0 +1,72 @@
+//! Robots that wait for each other, and what they tell of it.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::time::Duration;
+
+use saoms_testkit::Fleet;
+
+/// Eight robots on both sides of a corridor as wide as one of them.
+fn corridor() -> Fleet {
+    let task = |id: &str| format!("<property name=\"ID\">{id}</property><property name=\"period\">100</property>");
+    let map = "........\n@@@@.@@@\n@@@@.@@@\n........";
+    let mut components = String::new();
+    for (id, more) in [
+        ("World", format!("<property name=\"moveTime\">200ms</property><property name=\"map\">{map}</property>")),
+        ("MasterEnvironment", String::new()),
+        (
+            "Environment",
+            "<property name=\"scenario\">from 1s every 1s 8 times luggage (0,0)..(7,0) to (0,3)..(7,3)</property>"
+                .to_owned(),
+        ),
+    ] {
+        let class = format!("<implementation.rust class=\"saoms.{id}\"/>");
+        writeln!(components, "<component name=\"{id}\">{class}{}{more}</component>", task(id)).unwrap();
+    }
+    for number in 0..8 {
+        let id = format!("Robot{}", number + 1);
+        let charger = format!(
+            "<property name=\"chargeX\">{number}</property><property name=\"chargeY\">{}</property>",
+            if number % 2 == 0 { 0 } else { 3 }
+        );
+        let wire = "<reference name=\"world\" target=\"World\"/>";
+        let class = "<implementation.rust class=\"saoms.Robot\"/>";
+        writeln!(components, "<component name=\"{id}\">{class}{}{charger}{wire}</component>", task(&id)).unwrap();
+    }
+    let root =
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"c\" targetNamespace=\"urn:c\">";
+    Fleet::of_text(format!("{root}\n{components}</composite>"))
+}
+
+#[test]
+fn a_robot_says_once_for_whom_it_waits_and_when_that_ends() {
+    let run = corridor().run(1, Duration::from_secs(60));
+    let mut waits: BTreeMap<&str, bool> = BTreeMap::new();
+    let mut told = 0;
+    for line in run.log().lines() {
+        let (who, what) = line.split_once("] ").unwrap().1.split_once(": ").unwrap();
+        let is_waiting = waits.entry(who).or_default();
+        if what.starts_with("waits at") {
+            assert!(!*is_waiting, "{who} says it twice: {}", run.log());
+            assert!(what.contains(" for robot ") && what.contains(" since "), "{what}");
+            (*is_waiting, told) = (true, told + 1);
+        } else if what.starts_with("goes on after waiting ") {
+            assert!(*is_waiting, "{who} did not wait: {}", run.log());
+            *is_waiting = false;
+        }
+    }
+    assert!((4..40).contains(&told), "{told} in {}", run.log());
+}
+
+#[test]
+fn the_journal_knows_the_battery_at_any_time() {
+    let run = corridor().run(1, Duration::from_secs(60));
+    let robot = run.journal().of("Robot3");
+    let mut last = None;
+    for change in robot.iter().filter_map(|record| record.change()).filter(|change| change.entry == "battery") {
+        let (before, after) = (change.before.as_f64().unwrap(), change.after.as_f64().unwrap());
+        assert!(last.is_none_or(|last| last == before && (after - before).abs() >= 5.0), "{before} {after}");
+        last = Some(after);
+    }
+    assert!(last.is_some());
+}
