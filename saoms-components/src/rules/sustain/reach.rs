@@ -45,7 +45,7 @@ pub(super) fn out_of_reach(
                 if spot.bytes == piece.from.bytes { "from" } else { "to" }
             );
             let severity = if is_one { Severity::Error } else { Severity::Warning };
-            let help = "put a charger closer to it, or let the robots need less than they do (`discharge`)";
+            let help = "put a charger closer to it, or let the robots need less energy: `discharge` counts executions, so that a slow world needs more; with `dischargePerBlock` and `chargePerSecond` it does not";
             return Some(Finding::new(piece.place(spot), message).severity(severity).help(help));
         }
     }
