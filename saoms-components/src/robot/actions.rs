@@ -89,6 +89,7 @@ impl RobotKnowledge {
             ActionKind::Move => {
                 self.block = block;
                 self.use_battery_to_drive();
+                self.tally.blocks += 1;
                 self.judge(context, block)?;
             }
             ActionKind::Collect => {
@@ -100,6 +101,7 @@ impl RobotKnowledge {
                 context.console(format_args!("{name} says: Luggage deposited."));
                 context.info(format_args!("deposited luggage {luggage} at {block}"));
                 self.untold = self.job.map(|job| (job, LuggageStage::Delivered));
+                self.tally.delivered += u64::from(self.job.is_some());
                 if self.job.is_some() && !self.hardware.is_wired() {
                     context.count("luggage.delivered", 1);
                 }

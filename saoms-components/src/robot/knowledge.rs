@@ -12,6 +12,7 @@ use crate::validation::MessageValidator;
 use super::actions::Outcome;
 use super::hardware_client::HardwareClient;
 use super::safe::{Energy, Leg, Traffic};
+use super::tally::Tally;
 use super::{Battery, Job, Lists, Routes};
 
 /// Knowledge of a robot about itself, its job, the other robots, and the area. Its loops share it.
@@ -31,6 +32,8 @@ pub struct RobotKnowledge {
     executed_at: Option<Time>,
     /// Time from the last execution to the present one.
     elapsed: Duration,
+    /// What it did so far, for the report.
+    pub(super) tally: Tally,
     /// Position of the robot.
     #[entry]
     pub block: Block,
@@ -102,6 +105,7 @@ impl RobotKnowledge {
             period: 0,
             executed_at: None,
             elapsed: Duration::ZERO,
+            tally: Tally::default(),
             block: charge_block,
             next: charge_block,
             charge_block,
@@ -158,6 +162,11 @@ impl RobotKnowledge {
     pub(super) fn note_time(&mut self, now: Time) {
         self.elapsed = self.executed_at.map_or(Duration::ZERO, |last| now.since(last));
         self.executed_at = Some(now);
+    }
+
+    /// Time from the last execution to the present one.
+    pub(super) fn elapsed(&self) -> Duration {
+        self.elapsed
     }
 
     /// Discharges the battery by the time since the last execution.

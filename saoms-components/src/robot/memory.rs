@@ -1,8 +1,11 @@
 //! State that a robot keeps when it, or one of its loops, is replaced by a new build.
 
+use std::time::Duration;
+
 use saoms_api::{Failure, Header, Message, Saved, Time};
 
 use super::RobotKnowledge;
+use super::tally::Tally;
 use crate::grid::Block;
 use crate::messages::{CriticalSituation, EventLuggage};
 
@@ -16,6 +19,9 @@ struct Memory {
     charge_block: Block,
     luggage: Vec<EventLuggage>,
     critical: Vec<CriticalSituation>,
+    delivered: u64,
+    blocks: u64,
+    waited_ns: u64,
 }
 
 impl RobotKnowledge {
@@ -42,6 +48,9 @@ impl RobotKnowledge {
             charge_block: self.charge_block,
             luggage: luggage.collect(),
             critical: critical.collect(),
+            delivered: self.tally.delivered,
+            blocks: self.tally.blocks,
+            waited_ns: u64::try_from(self.tally.waited.as_nanos()).unwrap_or(u64::MAX),
         }))
     }
 
@@ -51,6 +60,8 @@ impl RobotKnowledge {
         self.battery.set_percent(memory.battery);
         self.charge = self.battery.percent();
         (self.variables.asleep, self.variables.in_charge) = (memory.asleep, memory.asleep);
+        let waited = Duration::from_nanos(memory.waited_ns);
+        self.tally = Tally { delivered: memory.delivered, blocks: memory.blocks, waited };
         (self.relieved, self.is_loaded) = (memory.relieved, memory.is_loaded);
         if memory.charge_block != self.charge_block {
             self.use_charger(memory.charge_block);

@@ -19,6 +19,7 @@ mod properties;
 mod receive;
 mod routes;
 pub mod safe;
+mod tally;
 
 use saoms_api::{Class, Component, Context, Failure, Loops, Saved};
 
@@ -131,6 +132,7 @@ impl Component for Robot {
             self.knowledge.show_lists(context);
             let in_charge = self.knowledge.variables.in_charge;
             self.loops.adapt(&mut *self.knowledge, context)?;
+            self.knowledge.note_waiting();
             // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
             if in_charge || !self.knowledge.variables.in_charge {
                 self.knowledge.show_battery(context);
@@ -140,6 +142,7 @@ impl Component for Robot {
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.knowledge.report_row(context);
         self.knowledge.retire(context)?;
         self.loops.shutdown(&mut *self.knowledge, context)
     }

@@ -63,6 +63,13 @@ impl LoopCounts {
 }
 
 impl Journal {
+    /// The counts of the journal, without its records.
+    #[must_use]
+    pub fn without_records(&self) -> Journal {
+        let Journal { records, overwritten, lost, ref loops, .. } = *self;
+        Journal { records, overwritten, lost, loops: loops.clone(), entries: Vec::new() }
+    }
+
     /// The journal of a run, collected from the rings of its components.
     pub(crate) fn of_rings<'a>(
         rings: impl Iterator<Item = (&'a Arc<str>, &'a Ring)>,

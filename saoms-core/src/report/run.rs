@@ -36,6 +36,24 @@ pub struct RunReport {
 }
 
 impl RunReport {
+    /// The same report without the records of the journal, whose counts stay.
+    #[must_use]
+    pub fn without_records(&self) -> RunReport {
+        let RunReport { seed, time_s, periods, sections, components, journal, .. } = self;
+        RunReport {
+            seed: *seed,
+            time_s: *time_s,
+            periods: *periods,
+            sections: sections.clone(),
+            components: components.clone(),
+            journal: journal.without_records(),
+            votes: self.votes.clone(),
+            standstill: self.standstill.clone(),
+            outcome: self.outcome.clone(),
+            trace_hash: self.trace_hash.clone(),
+        }
+    }
+
     /// The whole number at a dotted path of the sections, such as `map.blocks`; 0 where there is none.
     pub fn count(&self, path: &str) -> i64 {
         let mut names = path.split('.');

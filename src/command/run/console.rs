@@ -20,6 +20,8 @@ pub(crate) struct Console {
     verbosity: Verbosity,
     /// The width of the column with the names of components.
     width: usize,
+    /// True if a file keeps all records of the journal.
+    keeps_all: bool,
     /// The line below the others, on a terminal.
     status: Option<StatusLine>,
 }
@@ -48,7 +50,7 @@ impl Console {
         let status = if verbosity == Verbosity::Plain { StatusLine::on_terminal() } else { None };
         let names = assembly.components.iter().map(|component| component.path.chars().count());
         let width = names.max().unwrap_or(0).clamp(NAMES.0, NAMES.1);
-        Console { verbosity, width, status }
+        Console { verbosity, width, keeps_all: arguments.journal.is_some(), status }
     }
 
     fn line(&self, text: &str) {
@@ -99,7 +101,7 @@ impl Observer for Console {
             status.clear();
         }
         if self.verbosity != Verbosity::Quiet {
-            print(&summary(report));
+            print(&summary(report, self.keeps_all));
         }
     }
 }

@@ -73,6 +73,10 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
 
+    /// Leave the records of the journal out of the report, which a long run fills with megabytes; their counts stay
+    #[arg(long, requires = "report")]
+    pub(crate) short_report: bool,
+
     /// Draw the robots' paths into this SVG file, `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) paths: Option<PathBuf>,
@@ -169,7 +173,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let is_standard = |one: &Option<Output>| one.as_ref().is_none_or(Output::is_standard);
     let only_prints = journal.is_none() && is_standard(&report) && is_standard(&picture);
     let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some());
-    let report = report.map(|output| Arc::new(ReportFile { output }));
+    let report = report.map(|output| Arc::new(ReportFile { output, is_short: arguments.short_report }));
     let picture = picture.zip(paths);
     let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths)));
     // At the end, they write in this order.

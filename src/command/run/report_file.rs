@@ -6,6 +6,8 @@ use super::outputs::Output;
 /// The observer that writes the report as JSON (`--report`).
 pub(super) struct ReportFile {
     pub(super) output: Output,
+    /// True if it leaves the records of the journal out.
+    pub(super) is_short: bool,
 }
 
 impl Observer for ReportFile {
@@ -14,6 +16,8 @@ impl Observer for ReportFile {
     }
 
     fn end(&self, report: &RunReport) {
+        let short = self.is_short.then(|| report.without_records());
+        let report = short.as_ref().unwrap_or(report);
         self.output.write(|to| {
             serde_json::to_writer_pretty(&mut *to, report)?;
             to.write_all(b"\n")

@@ -11,8 +11,9 @@ use crate::output::counted;
 /// Components that the table shows at most; the report file has all.
 const ROWS: usize = 24;
 
-/// The report in a few lines: the outcome of the run, and a line per component.
-pub(crate) fn summary(report: &RunReport) -> String {
+/// The report in a few lines: the outcome of the run, and a line per component. `keeps_all` says that a file has all
+/// records of the journal.
+pub(crate) fn summary(report: &RunReport, keeps_all: bool) -> String {
     let mut text = format!("\n{}\n", outcome(report));
     for reason in &report.outcome.reasons {
         let _ = writeln!(text, "  {reason}");
@@ -20,7 +21,7 @@ pub(crate) fn summary(report: &RunReport) -> String {
     text.push('\n');
     text.push_str(&table(&report.components));
     text.push_str(&problem_lines(&report.components));
-    text.push_str(&journal(&report.journal));
+    text.push_str(&journal(&report.journal, keeps_all));
     if let Some(hash) = &report.trace_hash {
         let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
     }
@@ -46,9 +47,9 @@ pub(crate) fn outcome(report: &RunReport) -> String {
 }
 
 /// The records missing in the journal; usually none.
-fn journal(journal: &Journal) -> String {
+fn journal(journal: &Journal, keeps_all: bool) -> String {
     let mut text = String::new();
-    if journal.overwritten > 0 {
+    if journal.overwritten > 0 && !keeps_all {
         let _ = writeln!(
             text,
             "\njournal: {} of {} records were overwritten by newer ones; --journal FILE keeps all",
@@ -118,12 +119,13 @@ mod tests {
     fn what_is_missing_in_the_journal_is_told() {
         let mut one = Journal::default();
         one.records = 9;
-        assert_eq!(journal(&one), "");
+        assert_eq!(journal(&one, false), "");
         one.overwritten = 4;
         assert_eq!(
-            journal(&one),
+            journal(&one, false),
             "\njournal: 4 of 9 records were overwritten by newer ones; --journal FILE keeps all\n"
         );
+        assert_eq!(journal(&one, true), "", "it is kept");
     }
 
     #[test]

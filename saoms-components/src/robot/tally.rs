@@ -1,0 +1,56 @@
+//! The row of a robot in the report.
+
+use std::time::Duration;
+
+use saoms_api::Context;
+
+use super::{RobotKnowledge, Trouble, Variables};
+
+/// What a robot did so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    /// Pieces of luggage that it delivered.
+    pub(super) delivered: u64,
+    /// Blocks that it drove.
+    pub(super) blocks: u64,
+    /// Time for which another robot kept it from entering the block that it wanted.
+    pub(super) waited: Duration,
+}
+
+impl RobotKnowledge {
+    /// Notes whether the robot waits in this execution.
+    pub(super) fn note_waiting(&mut self) {
+        if self.variables.stop_a_period {
+            self.tally.waited += self.elapsed();
+        }
+    }
+
+    /// Writes the row of the robot to the report. A robot that is scheduled again goes on counting.
+    pub(super) fn report_row(&self, context: &mut Context<'_>) {
+        let row = |field: &str| format!("robots.by_number.{}.{field}", self.number);
+        let Tally { delivered, blocks, waited } = self.tally;
+        let component = context.name().to_owned();
+        context.report(&row("component"), component.as_str());
+        context.count(&row("delivered"), i64::try_from(delivered).unwrap_or(i64::MAX));
+        context.count(&row("blocks"), i64::try_from(blocks).unwrap_or(i64::MAX));
+        context.count(&row("waited_ms"), i64::try_from(waited.as_millis()).unwrap_or(i64::MAX));
+        context.report(&row("battery"), self.battery.percent());
+        context.report(&row("state"), self.state());
+    }
+
+    /// Its state in a word or two.
+    fn state(&self) -> &'static str {
+        let Variables { has_luggage, reaching_charge, in_charge, asleep, busy, .. } = self.variables;
+        match self.trouble {
+            Some(Trouble::Battery) => "stranded",
+            Some(Trouble::Breakdown | Trouble::Hardware) => "broken",
+            None if self.shut_down => "broken",
+            None if has_luggage => "carries luggage",
+            None if self.job.is_some() && busy => "goes to luggage",
+            None if reaching_charge => "goes to charge",
+            None if asleep => "asleep",
+            None if in_charge => "charges",
+            None => "free",
+        }
+    }
+}
