@@ -30,6 +30,14 @@ pub(crate) fn composites(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
+/// The shipped composites that are files by themselves, and not parts of a contribution.
+pub(crate) fn shipped() -> Vec<PathBuf> {
+    let mut found = composites(&root().join("composites"));
+    found.retain(|path| !path.parent().unwrap().join("sca-contribution.xml").exists());
+    assert!(found.len() >= 4, "{found:?}");
+    found
+}
+
 /// An empty folder of this name, which stays there after the test.
 pub(crate) fn empty_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);

@@ -44,6 +44,7 @@ pub(crate) enum NewKind {
         api: Option<String>,
     },
     /// Make a folder with a small fleet: a composite, a map, a scenario, and a table of the robots
+    #[command(after_help = EXIT_CODES)]
     Site {
         /// The folder to make; its name becomes that of the composite
         path: PathBuf,

@@ -11,7 +11,7 @@ use saoms_lang::registry::Registry;
 use saoms_lang::source::{OpenTexts, Sources, Span};
 use saoms_lang::syntax::{self, Document, Element};
 
-use crate::support::{composites, root};
+use crate::support::shipped;
 
 /// The places of each kind in a file where a slip is tried.
 const PLACES: usize = 4;
@@ -53,7 +53,7 @@ fn one_slip_gives_few_diagnostics() {
     let registry = Registry::linked().unwrap();
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
     let (mut worst, mut seed) = (String::new(), 0);
-    for path in composites(&root().join("composites")) {
+    for path in shipped() {
         let text = fs::read_to_string(&path).unwrap();
         let check = |text: &str| {
             let mut open = OpenTexts::default();

@@ -1,21 +1,12 @@
 //! Every shipped composite: checks without errors, says what it shows, and runs.
 
 use std::fs;
-use std::path::PathBuf;
 use std::time::Duration;
 
 use saoms_core::report::RunStatus;
 use saoms_testkit::{Fleet, expect_diagnostics};
 
-use crate::support::{code, composites, root, saoms, stderr, stdout};
-
-/// The composites that run by themselves.
-fn shipped() -> Vec<PathBuf> {
-    let mut found = composites(&root().join("composites"));
-    found.retain(|path| !path.parent().unwrap().join("sca-contribution.xml").exists());
-    assert!(found.len() >= 4, "{found:?}");
-    found
-}
+use crate::support::{code, saoms, shipped, stderr, stdout};
 
 #[test]
 fn the_contribution_of_two_teams_shares_the_work() {
