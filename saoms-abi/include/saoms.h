@@ -70,7 +70,7 @@ typedef struct SaomsPropertyView {
     struct SaomsBytes name;
     // 0: `text` counts; 1: `children` are its many values; 2: `children` are the properties of a complex one.
     uint32_t kind;
-    // The text.
+    // The text; of a boolean, a number or a duration the usual one, as `true`, `7`, `0.5` and `1500ms`.
     struct SaomsBytes text;
     // The values that it consists of.
     const struct SaomsPropertyView *children;

@@ -8,7 +8,7 @@ pub struct PropertyView {
     pub name: Bytes,
     /// 0: `text` counts; 1: `children` are its many values; 2: `children` are the properties of a complex one.
     pub kind: u32,
-    /// The text.
+    /// The text; of a boolean, a number or a duration the usual one, as `true`, `7`, `0.5` and `1500ms`.
     pub text: Bytes,
     /// The values that it consists of.
     pub children: *const PropertyView,

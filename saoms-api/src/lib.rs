@@ -112,8 +112,8 @@ pub mod generated {
     pub use crate::host::declaration::ConstText;
     pub use crate::message::Key;
     pub use crate::property::{
-        Preset, PropertyShape, Values, all_names, are_distinct, bounds_fit, chosen, complex, contains, continued,
-        count, default_fits, equal, flat, list, property, read,
+        PropertyShape, Values, all_names, are_distinct, complex, contains, continued, count, default_fits, equal, flat,
+        list, property, read, scalar,
     };
     pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};

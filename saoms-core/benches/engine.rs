@@ -241,6 +241,7 @@ fn start(shape: &Shape) -> Result<RunningFleet, Box<dyn std::error::Error>> {
             path: format!("Robot{number}"),
             class: Arc::clone(class),
             values: values.map(|(name, value)| (name.into(), PropertyValue::from(value.as_str()))).to_vec(),
+            written: Default::default(),
             task: Some(TaskProperties::from_values(&task)?),
             library: None,
             references: Vec::new(),

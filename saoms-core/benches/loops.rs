@@ -197,11 +197,13 @@ fn start(changes: Option<&str>) -> Result<RunningFleet, Box<dyn std::error::Erro
         name: "Busy".to_owned(),
         class: Arc::clone(busy),
         values: vec![("changes".into(), changes.into())],
+        written: Default::default(),
     };
     let components = vec![ComponentSpec {
         path: "Robot".to_owned(),
         class: Arc::clone(class),
         values: Vec::new(),
+        written: Default::default(),
         task: Some(TaskProperties::from_values(&task)?),
         library: None,
         references: Vec::new(),

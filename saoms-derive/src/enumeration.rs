@@ -104,7 +104,7 @@ pub(crate) fn property_field(input: &DeriveInput) -> Result<TokenStream> {
     let mut details = Json::default();
     details.plain(",\"allowed\":");
     details.list(&allowed, |text, allowed| text.string(allowed));
-    let (details, ident, places) = (details.into_text(), &input.ident, 0..allowed.len());
+    let (details, ident) = (details.into_text(), &input.ident);
     Ok(quote! {
         #[automatically_derived]
         impl ::saoms_api::PropertyField for #ident {
@@ -115,19 +115,11 @@ pub(crate) fn property_field(input: &DeriveInput) -> Result<TokenStream> {
                     .with_details(#details)
             };
 
-            fn from_value(
-                value: &::saoms_api::host::PropertyValue,
-            ) -> ::core::result::Result<Self, ::std::string::String> {
-                const ALLOWED: &[&str] = <#ident as ::saoms_api::PropertyField>::TYPE.rule.allowed;
-                match ::saoms_api::generated::chosen(value, ALLOWED)? {
-                    #(#places => ::core::result::Result::Ok(#ident::#variants),)*
-                    _ => ::core::result::Result::Err(::std::string::String::from("not allowed")),
-                }
-            }
-
-            fn from_choice(text: &str) -> ::core::option::Option<Self> {
-                match text {
-                    #(#allowed => ::core::option::Option::Some(#ident::#variants),)*
+            fn from_scalar(
+                scalar: &::saoms_api::host::declaration::Scalar,
+            ) -> ::core::option::Option<::core::result::Result<Self, ::std::string::String>> {
+                match scalar.as_text()?.as_str() {
+                    #(#allowed => ::core::option::Option::Some(::core::result::Result::Ok(#ident::#variants)),)*
                     _ => ::core::option::Option::None,
                 }
             }

@@ -1,3 +1,5 @@
+use proc_macro2::TokenStream;
+use quote::quote;
 use syn::{Error, Expr, ExprLit, ExprUnary, Lit, Result, UnOp};
 
 /// A literal as a composite would write it.
@@ -30,21 +32,20 @@ impl Literal {
         }
     }
 
-    /// True if it is a number with a fraction and without a type suffix.
-    pub(crate) fn is_fraction(expression: &Expr) -> bool {
-        match expression {
-            Expr::Lit(ExprLit { lit: Lit::Float(number), .. }) => number.suffix().is_empty(),
-            Expr::Unary(ExprUnary { op: UnOp::Neg(_), expr, .. }) => Literal::is_fraction(expr),
-            _ => false,
-        }
-    }
-
     /// The text in the composite.
     pub(crate) fn text(&self) -> String {
         match self {
             Literal::Number(text) | Literal::Text(text) => text.clone(),
             Literal::Bool(value) => value.to_string(),
         }
+    }
+}
+
+/// The number that a text is, which a constant function cannot read where it has a fraction: an `Option<f64>`.
+pub(crate) fn number(text: &str) -> TokenStream {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => quote!(::core::option::Option::Some(#number)),
+        _ => quote!(::core::option::Option::None),
     }
 }
 

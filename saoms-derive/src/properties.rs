@@ -12,7 +12,7 @@ use crate::case::lower_camel;
 use crate::docs::docs;
 use crate::field::struct_fields;
 use crate::json::{self, Json};
-use crate::literal::Literal;
+use crate::literal::{self, Literal};
 use crate::range::Range;
 
 /// A field.
@@ -88,6 +88,7 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
 
             fn from_value(
                 value: &::saoms_api::host::PropertyValue,
+                _: &::saoms_api::host::declaration::Rule<'_>,
             ) -> ::core::result::Result<Self, ::std::string::String> {
                 ::saoms_api::generated::complex(value)
             }
@@ -314,15 +315,26 @@ impl<'a> Property<'a> {
         let default = self.default.iter().map(|(default, text)| {
             let message = format!("the default of property `{name}` is no value that the property allows");
             quote_spanned! {default.span()=>
-                ::core::assert!(::saoms_api::generated::default_fits(&RULE, #text), #message);
+                ::core::assert!(
+                    ::saoms_api::generated::default_fits(&RULE, #text, DEFAULT),
+                    #message,
+                );
             }
         });
         let mut checks: Vec<_> = default.collect();
-        if let Some(bound) = self.range.as_ref().and_then(|range| range.bounds.first()) {
+        if let Some(range) = &self.range
+            && let Some(bound) = range.bounds.first()
+        {
             let message =
                 format!("the range of property `{name}` does not suit its type: expected numbers or durations");
+            let ends = [
+                (&range.min, quote!(RULE.min)),
+                (&range.max, quote!(RULE.max)),
+                (&range.exclusive_max, quote!(RULE.exclusive_max)),
+            ];
+            let ends = ends.iter().filter(|(text, _)| text.is_some()).map(|(_, end)| end);
             checks.push(quote_spanned! {bound.span()=>
-                ::core::assert!(::saoms_api::generated::bounds_fit(&RULE), #message);
+                ::core::assert!(true #(&& #ends.is_some())*, #message);
             });
         }
         if self.required_text || !self.allowed.is_empty() {
@@ -335,18 +347,41 @@ impl<'a> Property<'a> {
         if checks.is_empty() {
             return TokenStream::new();
         }
-        let rule = self.rule();
+        let constants = self.constants();
         quote! {
             const _: () = {
-                const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
+                #constants
                 #(#checks)*
             };
         }
     }
 
+    /// Its rule as a constant, and its default, if it has one.
+    fn constants(&self) -> TokenStream {
+        let rule = self.rule();
+        let default = self.default.iter().map(|(_, text)| {
+            let number = literal::number(text);
+            quote! {
+                const DEFAULT: &::saoms_api::host::declaration::Scalar =
+                    &::saoms_api::host::declaration::Scalar::of_literal(RULE.kind, #text, #number);
+            }
+        });
+        quote! {
+            const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
+            #(#default)*
+        }
+    }
+
     fn rule(&self) -> TokenStream {
         let of = self.of;
-        let some = |text: &Option<String>| text.as_ref().map(|text| quote!(::core::option::Option::Some(#text)));
+        let some = |text: &Option<String>| {
+            text.as_ref().map(|text| {
+                let number = literal::number(text);
+                quote!(::saoms_api::host::declaration::Bound::of_literal(
+                    <#of as ::saoms_api::PropertyField>::TYPE.rule.kind, #text, #number
+                ))
+            })
+        };
         let none = quote!(::core::option::Option::None);
         let mut members = Vec::new();
         if let Some(range) = &self.range {
@@ -378,25 +413,15 @@ impl<'a> Property<'a> {
 
     /// The field's initialiser in `from_values`.
     fn read(&self) -> TokenStream {
-        let (field, name, rule) = (self.field, &self.name, self.rule());
-        let default = match &self.default {
-            Some((expression, text)) => {
-                let fraction = match Literal::is_fraction(expression) {
-                    true => quote!(::core::option::Option::Some(#expression)),
-                    false => quote!(::core::option::Option::None),
-                };
-                quote!(::core::option::Option::Some(
-                    const { ::saoms_api::generated::Preset::of(RULE.kind, #text, #fraction) }
-                ))
-            }
+        let (field, name, constants) = (self.field, &self.name, self.constants());
+        let default = match self.default {
+            Some(_) => quote!(::core::option::Option::Some(DEFAULT)),
             None => quote!(::core::option::Option::None),
         };
         quote! {
             #field: {
-                const RULE: ::saoms_api::host::declaration::Rule<'static> = #rule;
-                const BOUNDS: ::core::option::Option<::saoms_api::host::declaration::PlainBounds> =
-                    ::saoms_api::host::declaration::PlainBounds::of(&RULE);
-                ::saoms_api::generated::property(given, #name, #default, (&RULE, BOUNDS))?
+                #constants
+                ::saoms_api::generated::property(given, #name, #default, &RULE)?
             }
         }
     }

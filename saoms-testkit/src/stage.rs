@@ -60,17 +60,10 @@ impl Stage {
         values: &[(SmolStr, PropertyValue)],
     ) -> Result<Stage, Failure> {
         let declaration = class.declaration();
-        let chosen = declaration.loops.property.as_ref().and_then(|property| {
-            let given = values.iter().find(|(name, _)| name == property);
-            match given.map(|(_, value)| value) {
-                Some(PropertyValue::Text(text)) => Some(text.as_str()),
-                _ => declaration.property(property)?.default.as_deref(),
-            }
-        });
         let find = |name: &String| {
             registry.get_loop(name).cloned().ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))
         };
-        let loops = declaration.loops.of(chosen).iter().map(find).collect::<Result<_, _>>()?;
+        let loops = declaration.loops_of(values).iter().map(find).collect::<Result<_, _>>()?;
         Ok(Stage { class: Some(Arc::clone(class)), ..Stage::of_loops(loops) })
     }
 

@@ -7,18 +7,20 @@ mod types;
 
 pub(crate) use flat::values_of;
 pub use flat::{all_names, are_distinct, continued, count, list};
-pub use read::{Preset, Values, chosen, complex, flat, property, read};
-pub use shape::{PropertyField, PropertyShape, bounds_fit, contains, default_fits, equal};
+pub use read::{Values, complex, flat, property, read, scalar};
+pub use shape::{PropertyField, PropertyShape, contains, default_fits, equal};
+
+use std::fmt;
 
 use crate::Failure;
 use crate::host::SmolStr;
+use crate::host::declaration::Scalar;
 
-/// A value as the composite gives it, once `source` and `file` are resolved: as large as a [`SmolStr`], as nearly all
-/// values are texts.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A value as the composite gives it, once `source` and `file` are resolved.
+#[derive(Clone, PartialEq)]
 pub enum PropertyValue {
-    /// The text of an attribute or element.
-    Text(SmolStr),
+    /// One value of the type that the property has.
+    Scalar(Scalar),
     /// The values of a property that takes many.
     Many(Box<[PropertyValue]>),
     /// The named values of a complex property.
@@ -32,15 +34,33 @@ impl PropertyValue {
     #[inline]
     pub fn as_text(&self) -> Option<&SmolStr> {
         match self {
-            PropertyValue::Text(text) => Some(text),
+            PropertyValue::Scalar(scalar) => scalar.as_text(),
             _ => None,
         }
     }
 }
 
+/// As `Integer(7)`: of one value there is nothing else to show.
+impl fmt::Debug for PropertyValue {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PropertyValue::Scalar(scalar) => scalar.fmt(formatter),
+            PropertyValue::Many(values) => formatter.debug_tuple("Many").field(values).finish(),
+            PropertyValue::Complex(values) => formatter.debug_tuple("Complex").field(values).finish(),
+        }
+    }
+}
+
+impl From<Scalar> for PropertyValue {
+    fn from(scalar: Scalar) -> PropertyValue {
+        PropertyValue::Scalar(scalar)
+    }
+}
+
+/// A text as a composite writes it, which its taker reads.
 impl From<&str> for PropertyValue {
     fn from(text: &str) -> PropertyValue {
-        PropertyValue::Text(text.into())
+        PropertyValue::Scalar(Scalar::Text(text.into()))
     }
 }
 
@@ -139,7 +159,7 @@ pub trait Properties: Sized {
 /// }
 ///
 /// let guard = GuardProperties::from_values(&[("number".into(), "+7".into())]).unwrap();
-/// assert_eq!(guard.to_values(), [("number".into(), "7".into()), ("waitTime".into(), "500ms".into())]);
+/// assert_eq!(format!("{:?}", guard.to_values()), r#"[("number", Integer(7)), ("waitTime", Duration(500ms))]"#);
 /// ```
 pub trait WriteProperties: Properties {
     /// The values in the order of the declaration, defaults included; without those that are absent.

@@ -1,80 +1,31 @@
-use super::{PropertyField, equal, values_of};
-use crate::host::declaration::{PlainBounds, PropertyKind, Rule, Scalar, parse_scalar, trim};
+use std::borrow::Cow;
+
+use super::{PropertyField, values_of};
+use crate::host::declaration::{Rule, Scalar};
 use crate::host::{PropertyValue, SmolStr};
-use crate::time::read_duration;
 use crate::{Failure, Finding, Place, Properties};
 
-/// The default of a property: as text, and as the compiler reads it, which it cannot where this is text or a choice.
-#[derive(Clone, Debug)]
-pub struct Preset {
-    text: &'static str,
-    scalar: Option<Scalar>,
-}
-
-impl Preset {
-    /// A default of this kind; a number with a fraction comes as such, too.
-    pub const fn of(kind: PropertyKind, text: &'static str, fraction: Option<f64>) -> Preset {
-        let scalar = match (kind, fraction) {
-            (PropertyKind::Boolean, _) => Some(Scalar::Boolean(equal(text.as_bytes(), b"true"))),
-            (PropertyKind::Float, Some(number)) => Some(Scalar::Float(number)),
-            (PropertyKind::Integer, _) => match i128::from_str_radix(text, 10) {
-                Ok(number) => Some(Scalar::Integer(number)),
-                Err(_) => None,
-            },
-            (PropertyKind::Duration, _) => match read_duration(text) {
-                Ok(duration) => Some(Scalar::Duration(duration)),
-                Err(_) => None,
-            },
-            _ => None,
-        };
-        Preset { text, scalar }
-    }
-
-    /// Reads the preset. The rule allows it: that was checked when it was compiled and registered.
-    #[inline(always)]
-    fn read<T: PropertyField>(self, kind: PropertyKind) -> Result<T, String> {
-        if let Some(read) = T::from_choice(self.text) {
-            return Ok(read);
-        }
-        match self.scalar.and_then(T::from_scalar) {
-            Some(read) => read,
-            None => read_default(self.text, kind),
-        }
-    }
-}
-
-/// The default that is no choice, and that the compiler cannot read.
-fn read_default<T: PropertyField>(text: &str, kind: PropertyKind) -> Result<T, String> {
-    let read = parse_scalar(kind, text).and_then(T::from_scalar);
-    read.unwrap_or_else(|| T::from_value(&PropertyValue::from(text)))
-}
-
-/// Reads one property from the values of a composite.
+/// Reads one property from the values of a composite, or its default, which the rule allows.
 ///
 /// # Errors
 /// It is missing or not what the rule allows.
-// What is called for each property of each component is inlined, so that names are compared by their known lengths, and
-// defaults and bounds are there without being read. Failures are few and large, so that they are boxed.
-#[inline(always)]
+// Failures are few and large, so that they are boxed.
 pub fn property<T: PropertyField>(
     values: &mut Values<'_>,
     name: &str,
-    default: Option<Preset>,
-    (rule, bounds): (&Rule<'_>, Option<PlainBounds>),
+    default: Option<&Scalar>,
+    rule: &Rule<'_>,
 ) -> Result<T, Box<Failure>> {
-    let Some(value) = values.take(name) else {
-        return match default {
-            Some(default) => default.read(rule.kind).map_err(|message| failure(name, message)),
-            None => T::absent().ok_or_else(|| missing(name, rule)),
-        };
+    let read = match values.take(name) {
+        Some(value) => Some(T::from_value(value, rule)),
+        None => default.map(|default| {
+            let read = T::from_scalar(default);
+            read.unwrap_or_else(|| T::from_value(&default.clone().into(), rule))
+        }),
     };
-    let plain = value.as_text().and_then(|text| match bounds {
-        Some(bounds) => T::from_scalar(Scalar::Integer(i128::from(bounds.read(text)?)))?.ok(),
-        None => T::from_text(text).filter(|_| rule.allows_plain_text(text)),
-    });
-    match plain {
-        Some(read) => Ok(read),
-        None => given(value, name, rule),
+    match read {
+        Some(read) => read.map_err(|message| failure(name, message)),
+        None => T::absent().ok_or_else(|| missing(name, rule)),
     }
 }
 
@@ -88,26 +39,18 @@ fn failure(name: &str, message: String) -> Box<Failure> {
     Box::new(Finding::new(Place::property(name), message).into())
 }
 
-fn given<T: PropertyField>(value: &PropertyValue, name: &str, rule: &Rule<'_>) -> Result<T, Box<Failure>> {
-    let failure = |message| failure(name, message);
-    if let (PropertyValue::Text(text), true) = (value, rule.kind.is_scalar())
-        && let Some(read) = T::from_scalar(rule.check(text).map_err(failure)?)
-    {
-        return read.map_err(failure);
-    }
-    let value_read = T::from_value(value);
-    // The rule of the property is narrower than that of its type, so its message says more.
-    accept(value, rule).map_err(failure)?;
-    value_read.map_err(failure)
-}
-
-fn accept(value: &PropertyValue, rule: &Rule<'_>) -> Result<(), String> {
-    match value {
-        PropertyValue::Text(_) if rule.kind == PropertyKind::Complex => Ok(()),
-        PropertyValue::Text(text) => rule.check(text).map(|_| ()),
-        PropertyValue::Many(values) => values.iter().try_for_each(|value| accept(value, rule)),
-        PropertyValue::Complex(_) => Ok(()),
-    }
+/// Takes a scalar through its rule.
+///
+/// # Errors
+/// As [`Rule::take`], or the value is none.
+#[inline]
+pub fn scalar<'v>(value: &'v PropertyValue, rule: &Rule<'_>) -> Result<Cow<'v, Scalar>, String> {
+    let found = match value {
+        PropertyValue::Scalar(scalar) => return rule.take(scalar),
+        PropertyValue::Many(_) => "a list",
+        PropertyValue::Complex(_) => "a complex value",
+    };
+    Err(format!("found {found}: expected {}", rule.expected()))
 }
 
 /// The values that a composite gives, to be taken in the order of the declaration.
@@ -120,7 +63,7 @@ pub struct Values<'v> {
 
 impl<'v> Values<'v> {
     /// The value of this name.
-    #[inline(always)]
+    #[inline]
     fn take(&mut self, name: &str) -> Option<&'v PropertyValue> {
         match self.rest {
             Some([(given, value), rest @ ..]) if given == name => {
@@ -202,20 +145,8 @@ pub fn complex<P: Properties>(value: &PropertyValue) -> Result<P, String> {
         PropertyValue::Complex(values) => {
             return P::from_values(values).map_err(|failure| failure.message().to_owned());
         }
-        PropertyValue::Text(text) => format!("`{}`", text.trim()),
+        PropertyValue::Scalar(scalar) => format!("`{}`", scalar.text().trim()),
         PropertyValue::Many(_) => "a list".to_owned(),
     };
     Err(format!("found {found}: expected the properties {}", P::NAMES.join(", ")))
-}
-
-/// Reads the choice of an enumeration: its place among the allowed texts.
-///
-/// # Errors
-/// The value is not one of them.
-pub fn chosen(value: &PropertyValue, allowed: &[&str]) -> Result<usize, String> {
-    let rule = Rule { allowed, ..Rule::of(PropertyKind::Enumeration) };
-    let PropertyValue::Text(text) = value else { return Err(format!("expected {}", rule.expected())) };
-    let found = trim(text);
-    let place = allowed.iter().position(|allowed| *allowed == found);
-    place.ok_or_else(|| rule.check(text).err().unwrap_or_else(|| format!("expected {}", rule.expected())))
 }

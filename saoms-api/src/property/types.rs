@@ -1,69 +1,53 @@
 use std::time::Duration;
 
 use super::{PropertyField, PropertyShape};
-use crate::host::declaration::{PropertyKind, Rule, Scalar};
-use crate::host::{PropertyValue, SmolStr, format_duration};
-
-/// Reads a scalar through its rule.
-fn scalar(value: &PropertyValue, rule: &Rule<'_>) -> Result<Scalar, String> {
-    let found = match value {
-        PropertyValue::Text(text) => return rule.check(text),
-        PropertyValue::Many(_) => "a list",
-        PropertyValue::Complex(_) => "a complex value",
-    };
-    Err(format!("found {found}: expected {}", rule.expected()))
-}
+use crate::host::declaration::{Bound, Integer, PropertyKind, Rule, Scalar};
+use crate::host::{PropertyValue, SmolStr};
 
 macro_rules! scalars {
-    ($($type:ty, $rule:expr, $variant:ident($value:ident) => $result:expr $(, $text:ident => $from_text:expr)?
-        ; $own:ident => $written:expr;)*) => {
+    ($($type:ty, $rule:expr, $variant:ident($value:ident) => $result:expr; $own:ident => $written:expr;)*) => {
         $(impl PropertyField for $type {
             const TYPE: PropertyShape = PropertyShape::scalar($rule);
 
-            fn from_value(value: &PropertyValue) -> Result<Self, String> {
-                const RULE: Rule<'static> = <$type as PropertyField>::TYPE.rule;
-                let read = Self::from_scalar(scalar(value, &RULE)?);
-                read.unwrap_or_else(|| Err(format!("expected {}", RULE.expected())))
-            }
-
             #[inline]
-            fn from_scalar(scalar: Scalar) -> Option<Result<Self, String>> {
+            fn from_scalar(scalar: &Scalar) -> Option<Result<Self, String>> {
                 match scalar {
                     Scalar::$variant($value) => Some($result),
                     _ => None,
                 }
             }
 
-            $(#[inline]
-            fn from_text($text: &SmolStr) -> Option<Self> {
-                Some($from_text)
-            })?
-
             fn to_value(&self) -> Option<PropertyValue> {
                 let $own = self;
-                Some(PropertyValue::Text($written.into()))
+                Some(Scalar::$variant($written).into())
             }
         })*
     };
 }
 
 scalars! {
-    bool, Rule::of(PropertyKind::Boolean), Boolean(value) => Ok(value); own => own.to_string();
-    String, Rule::of(PropertyKind::String), Text(value) => Ok(value), text => text.to_string(); own => own.as_str();
-    SmolStr, Rule::of(PropertyKind::String), Text(value) => Ok(value.into()), text => text.clone(); own => own.as_str();
-    Duration, Rule::of(PropertyKind::Duration), Duration(value) => Ok(value); own => format_duration(*own);
-    f64, Rule::of(PropertyKind::Float), Float(value) => Ok(value); own => own.to_string();
-    f32, Rule::of(PropertyKind::Float), Float(value) => match value as f32 {
+    bool, Rule::of(PropertyKind::Boolean), Boolean(value) => Ok(*value); own => *own;
+    String, Rule::of(PropertyKind::String), Text(value) => Ok(value.to_string()); own => own.into();
+    SmolStr, Rule::of(PropertyKind::String), Text(value) => Ok(value.clone()); own => own.clone();
+    Duration, Rule::of(PropertyKind::Duration), Duration(value) => Ok(*value); own => *own;
+    f64, Rule::of(PropertyKind::Float), Float(value) => Ok(*value); own => *own;
+    f32, Rule::of(PropertyKind::Float), Float(value) => match *value as f32 {
         narrow if narrow.is_finite() => Ok(narrow),
         _ => Err(format!("`{value}` is out of range: expected at most {}", f32::MAX)),
-    }; own => own.to_string();
+    }; own => f64::from(*own);
 }
 
 macro_rules! integers {
     ($($type:ty, $min:literal, $max:literal;)*) => {
         scalars! { $(
-            $type, Rule { min: Some($min), max: Some($max), ..Rule::of(PropertyKind::Integer) },
-                Integer(value) => <$type>::try_from(value).map_err(|error| error.to_string()); own => own.to_string();
+            $type,
+            Rule {
+                min: Bound::of_literal(PropertyKind::Integer, $min, None),
+                max: Bound::of_literal(PropertyKind::Integer, $max, None),
+                ..Rule::of(PropertyKind::Integer)
+            },
+            Integer(value) => <$type>::try_from(value.get()).map_err(|error| error.to_string());
+            own => Integer::from(*own as i128);
         )* }
     };
 }
@@ -83,22 +67,13 @@ integers! {
 impl<T: PropertyField> PropertyField for Option<T> {
     const TYPE: PropertyShape = PropertyShape { optional: true, ..T::TYPE };
 
-    fn from_value(value: &PropertyValue) -> Result<Self, String> {
-        T::from_value(value).map(Some)
+    fn from_value(value: &PropertyValue, rule: &Rule<'_>) -> Result<Self, String> {
+        T::from_value(value, rule).map(Some)
     }
 
     #[inline]
-    fn from_scalar(scalar: Scalar) -> Option<Result<Self, String>> {
+    fn from_scalar(scalar: &Scalar) -> Option<Result<Self, String>> {
         T::from_scalar(scalar).map(|read| read.map(Some))
-    }
-
-    #[inline]
-    fn from_text(text: &SmolStr) -> Option<Self> {
-        T::from_text(text).map(Some)
-    }
-
-    fn from_choice(text: &str) -> Option<Self> {
-        T::from_choice(text).map(Some)
     }
 
     fn absent() -> Option<Self> {
@@ -113,10 +88,10 @@ impl<T: PropertyField> PropertyField for Option<T> {
 impl<T: PropertyField> PropertyField for Vec<T> {
     const TYPE: PropertyShape = PropertyShape { many: true, optional: true, ..T::TYPE };
 
-    fn from_value(value: &PropertyValue) -> Result<Self, String> {
+    fn from_value(value: &PropertyValue, rule: &Rule<'_>) -> Result<Self, String> {
         match value {
-            PropertyValue::Many(values) => values.iter().map(T::from_value).collect(),
-            one => T::from_value(one).map(|value| vec![value]),
+            PropertyValue::Many(values) => values.iter().map(|value| T::from_value(value, rule)).collect(),
+            one => T::from_value(one, rule).map(|value| vec![value]),
         }
     }
 

@@ -287,7 +287,7 @@ fn wrong_properties_say_what_was_found_and_expected() {
             text("number", "99999999999999999999999999999999999999999999"),
             "property `number`: `99999999999999999999999999999999999999999999` is out of range: expected a whole number from 1 to 99",
         ),
-        (many("number", &["1", "2"]), "property `number`: found a list: expected a whole number from 0 to 255"),
+        (many("number", &["1", "2"]), "property `number`: found a list: expected a whole number from 1 to 99"),
         (
             text("discharge", "100"),
             "property `discharge`: `100` is out of range: expected a number from 0.0 to below 100.0 [%]",

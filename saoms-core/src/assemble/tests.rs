@@ -55,6 +55,7 @@ fn assembly(text: &str) -> Assembly {
             class,
             library: None,
             values: Vec::new(),
+            written: Default::default(),
             references: Vec::new(),
             loops: std::sync::Arc::default(),
         };

@@ -89,6 +89,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         class,
         library: None,
         values,
+        written: Default::default(),
         task,
         references,
         loops: std::sync::Arc::default(),

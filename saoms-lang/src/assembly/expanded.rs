@@ -127,17 +127,17 @@ fn implementation(component: &ComponentSpec) -> NewElement {
 /// The properties of a component of a class.
 fn valued(component: &ComponentSpec) -> Vec<NewElement> {
     let presets = component.class.presets();
-    let values = component.values.iter().filter(|value| !presets.contains(value));
+    let own = component.values.iter().zip(component.written.as_deref().unwrap_or(&component.values));
+    let own = own.filter(|(value, _)| !presets.contains(value)).map(|(_, (name, written))| property(name, written));
     let is_own = |name: &SmolStr| component.values.iter().any(|(own, _)| own == name);
     let task = component.task.iter().flat_map(TaskProperties::stated).filter(|(name, _)| !is_own(name));
-    let task: Vec<_> = task.collect();
-    values.chain(&task).map(|(name, value)| property(name, value)).collect()
+    own.chain(task.map(|(name, value)| property(&name, &value))).collect()
 }
 
 fn property(name: &str, value: &PropertyValue) -> NewElement {
     let node = NewElement::new("property").with("name", name);
     match value {
-        PropertyValue::Text(text) => text_of(node, text),
+        PropertyValue::Scalar(scalar) => text_of(node, &scalar.text()),
         PropertyValue::Many(values) => node.children(values.iter().flat_map(|one| part("value", one, false))),
         PropertyValue::Complex(parts) => node.children(inside(parts)),
     }
@@ -161,7 +161,7 @@ fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<NewElement> 
         false => NewElement::new(name.to_owned()),
     };
     match value {
-        PropertyValue::Text(text) => vec![node().text(text)],
+        PropertyValue::Scalar(scalar) => vec![node().text(&scalar.text())],
         PropertyValue::Complex(parts) => vec![node().children(inside(parts))],
         PropertyValue::Many(values) => values.iter().flat_map(|value| part(name, value, is_in_none)).collect(),
     }
@@ -170,14 +170,8 @@ fn part(name: &str, value: &PropertyValue, is_in_none: bool) -> Vec<NewElement> 
 /// Differences of the loops of a component from those of its class.
 fn loops(component: &ComponentSpec) -> Vec<NewElement> {
     let declaration = component.class.declaration();
-    let value = declaration.loops.property.as_ref().and_then(|property| {
-        match component.values.iter().find(|(name, _)| name == property) {
-            Some((_, PropertyValue::Text(text))) => Some(text.trim()),
-            _ => declaration.property(property)?.default.as_deref(),
-        }
-    });
-    let usual: Vec<(&str, &str)> =
-        declaration.loops.of(value).iter().map(|class| (simple(class), class.as_str())).collect();
+    let usual = declaration.loops_of(&component.values).iter();
+    let usual: Vec<(&str, &str)> = usual.map(|class| (simple(class), class.as_str())).collect();
     let is_there = |name: &str| component.loops.iter().any(|one| one.name == name);
     let is_usual = |name: &str| usual.iter().any(|(known, _)| *known == name);
     let kept = usual.iter().map(|(name, _)| *name).filter(|name| is_there(name));
@@ -193,7 +187,9 @@ fn loops(component: &ComponentSpec) -> Vec<NewElement> {
         let after = before.filter(|_| !is_in_order);
         if !is_same || after.is_some() || !one.values.is_empty() {
             let node = element(&one.name).maybe("class", (!is_same).then_some(class)).maybe("after", after);
-            all.push(node.children(one.values.iter().map(|(name, value)| property(name, value))));
+            all.push(node.children(
+                one.written.as_deref().unwrap_or(&one.values).iter().map(|(name, value)| property(name, value)),
+            ));
         }
     }
     all

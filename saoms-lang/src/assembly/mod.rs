@@ -39,6 +39,8 @@ pub struct ComponentSpec {
     pub library: Option<String>,
     /// The values of the class's own properties, presets included; what is absent takes its default.
     pub values: Vec<(SmolStr, PropertyValue)>,
+    /// The same as the composite writes them.
+    pub written: Written,
     /// The task of a periodic component; `None` for a passive one.
     pub task: Option<TaskProperties>,
     /// The class's references in the order of its declaration, with the services each leads to.
@@ -56,7 +58,12 @@ pub struct LoopSpec {
     pub class: Arc<RegisteredLoop>,
     /// Its values; what is absent takes its default.
     pub values: Vec<(SmolStr, PropertyValue)>,
+    /// The same as the composite writes them.
+    pub written: Written,
 }
+
+/// Values with the texts that a composite gives; `None` where each is the usual text of its value.
+pub type Written = Option<Box<[(SmolStr, PropertyValue)]>>;
 
 /// The target of a reference.
 #[derive(Clone, Debug, PartialEq, Eq)]

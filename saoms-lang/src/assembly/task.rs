@@ -110,19 +110,21 @@ impl TaskProperties {
     }
 
     /// Reads the values that a composite gives. Those that have no effect count as not given: empty texts, and what
-    /// only a restart needs.
+    /// only a restart needs. `renames` are those of `topicRename`, where somebody read that already.
     ///
     /// # Errors
     /// A value is missing or wrong.
-    pub fn read(mut values: Vec<(SmolStr, PropertyValue)>) -> Result<Self, Failure> {
-        let is_of_restart = |name: &str| OF_RESTART.contains(&name);
-        values.retain(|(_, value)| value.as_text().is_none_or(|text| !text.is_empty()));
+    pub(crate) fn read(mut values: Vec<(SmolStr, PropertyValue)>, renames: TopicRenames) -> Result<Self, Failure> {
+        let on_failure = Restart::OnFailure.to_value();
+        let restarts = values.iter().any(|(name, value)| name == "restart" && Some(value) == on_failure.as_ref());
+        values.retain(|(name, value)| {
+            let is_read = !renames.0.is_empty() && name == "topicRename";
+            let is_in_vain = !restarts && OF_RESTART.contains(&name.as_str());
+            !is_read && !is_in_vain && value.as_text().is_none_or(|text| !text.is_empty())
+        });
         let task = Self::from_values(&values)?;
-        if task.restart == Restart::OnFailure || !values.iter().any(|(name, _)| is_of_restart(name)) {
-            return Ok(task);
-        }
-        values.retain(|(name, _)| !is_of_restart(name));
-        Self::from_values(&values)
+        let topic_rename = if renames.0.is_empty() { task.topic_rename } else { renames };
+        Ok(Self { topic_rename, ..task })
     }
 
     /// How many restarts there may be in a run.
@@ -153,8 +155,11 @@ mod tests {
 
     fn stated(values: &[(&str, &str)]) -> String {
         let values = values.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect();
-        let stated = TaskProperties::read(values).unwrap().stated();
-        let shown = stated.iter().map(|(name, value)| format!("{name}={}", value.as_text().unwrap()));
+        let stated = TaskProperties::read(values, TopicRenames::default()).unwrap().stated();
+        let shown = stated.iter().map(|(name, value)| match value {
+            PropertyValue::Scalar(value) => format!("{name}={value}"),
+            other => panic!("{other:?}"),
+        });
         shown.collect::<Vec<_>>().join(" ")
     }
 

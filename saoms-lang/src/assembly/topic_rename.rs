@@ -8,14 +8,20 @@ use std::ops::Range;
 
 use crate::limits::TEXT_FAULTS;
 use saoms_api::PropertyField;
+use saoms_api::host::PropertyValue;
 use saoms_api::host::declaration::{PropertyKind, PropertyShape, Rule};
-use saoms_api::host::{PropertyValue, SmolStr};
 
 /// The new names of topics, as (declared name, name on the bus).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct TopicRenames(pub Vec<(String, String)>);
 
 impl TopicRenames {
+    /// Those of a text: the pairs without fault.
+    pub(crate) fn of(text: &str) -> Self {
+        let pair = |pair: Pair<'_>| (pair.old.text.to_owned(), pair.new.text.to_owned());
+        Self(read(text).0.into_iter().map(pair).collect())
+    }
+
     /// The name on the bus of the topic that a class declares under this name.
     pub fn name<'a>(&'a self, declared: &'a str) -> &'a str {
         self.0.iter().find(|(old, _)| old == declared).map_or(declared, |(_, new)| new)
@@ -27,13 +33,8 @@ impl PropertyField for TopicRenames {
         PropertyShape { optional: true, ..PropertyShape::scalar(Rule::of(PropertyKind::String)) };
 
     /// The pairs without fault: the checker reports the others.
-    fn from_value(value: &PropertyValue) -> Result<Self, String> {
-        value.as_text().and_then(Self::from_text).ok_or_else(|| "expected pairs of names".to_owned())
-    }
-
-    fn from_text(text: &SmolStr) -> Option<Self> {
-        let pair = |pair: Pair<'_>| (pair.old.text.to_owned(), pair.new.text.to_owned());
-        Some(Self(read(text).0.into_iter().map(pair).collect()))
+    fn from_value(value: &PropertyValue, _: &Rule<'_>) -> Result<Self, String> {
+        value.as_text().map(|text| Self::of(text)).ok_or_else(|| "expected pairs of names".to_owned())
     }
 
     fn absent() -> Option<Self> {
@@ -42,7 +43,7 @@ impl PropertyField for TopicRenames {
 
     fn to_value(&self) -> Option<PropertyValue> {
         let pairs: Vec<String> = self.0.iter().map(|(old, new)| format!("{old},{new}")).collect();
-        (!pairs.is_empty()).then(|| PropertyValue::Text(pairs.join("::").into()))
+        (!pairs.is_empty()).then(|| PropertyValue::from(&*pairs.join("::")))
     }
 }
 
@@ -79,7 +80,7 @@ pub(crate) fn parse(text: &str) -> (Vec<Pair<'_>>, Vec<RenameFault>) {
 }
 
 /// The pairs of `text`, and what are none.
-pub(crate) fn read(text: &str) -> (Vec<Pair<'_>>, Vec<RenameFault>) {
+fn read(text: &str) -> (Vec<Pair<'_>>, Vec<RenameFault>) {
     let mut pairs = Vec::new();
     let mut faults = Vec::new();
     if text.trim().is_empty() {

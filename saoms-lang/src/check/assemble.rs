@@ -33,6 +33,7 @@ pub(crate) fn assemble(
             return None;
         }
         let class = fleet.class_of(place)?;
+        let (values, written, _) = check.given.into_own();
         let references = class.references.iter().zip(&wiring[place]);
         let references = references.map(|(declared, targets)| Wire {
             reference: declared.name.clone(),
@@ -51,7 +52,8 @@ pub(crate) fn assemble(
             path: member.path().to_owned(),
             class: Arc::clone(class.class),
             library: classes::library(member.component, fleet.contribution, sources),
-            values: check.given.into_own().0,
+            values,
+            written,
             task: check.task,
             references: references.collect(),
             loops: check.loops?.specs,

@@ -1,10 +1,13 @@
 //! The state of one component, which the phases of a check fill.
 
+use std::rc::Rc;
+
 use crate::assembly::TaskProperties;
 use crate::check::fleet::Member;
 use crate::check::loops;
 use crate::check::properties::findings::Subject;
 use crate::check::properties::given_values::PropertyValues;
+use crate::source::Location;
 
 /// Everything that is found out about one component.
 #[derive(Default)]
@@ -16,6 +19,16 @@ pub(crate) struct ComponentCheck<'a> {
     pub(crate) loops: Option<loops::Resolved<'a>>,
     /// Its task; `None` for a passive component.
     pub(crate) task: Option<TaskProperties>,
+    /// The topics to which it gives new names.
+    pub(crate) renamed: Rc<[Renamed]>,
+}
+
+/// A topic to which a component gives a new name.
+pub(crate) struct Renamed {
+    pub(crate) old: String,
+    pub(crate) old_at: Location,
+    pub(crate) new: String,
+    pub(crate) new_at: Location,
 }
 
 /// Soundness of a component.

@@ -104,7 +104,7 @@ pub fn check(
         severities.overruled(report.diagnostics());
         return None;
     }
-    let places = if options.wiring { rules::traffic::places(&fleet, &checks, report) } else { Vec::new() };
+    let places = if options.wiring { rules::traffic::places(&fleet, &checks) } else { Vec::new() };
     let assembly = assemble::assemble(&fleet, checks, &wiring, sources);
     if let Some(assembly) = assembly.as_ref().filter(|_| options.wiring) {
         let known = report.diagnostics().len();

@@ -162,8 +162,8 @@ fn topics<'a>(
         let class = &fleet.classes[index];
         let is_periodic = class.class.declaration().is_periodic();
         let task = Task { component: member.component, class, given: &given[at] };
-        let renamed = if is_periodic { task.renamed(report) } else { Vec::new() };
-        let renames = TopicRenames(renamed.into_iter().map(|one| (one.old, one.new)).collect());
+        let text = task.text("topicRename").filter(|_| is_periodic);
+        let renames = text.map(|text| TopicRenames::of(&text)).unwrap_or_default();
         let published = class.publishes.iter().map(|topic| (*topic, true));
         let topics = published.chain(class.subscribes.iter().map(|topic| (*topic, false)));
         let uses = topics.map(|(topic, is_published)| {

@@ -3,11 +3,12 @@
 use std::sync::LazyLock;
 
 use saoms_api::TaskInterface;
-use saoms_api::host::declaration::{PropertyKind, Rule, Scalar};
-use saoms_api::host::{Interface, TopicKind};
+use saoms_api::host::declaration::{Bound, PropertyKind, Rule, Scalar};
+use saoms_api::host::{Interface, PropertyValue, TopicKind};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 use serde_json::Value;
+use smol_str::SmolStr;
 
 use super::{DefaultLoops, KnowledgeDeclaration};
 
@@ -120,16 +121,30 @@ impl PropertyDeclaration {
     ///
     /// # Errors
     /// An error says what was found and what was expected, in one line.
-    pub fn check(&self, text: &str) -> Result<Scalar, String> {
+    pub fn check(&self, text: impl Into<SmolStr>) -> Result<Scalar, String> {
         self.with_rule(|rule| rule.check(text))
     }
 
-    /// As [`check`](Self::check), where the value is not asked for.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn allows(&self, text: &str) -> Result<(), String> {
-        self.with_rule(|rule| rule.allows(text))
+    /// The values at both ends of what it allows; `None` where it has none.
+    pub(crate) fn ends(&self) -> Option<[PropertyValue; 2]> {
+        /// Numbers beyond this are as good as this: constructors may make room for them.
+        const LARGE: f64 = 1_000_000.0;
+        let both = |least: &str, most: &str| {
+            let value = |text: &str| self.check(text).ok().map(PropertyValue::from);
+            Some([value(least)?, value(most)?])
+        };
+        match (self.kind, &self.allowed[..]) {
+            _ if self.many => None,
+            (_, [first, .., last]) => both(first, last),
+            (PropertyKind::Boolean, _) => both("false", "true"),
+            _ if !self.is_number() => None,
+            _ => match self.max.as_deref()? {
+                most if most.parse().is_ok_and(|number: f64| number > LARGE) => {
+                    both(self.min.as_deref()?, &LARGE.to_string())
+                }
+                most => both(self.min.as_deref()?, most),
+            },
+        }
     }
 
     /// True if it is a number or a duration.
@@ -146,6 +161,10 @@ impl PropertyDeclaration {
         self.with_rule(|rule| rule.expected())
     }
 
+    fn bound<'t>(&self, text: &'t Option<String>) -> Option<Bound<'t>> {
+        Bound::read(self.kind, text.as_deref()?)
+    }
+
     fn with_rule<R>(&self, ask: impl FnOnce(&Rule<'_>) -> R) -> R {
         // Few have any.
         let allowed = match &self.allowed[..] {
@@ -154,9 +173,9 @@ impl PropertyDeclaration {
         };
         ask(&Rule {
             kind: self.kind,
-            min: self.min.as_deref(),
-            max: self.max.as_deref(),
-            exclusive_max: self.exclusive_max.as_deref(),
+            min: self.bound(&self.min),
+            max: self.bound(&self.max),
+            exclusive_max: self.bound(&self.exclusive_max),
             unit: self.unit.as_deref(),
             allowed: &allowed,
             non_empty: self.non_empty,
@@ -258,6 +277,16 @@ impl ClassDeclaration {
         let own = |service: &ServiceDeclaration| service.name == TASK_SERVICE.name;
         let task = (self.is_periodic() && !self.services.iter().any(own)).then(|| &*TASK_SERVICE);
         self.services.iter().chain(task)
+    }
+
+    /// The loops of a component that has these values, unless its composite says otherwise.
+    pub fn loops_of(&self, values: &[(SmolStr, PropertyValue)]) -> &[String] {
+        let chosen =
+            self.loops.property.as_ref().and_then(|property| match values.iter().find(|(name, _)| name == property) {
+                Some((_, PropertyValue::Scalar(value))) => Some(value.text()),
+                _ => self.property(property)?.default.as_ref().map(SmolStr::from),
+            });
+        self.loops.of(chosen.as_deref())
     }
 
     /// Its property of this name.

@@ -43,8 +43,12 @@ pub(super) fn class(text: &str, provider: &Arc<dyn Provider>) -> Result<Vec<Regi
         provider: Arc::clone(provider),
     };
     let also = declaration.also.iter().map(|alias| {
-        let presets = alias.preset.iter().map(|(name, value)| (name.into(), value.as_str().into()));
-        class(&alias.name, presets.collect())
+        // All are known, and each is what its property allows.
+        let preset = |(name, text): (&String, &String)| {
+            let value = declaration.property(name)?.check(text).ok()?;
+            Some((name.into(), value.into()))
+        };
+        class(&alias.name, alias.preset.iter().filter_map(preset).collect())
     });
     Ok(std::iter::once(class(&declaration.name, Vec::new())).chain(also).collect())
 }

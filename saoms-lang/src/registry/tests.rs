@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use saoms_api::host::declaration::PropertyKind;
+use saoms_api::host::declaration::{PropertyKind, Scalar};
 use saoms_api::host::{DynLoop, PropertyValue, Registration};
 use saoms_api::{Class, Component, Failure, Message, Properties, Topic};
 use serde_json::{Value, json};
@@ -62,7 +62,7 @@ fn a_class_is_found_by_all_its_names_with_their_presets() {
     assert_eq!(names(&registry), ["a.Eye", "a.Eye001"]);
     let first = registry.get("a.Eye001").unwrap();
     assert!(first.is_alias() && !registry.get("a.Eye").unwrap().is_alias());
-    assert_eq!(first.presets(), [("number".into(), "1".into())]);
+    assert_eq!(first.presets(), [("number".into(), Scalar::Integer(1.into()).into())]);
     assert!(first.construct(first.presets()).is_ok());
     assert!(first.construct(&[]).is_err(), "presets are among the values that the caller gives");
 

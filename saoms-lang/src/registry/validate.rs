@@ -47,7 +47,7 @@ fn loops(class: &ClassDeclaration) -> Result<(), String> {
         let Some(property) = class.property(name) else {
             return Err(format!("its loops are chosen by `{name}`, which is no property"));
         };
-        if let Some(value) = class.loops.lists.keys().find(|value| property.check(value).is_err()) {
+        if let Some(value) = class.loops.lists.keys().find(|value| property.check(*value).is_err()) {
             return Err(format!("its loops are chosen by `{name}`, which cannot be `{value}`"));
         }
     }
@@ -83,7 +83,7 @@ fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {
             property.check(default).map_err(|message| format!("the default of property `{name}`: {message}"))?;
         }
         for bound in [&property.min, &property.max, &property.exclusive_max].into_iter().flatten() {
-            if saoms_api::host::declaration::parse_scalar(property.kind, bound).is_none() {
+            if saoms_api::host::declaration::parse_scalar(property.kind, &bound.into()).is_none() {
                 return Err(format!("the bound `{bound}` of property `{name}` is no {}", property.kind.name()));
             }
         }

@@ -109,7 +109,10 @@
 //! `{"name", "operations": [{"name", "arguments": [{"name", "type"}], "reply": type}]}`; the reply is `null` where
 //! there is none. The number of an operation is its place. Arguments are encoded like the fields of a message.
 
+mod bound;
+mod kind;
 mod rule;
+mod scalar;
 mod text;
 
 /// The part of a topic's declaration that marks it as [optional](crate::Topic::optional).
@@ -121,6 +124,9 @@ pub const fn optional_topic(is_optional: bool) -> ConstText {
 }
 
 pub use crate::property::PropertyShape;
-pub(crate) use rule::trim;
-pub use rule::{PlainBounds, PropertyKind, Rule, Scalar, parse_scalar};
+pub use bound::Bound;
+pub use kind::PropertyKind;
+pub use rule::Rule;
+pub(crate) use scalar::trim;
+pub use scalar::{Integer, Scalar, parse_scalar};
 pub use text::{ConstText, text};

@@ -20,8 +20,6 @@ pub(crate) struct PropertyTable<'r> {
     pub(crate) all: Vec<TableEntry<'r>>,
     /// The places of those that no two components may share.
     pub(crate) unique: Vec<usize>,
-    /// The place of that whose value chooses among the lists of loops of the class.
-    pub(crate) choice: Option<usize>,
     /// The places of those that have to be given.
     pub(crate) required: Vec<usize>,
     by_name: HashMap<&'r str, usize>,
@@ -90,7 +88,6 @@ impl<'r> PropertyTable<'r> {
                 }
             }
         }
-        table.choice = declaration.loops.property.as_deref().and_then(|name| table.place(name));
         table.unique = table.places(|entry| entry.is_task_id() || entry.main.unique.is_some());
         table.required = table.places(TableEntry::is_required);
         table
@@ -109,7 +106,6 @@ impl<'r> PropertyTable<'r> {
             all: properties.iter().map(|own| TableEntry::of(own, true)).collect(),
             by_name: places.map(|(place, own)| (own.name.as_str(), place)).collect(),
             unique: Vec::new(),
-            choice: None,
             required: Vec::new(),
             presets: &[],
             is_passive: false,

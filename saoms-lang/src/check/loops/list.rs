@@ -3,8 +3,6 @@
 
 use std::collections::HashMap;
 
-use saoms_api::host::PropertyValue;
-
 use super::{Planned, order};
 use crate::check::fleet::Member;
 use crate::check::fleet::class_index::ClassIndex;
@@ -100,17 +98,6 @@ pub(super) fn plan<'a>(
     (loops, is_sound)
 }
 
-/// The value that says which loops of its class a component has.
-pub(super) fn choice<'c>(class: &'c ClassIndex<'_>, checked: &'c PropertyValues) -> Option<&'c str> {
-    let place = class.table.choice?;
-    let slot = &class.table.all[place];
-    let given = checked.at(place).map(|given| given.value);
-    match given.or_else(|| class.table.preset(&slot.name)) {
-        Some(PropertyValue::Text(text)) => Some(text.trim()),
-        _ => slot.own()?.default.as_deref(),
-    }
-}
-
 /// The loops that a component has unless the composite says otherwise.
 fn by_default<'a>(
     member: &Member<'a>,
@@ -121,7 +108,7 @@ fn by_default<'a>(
 ) -> (Vec<Planned<'a>>, bool) {
     let mut is_sound = true;
     let mut loops = Vec::new();
-    for name in class.class.declaration().loops.of(choice(class, checked)) {
+    for name in class.class.declaration().loops_of(checked.own()) {
         match registry.get_loop(name) {
             Some(class) => {
                 let name = class.declaration().short_name();

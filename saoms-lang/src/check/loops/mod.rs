@@ -7,8 +7,6 @@ mod team;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use smol_str::SmolStr;
-
 use crate::assembly::LoopSpec;
 use crate::check::fleet::property_table::PropertyTable;
 use crate::check::fleet::{Fleet, Kind, Member};
@@ -68,7 +66,7 @@ pub(crate) fn resolve<'a>(
     // The class of each place together with these loops.
     let mut known: HashMap<(usize, Vec<&str>), usize> = HashMap::new();
     // The loops of components that say nothing about them, with the place of their class together with these: by the
-    // place of the class alone, and the value that chooses among its lists of loops.
+    // place of the class alone, and which of its lists of loops it is.
     let mut usual = HashMap::new();
     let mut all = Vec::with_capacity(given.len());
     for (place, given) in given.iter().enumerate() {
@@ -81,7 +79,8 @@ pub(crate) fn resolve<'a>(
         };
         let class = &fleet.classes[index];
         let says_nothing = member.component.loops.is_empty();
-        let choice = says_nothing.then(|| (index, list::choice(class, given).map(SmolStr::new)));
+        let list = class.class.declaration().loops_of(given.own());
+        let choice = says_nothing.then_some((index, list.as_ptr()));
         if let Some((with, specs)) = choice.as_ref().and_then(|choice| usual.get(choice)) {
             fleet.members[place].kind = Kind::Class(*with);
             all.push(Some(Resolved { specs: Arc::clone(specs), changed: Vec::new() }));
@@ -125,7 +124,8 @@ fn resolved<'a>(
             one.element.into_iter().for_each(|element| sources(element, member, parameters, report));
             continue;
         };
-        let mut spec = LoopSpec { name: one.name.to_owned(), class: Arc::clone(class), values: Vec::new() };
+        let (values, written) = Default::default();
+        let mut spec = LoopSpec { name: one.name.to_owned(), class: Arc::clone(class), values, written };
         if let Some(element) = one.element {
             let table = PropertyTable::of_loop(class);
             let giver = Giver::looping(element, member);
@@ -133,8 +133,8 @@ fn resolved<'a>(
             if !given.is_sound {
                 continue;
             }
-            let (values, places) = given.into_own();
-            spec.values = values;
+            let places;
+            (spec.values, spec.written, places) = given.into_own();
             changed.push(Changed { place: specs.len(), element, places });
         }
         specs.push(spec);

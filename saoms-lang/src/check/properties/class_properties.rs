@@ -2,7 +2,7 @@
 
 use saoms_api::host::PropertyValue;
 
-use super::conversion::{Source, Target, convert};
+use super::conversion::{Converted, Source, Target, convert};
 use super::given_values::{PropertyValues, ValuePlace};
 use super::{Giver, given_twice, missing};
 use crate::check::fleet::property_table::{PropertyTable, TableEntry};
@@ -26,8 +26,8 @@ pub(crate) fn check<'a>(
 ) -> PropertyValues {
     let mut slots = Vec::new();
     slots.resize_with(table.all.len(), Slot::default);
-    let (unsure, unknown) = (Vec::new(), Vec::new());
-    let mut check = PropertyCheck { giver, table, parameters, report, slots, unsure, unknown };
+    let (found, unsure, unknown) = Default::default();
+    let mut check = PropertyCheck { giver, table, parameters, report, slots, found, unsure, unknown };
     for property in giver.properties {
         check.given(property);
     }
@@ -45,20 +45,22 @@ struct PropertyCheck<'c, 'm, 'r, 'a> {
     table: &'c PropertyTable<'a>,
     parameters: &'c mut Parameters<'a>,
     report: &'c mut Report<'r>,
-    /// The values of each property of the table.
+    /// The state of each property of the table.
     slots: Vec<Slot<'a>>,
+    found: Vec<(PropertyValue, ValuePlace)>,
     /// The places of properties whose values are not known, since a fault of theirs is reported.
     unsure: Vec<usize>,
     /// Names that no property has.
     unknown: Vec<&'a str>,
 }
 
-/// The values of a property.
+/// The state of a property.
 #[derive(Default)]
 struct Slot<'a> {
     /// The first element that gives it.
     element: Option<&'a Property>,
-    value: Option<(PropertyValue, ValuePlace)>,
+    /// True if it has a value.
+    is_found: bool,
     /// True if its `source` is right, and has no value.
     is_unset: bool,
 }
@@ -107,7 +109,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
             self.slots[place].is_unset = true;
             return Ok(());
         }
-        self.convert(place, raw, source.unwrap_or(property.tag()), source)
+        self.convert(place, &raw, source.unwrap_or(property.tag()), source)
     }
 
     /// Checks a property that the file beside the class gives, where the composite does not.
@@ -118,13 +120,13 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         let found = raw(default, document, None, self.report);
         let found = found.map(|found| found.inside_elements_of(default));
         let by = Some(self.giver.name.location);
-        if found.and_then(|found| self.convert(place, found, default.tag(), by)).is_err() {
+        if found.and_then(|found| self.convert(place, &found, default.tag(), by)).is_err() {
             self.unsure.push(place);
         }
     }
 
     /// Converts what was found for a property to what the class takes.
-    fn convert(&mut self, place: usize, found: Raw<'_>, at: Location, source: Option<Location>) -> Judged<()> {
+    fn convert(&mut self, place: usize, found: &Raw<'_>, at: Location, source: Option<Location>) -> Judged<()> {
         let mut places: Vec<Location> = found.0.iter().map(Piece::location).collect();
         if places.is_empty() {
             places.push(at);
@@ -132,16 +134,22 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         let entry = &self.table.all[place];
         let (faulty, is_copy) = (&*self.parameters.faulty, self.giver.member.is_copy);
         let from = source.map(|at| Source { at, faulty, is_copy });
-        let target = Target { outer: None, declaration: entry.main, also: entry.also(), at, source: from };
-        let value = convert(found, target, self.report).ok_or(Faulty)?;
-        self.slots[place].value = Some((value, ValuePlace { property: place, places: places.into(), source }));
+        let target = Target { outer: None, declaration: entry.main, at, source: from };
+        let Converted { value, written } = convert(found, target, self.report).ok_or(Faulty)?;
+        // One value serves both, unless they are of two types.
+        let as_task = entry.also().map(|declaration| convert(found, Target { declaration, ..target }, self.report));
+        let as_task = as_task.map(|converted| converted.ok_or(Faulty)).transpose()?.map(|converted| converted.value);
+        let as_task = as_task.filter(|as_task| *as_task != value).map(Box::new);
+        let at = ValuePlace { property: place, places: places.into(), source, written: written.map(Box::new), as_task };
+        self.found.push((value, at));
+        self.slots[place].is_found = true;
         Ok(())
     }
 
     /// Checks that a property that has to be given is. What is given wrongly is reported already.
     fn required(&mut self, place: usize) {
         let (slot, declaration) = (&self.slots[place], self.table.all[place].main);
-        if slot.value.is_some() || self.table.preset(&declaration.name).is_some() {
+        if slot.is_found || self.table.preset(&declaration.name).is_some() {
             return;
         }
         self.unsure.push(place);
@@ -167,8 +175,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         }
         self.unsure.sort_unstable();
         self.unsure.dedup();
-        let given = self.slots.into_iter().map(|slot| slot.value);
-        PropertyValues::of(self.table, given, self.unsure, is_sound)
+        PropertyValues::of(self.table, self.found, self.unsure, is_sound)
     }
 
     /// The places of the properties that an unknown name may stand for: those most alike, or else any number not given.
@@ -178,9 +185,8 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
             return near.into_iter().filter_map(|near| self.table.place(near)).collect();
         }
         let all = self.table.all.iter().zip(&self.slots).enumerate();
-        let open = all.filter(|(_, (entry, slot))| {
-            slot.value.is_none() && entry.own().is_some_and(PropertyDeclaration::is_number)
-        });
+        let open =
+            all.filter(|(_, (entry, slot))| !slot.is_found && entry.own().is_some_and(PropertyDeclaration::is_number));
         open.map(|(place, _)| place).collect()
     }
 }

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use saoms_api::host::PropertyValue;
-use saoms_api::host::declaration::PropertyKind;
+use saoms_api::host::declaration::{PropertyKind, Scalar};
+use smol_str::SmolStr;
 
 use super::wrong_text;
 use crate::check::report::Report;
@@ -21,8 +22,6 @@ pub(crate) struct Target<'p> {
     /// The property that it is a part of.
     pub(crate) outer: Option<&'p Target<'p>>,
     pub(crate) declaration: &'p PropertyDeclaration,
-    /// A second declaration, which has to accept the value as well.
-    pub(crate) also: Option<&'p PropertyDeclaration>,
     /// The place of diagnostics without a value to point at.
     pub(crate) at: Location,
     /// The `source` that leads to a value elsewhere.
@@ -67,14 +66,31 @@ impl Target<'_> {
     }
 }
 
+/// A value, converted.
+pub(crate) struct Converted {
+    pub(crate) value: PropertyValue,
+    /// The value with the texts that the composite gives, where one of them is not the usual one of its scalar.
+    pub(crate) written: Option<PropertyValue>,
+}
+
+impl Converted {
+    /// A value that consists of these.
+    fn of(parts: Vec<Self>, whole: impl Fn(Vec<PropertyValue>) -> PropertyValue) -> Self {
+        let written = |part: &Self| part.written.as_ref().unwrap_or(&part.value).clone();
+        let is_unusual = parts.iter().any(|part| part.written.is_some());
+        let written = is_unusual.then(|| whole(parts.iter().map(written).collect()));
+        Self { value: whole(parts.into_iter().map(|part| part.value).collect()), written }
+    }
+}
+
 /// The value of a property. `None` when there is a fault, which is reported.
-pub(crate) fn convert(raw: Raw<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
-    let mut pieces = raw.0;
+pub(crate) fn convert(raw: &Raw<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<Converted> {
+    let pieces = &raw.0;
     if target.declaration.many {
         // All are looked at, so that all faults are found.
-        let values: Vec<Option<PropertyValue>> =
-            pieces.into_iter().map(|piece| one_value(piece, target, report)).collect();
-        return values.into_iter().collect::<Option<_>>().map(PropertyValue::Many);
+        let values: Vec<Option<Converted>> = pieces.iter().map(|piece| one_value(piece, target, report)).collect();
+        let values = values.into_iter().collect::<Option<_>>()?;
+        return Some(Converted::of(values, |values| PropertyValue::Many(values.into())));
     }
     if let [first, second, ..] = &pieces[..] {
         let message = format!("the property {} takes one value, and here are {}", target.quoted(), pieces.len());
@@ -86,30 +102,33 @@ pub(crate) fn convert(raw: Raw<'_>, target: Target<'_>, report: &mut Report<'_>)
         PropertyKind::Complex => Piece::Elements([].into(), None),
         _ => Piece::text(Text::new("".into(), target.at), None),
     };
-    one_value(pieces.pop().unwrap_or_else(nothing), target, report)
+    match pieces.first() {
+        Some(piece) => one_value(piece, target, report),
+        None => one_value(&nothing(), target, report),
+    }
 }
 
-fn one_value(piece: Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
+fn one_value(piece: &Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> Option<Converted> {
     let declaration = target.declaration;
     let one = match (piece, declaration.kind) {
         (Piece::Elements(elements, instance), PropertyKind::Complex) => {
-            return complex_value(&elements, instance, target, report);
+            return complex_value(elements, *instance, target, report);
         }
         (Piece::Whole(_, root, instance), PropertyKind::Complex) => {
             // A part by its name, or all of them in an element around them.
             let is_part = declaration.properties.iter().any(|part| part.name == root.local_name());
-            let elements = if is_part { vec![root] } else { root.children().collect() };
-            return complex_value(&elements, instance, target, report);
+            let elements = if is_part { vec![*root] } else { root.children().collect() };
+            return complex_value(&elements, *instance, target, report);
         }
         (Piece::Text(text), PropertyKind::Complex) => {
-            let found = if text.is_empty() { "nothing".to_owned() } else { quoted(&text) };
+            let found = if text.is_empty() { "nothing".to_owned() } else { quoted(text) };
             let (name, expected) = (target.quoted(), declaration.expected());
             let message = format!("property {name}: found {found}, expected {expected}");
             let code = if text.is_empty() { &codes::VALUE_EMPTY } else { &codes::VALUE_TYPE };
             Diagnostic::new(code, text.location, message).help("write each as an element inside")
         }
         (Piece::Whole(text, ..), _) => return text_value(text, target, report),
-        (Piece::Text(text), _) => return text_value(&text, target, report),
+        (Piece::Text(text), _) => return text_value(text, target, report),
         (Piece::Elements(elements, _), _) => {
             let at = elements.first().map_or(target.at, |first| first.name_location());
             let (name, expected) = (target.quoted(), declaration.expected());
@@ -121,17 +140,15 @@ fn one_value(piece: Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> O
     None
 }
 
-/// The value of a property that takes one text, which all declarations have to accept.
-fn text_value(text: &Text, target: Target<'_>, report: &mut Report<'_>) -> Option<PropertyValue> {
-    for declaration in [Some(target.declaration), target.also].into_iter().flatten() {
-        if let Err(message) = declaration.allows(text) {
-            let target = Target { declaration, ..target };
-            let one = wrong_text::diagnostic(text, target, &message, report.has_index());
-            tell(one, target, report);
-            return None;
-        }
-    }
-    Some(PropertyValue::Text(text.value.clone()))
+/// The value of a property that takes one text.
+fn text_value(text: &Text, target: Target<'_>, report: &mut Report<'_>) -> Option<Converted> {
+    let wrong = |message: String| {
+        let one = wrong_text::diagnostic(text, target, &message, report.has_index());
+        tell(one, target, report);
+    };
+    let value = target.declaration.check(text.value.clone()).map_err(wrong).ok()?;
+    let written = (!value.is_usually(text)).then(|| Scalar::Text(text.value.clone()).into());
+    Some(Converted { value: value.into(), written })
 }
 
 /// The value of a complex property, of its parts.
@@ -140,13 +157,13 @@ fn complex_value(
     instance: Option<&Instance>,
     target: Target<'_>,
     report: &mut Report<'_>,
-) -> Option<PropertyValue> {
+) -> Option<Converted> {
     let parts = &target.declaration.properties;
     let given = given_parts(elements, target, report);
     let mut is_sound = given.iter().map(Vec::len).sum::<usize>() == elements.len();
-    let mut values = Vec::new();
+    let (mut names, mut values): (Vec<SmolStr>, Vec<_>) = Default::default();
     for (declaration, given) in parts.iter().zip(given) {
-        let inner = Target { outer: Some(&target), declaration, also: None, ..target };
+        let inner = Target { outer: Some(&target), declaration, ..target };
         let Some(first) = given.first() else {
             if declaration.required {
                 let (name, expected) = (inner.quoted(), declaration.expected());
@@ -158,12 +175,16 @@ fn complex_value(
             continue;
         };
         let inner = Target { at: first.name_location(), ..inner };
-        match convert(Raw::of_elements(&given, instance), inner, report) {
-            Some(value) => values.push((declaration.name.as_str().into(), value)),
+        match convert(&Raw::of_elements(&given, instance), inner, report) {
+            Some(value) => {
+                names.push(declaration.name.as_str().into());
+                values.push(value);
+            }
             None => is_sound = false,
         }
     }
-    is_sound.then_some(PropertyValue::Complex(values.into()))
+    let named = |values: Vec<_>| PropertyValue::Complex(names.iter().cloned().zip(values).collect());
+    is_sound.then(|| Converted::of(values, named))
 }
 
 /// The elements of each part of a complex property. Others are reported, as are second ones of a single part.

@@ -68,40 +68,45 @@ pub(crate) fn diagnostic<'s>(
     }
     if let (Some(meant), Some(text)) = (finding.replacement(), place.text) {
         let written = if place.is_xml { escaped(meant) } else { meant.to_owned() };
-        one = one.suggest(replacing(text, meant), place.at, written);
+        one = one.suggest(replacing(&text, meant), place.at, written);
     }
     one.help.extend(finding.helps().iter().cloned());
     Some(one)
 }
 
 /// The location of a place in the files.
-struct Located<'a> {
+struct Located {
     at: Location,
     source: Option<Location>,
     /// The text there, if it is a part of a value.
-    text: Option<&'a str>,
+    text: Option<SmolStr>,
     /// True if a text has to be escaped to stand there.
     is_xml: bool,
 }
 
 /// The place in the files: the component's name for a property that the composite does not give.
-fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Located<'a> {
+fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Located {
     let nowhere = Located { at: subject.at, source: None, text: None, is_xml: false };
     let given = place.property_name().and_then(|name| subject.value(name));
     let Some((values, given)) = given else { return nowhere };
     let Some(&first) = given.places.first() else { return nowhere };
     let whole = Located { at: first, source: given.source, ..nowhere };
     let Some((index, part)) = place.value_part() else { return whole };
-    let value = match values {
+    let one_of = |values: &'a PropertyValue| match values {
         PropertyValue::Many(values) => values.get(index),
         one => (index == 0).then_some(one),
     };
-    let (Some(PropertyValue::Text(value)), Some(&at)) = (value, given.places.get(index)) else {
+    let (Some(PropertyValue::Scalar(value)), Some(&at)) = (one_of(values), given.places.get(index)) else {
         return whole;
     };
+    // The part is one of the usual text, which is not there.
+    if given.written.as_deref().is_some_and(|written| one_of(written) != one_of(values)) {
+        return Located { at, ..whole };
+    }
+    let value = value.text();
     Located {
-        text: value.get(part.clone()),
-        at: report.parts_of(value, at).part(part),
+        text: value.get(part.clone()).map(SmolStr::from),
+        at: report.parts_of(&value, at).part(part),
         source: given.source,
         is_xml: report.is_xml(at.file),
     }

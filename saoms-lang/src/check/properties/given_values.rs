@@ -3,10 +3,12 @@
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
+use crate::assembly::Written;
 use crate::check::fleet::property_table::PropertyTable;
 use crate::source::{Location, Text};
 
-/// The values of the properties of a component or a loop: each converted once, with its place from then on.
+/// The values of the properties of a component or a loop: each converted once, when it is found, and with its place and
+/// its text from then on.
 #[derive(Default)]
 pub(crate) struct PropertyValues {
     /// In the order of the table: those of the class first, presets among them.
@@ -30,60 +32,71 @@ pub(crate) struct ValuePlace {
     pub(crate) places: Box<[Location]>,
     /// The `source` that leads there.
     pub(crate) source: Option<Location>,
+    /// The value with the texts that the composite gives, where one of them is not the usual one of its scalar.
+    pub(crate) written: Option<Box<PropertyValue>>,
+    /// The value as the task has it, where its declaration is of another type than that of the class.
+    pub(crate) as_task: Option<Box<PropertyValue>>,
 }
 
 /// A value that a composite gives.
 #[derive(Clone, Copy)]
 pub(crate) struct GivenValue<'v> {
     pub(crate) value: &'v PropertyValue,
+    at: &'v ValuePlace,
     /// Its place, the first one of several.
     pub(crate) place: Location,
 }
 
 impl GivenValue<'_> {
-    /// The value as a text with its place; `None` if it is not one text, or a blank one.
+    /// The text that the composite gives with its place; `None` if it is not one text, or a blank one.
     pub(crate) fn text(&self) -> Option<Text> {
-        let text = self.value.as_text().filter(|text| !text.trim().is_empty())?;
-        Some(Text::new(text.clone(), self.place))
+        let PropertyValue::Scalar(written) = self.at.written.as_deref().unwrap_or(self.value) else { return None };
+        Some(Text::new(written.text(), self.place)).filter(|text| !text.trim().is_empty())
+    }
+
+    /// The value as the task of the component has it.
+    pub(crate) fn as_task(&self) -> &PropertyValue {
+        self.at.as_task.as_deref().unwrap_or(self.value)
     }
 }
 
 impl PropertyValues {
-    /// The values of each property of a table, in its order, with what the class presets for others.
+    /// Values that were found for properties of a table, with what the class presets for others.
     pub(crate) fn of(
         table: &PropertyTable<'_>,
-        given: impl Iterator<Item = Option<(PropertyValue, ValuePlace)>>,
+        mut found: Vec<(PropertyValue, ValuePlace)>,
         unknown: Vec<usize>,
         is_sound: bool,
     ) -> Self {
-        let mut all = Self { unknown, is_sound, ..Self::default() };
-        for (property, (entry, given)) in table.all.iter().zip(given).enumerate() {
-            let by_class = ValuePlace { property, ..ValuePlace::default() };
-            let preset = || Some((table.preset(&entry.name)?.clone(), by_class));
-            let Some((value, place)) = given.or_else(preset) else { continue };
-            all.values.push((entry.name.clone(), value));
-            all.places.push(place);
-            all.own += usize::from(entry.own().is_some());
+        let given = found.len();
+        for (name, value) in table.presets {
+            let Some(property) = table.place(name) else { continue };
+            if found[..given].iter().all(|(_, at)| at.property != property) {
+                found.push((value.clone(), ValuePlace { property, ..ValuePlace::default() }));
+            }
         }
-        all
+        found.sort_by_key(|(_, at)| at.property);
+        let own = found.iter().filter(|(_, at)| table.all[at.property].own().is_some()).count();
+        let named = found.into_iter().map(|(value, at)| ((table.all[at.property].name.clone(), value), at));
+        let (values, places) = named.unzip();
+        Self { values, places, own, unknown, is_sound }
     }
 
     /// The value that the composite gives the property of this name.
-    pub(crate) fn get(&self, table: &PropertyTable<'_>, name: &str) -> Option<GivenValue<'_>> {
-        self.at(table.place(name)?)
-    }
-
-    /// The value that the composite gives the property of this index.
-    pub(crate) fn at(&self, property: usize) -> Option<GivenValue<'_>> {
-        let index = self.places.iter().position(|place| place.property == property)?;
-        Some(GivenValue { value: &self.values[index].1, place: *self.places[index].places.first()? })
+    pub(crate) fn get(&self, name: &str) -> Option<GivenValue<'_>> {
+        let index = self.values.iter().position(|(known, _)| known == name)?;
+        let (value, at) = (&self.values[index].1, &self.places[index]);
+        Some(GivenValue { value, at, place: *at.places.first()? })
     }
 
     /// The values of task properties, presets included.
     pub(crate) fn of_task(&self, table: &PropertyTable<'_>) -> Vec<(SmolStr, PropertyValue)> {
         let all = self.values.iter().zip(&self.places);
         let of_task = all.filter(|(_, place)| table.all[place.property].task.is_some());
-        of_task.map(|(value, _)| value.clone()).collect()
+        let as_task = |((name, value), at): (&(SmolStr, PropertyValue), &ValuePlace)| {
+            (name.clone(), at.as_task.as_deref().unwrap_or(value).clone())
+        };
+        of_task.map(as_task).collect()
     }
 
     /// The values of the class's own properties, as constructors take them.
@@ -91,10 +104,13 @@ impl PropertyValues {
         &self.values[..self.own]
     }
 
-    /// The same with the place of each.
-    pub(crate) fn into_own(mut self) -> (Vec<(SmolStr, PropertyValue)>, Vec<ValuePlace>) {
+    /// The same, as the composite writes them where that is not as usual, and the place of each.
+    pub(crate) fn into_own(mut self) -> (Vec<(SmolStr, PropertyValue)>, Written, Vec<ValuePlace>) {
         self.values.truncate(self.own);
-        (self.values, self.places)
+        let all = self.values.iter().zip(&self.places);
+        let written = all.map(|((name, value), at)| (name.clone(), at.written.as_deref().unwrap_or(value).clone()));
+        let written = self.places[..self.own].iter().any(|at| at.written.is_some()).then(|| written.collect());
+        (self.values, written, self.places)
     }
 
     pub(crate) fn places(&self) -> &[ValuePlace] {

@@ -48,12 +48,12 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
     }
 }
 
-fn code(text: &str, declaration: &PropertyDeclaration, said: &str) -> &'static Code {
+fn code(text: &Text, declaration: &PropertyDeclaration, said: &str) -> &'static Code {
     if text.trim().is_empty() {
         return &codes::VALUE_EMPTY;
     }
     let beyond = [" is out of range", " is negative"].into_iter().any(|what| said.starts_with(what));
-    match parse_scalar(declaration.kind, text) {
+    match parse_scalar(declaration.kind, &text.value) {
         _ if beyond => &codes::VALUE_RANGE,
         Some(_) => &codes::VALUE_NOT_ALLOWED,
         None => &codes::VALUE_TYPE,
@@ -82,7 +82,7 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
         (PropertyKind::Duration, _) => duration(&lower).unwrap_or_else(|| lower.replace(',', ".")),
         _ => lower,
     };
-    (said != text && declaration.check(&said).is_ok()).then_some(said)
+    (said != text && declaration.check(said.as_str()).is_ok()).then_some(said)
 }
 
 /// A number without the unit that people write behind numbers of its kind.

@@ -13,7 +13,6 @@ use crate::check::report::Report;
 use crate::check::tasks::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::registry::PropertyDeclaration;
-use saoms_api::host::declaration::PropertyKind;
 use saoms_api::host::{PropertyValue, contain::contained};
 use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
@@ -33,13 +32,13 @@ fn partly(
     if unsure.is_empty() {
         return judge(|| construct(subject.values), subject, class.class.name(), repeated, report);
     }
-    let ends: Option<Vec<[String; 2]>> = unsure.iter().map(|one| ends(one)).collect();
+    let ends: Option<Vec<[PropertyValue; 2]>> = unsure.iter().map(|one| one.ends()).collect();
     let Some(ends) = ends else { return };
     let is_unsure = |name: &str| unsure.iter().any(|one| one.name == name);
     let with = |end: usize| {
         let known = subject.values.iter().filter(|(name, _)| !is_unsure(name)).cloned();
         let assumed = unsure.iter().zip(&ends);
-        let assumed = assumed.map(|(one, ends)| (one.name.as_str().into(), PropertyValue::from(&*ends[end])));
+        let assumed = assumed.map(|(one, ends)| (one.name.as_str().into(), ends[end].clone()));
         known.chain(assumed).collect()
     };
     let mut tries: Vec<Vec<(SmolStr, PropertyValue)>> = vec![with(0), with(1)];
@@ -60,29 +59,6 @@ fn partly(
     };
     let found: Vec<Finding> = found.unwrap_or_default().into_iter().filter(is_given).collect();
     findings(&found, subject, class.class.name(), repeated, report);
-}
-
-/// The values at both ends of what a property allows; `None` where it has none.
-fn ends(declaration: &PropertyDeclaration) -> Option<[String; 2]> {
-    /// Numbers beyond this are as good as this: constructors may make room for them.
-    const LARGE: f64 = 1_000_000.0;
-    if declaration.many {
-        return None;
-    }
-    if let [first, .., last] = &declaration.allowed[..] {
-        return Some([first.clone(), last.clone()]);
-    }
-    if declaration.kind == PropertyKind::Boolean {
-        return Some(["false".to_owned(), "true".to_owned()]);
-    }
-    let least = declaration.min.clone()?;
-    let most = declaration.max.clone()?;
-    let most = match most.parse::<f64>() {
-        Ok(number) if number > LARGE => LARGE.to_string(),
-        _ => most,
-    };
-    let fits = |text: &String| declaration.check(text).is_ok();
-    (declaration.is_number() && fits(&least) && fits(&most)).then_some([least, most])
 }
 
 /// Reports the findings of a constructor at the values that they are about, any other judgement at the name.

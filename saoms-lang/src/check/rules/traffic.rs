@@ -1,40 +1,37 @@
 //! The wiring report of topics: ends without a counterpart, names that are nearly the same, queues that overflow.
 
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 use std::time::Duration;
 
 use saoms_api::host::{TopicKind, format_duration};
 
 use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic};
-use crate::check::component::ComponentCheck;
+use crate::check::component::{ComponentCheck, Renamed};
 use crate::check::fleet::{Fleet, Member};
 use crate::check::report::Report;
 use crate::check::rules::similar_names::{Name, Similar};
 use crate::check::tasks::Task;
-use crate::check::tasks::renames::Renamed;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
 
 /// The places of a component, and of the names of its topics.
 pub(crate) struct ComponentPlaces {
     pub(crate) name: Location,
-    pub(crate) renamed: Vec<Renamed>,
+    pub(crate) renamed: Rc<[Renamed]>,
     /// The place of its `queue`.
     pub(crate) queue: Option<Location>,
 }
 
 /// The places of the components of the assembly.
-pub(crate) fn places(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], report: &Report<'_>) -> Vec<ComponentPlaces> {
+pub(crate) fn places(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>]) -> Vec<ComponentPlaces> {
     let runs = fleet.members.iter().enumerate().filter(|(_, member)| member.runs());
     let place = |(place, member): (usize, &Member<'_>)| {
-        let (component, given) = (member.component, &checks[place].given);
+        let (component, check) = (member.component, &checks[place]);
+        let renamed = Rc::clone(&check.renamed);
         let class = fleet.class_of(place).filter(|class| class.class.declaration().is_periodic());
-        let task = class.map(|class| Task { component, class, given });
-        ComponentPlaces {
-            name: component.name.location,
-            renamed: task.as_ref().map_or_else(Vec::new, |task| task.renamed(report)),
-            queue: task.and_then(|task| task.place("queue")),
-        }
+        let task = class.map(|class| Task { component, class, given: &check.given });
+        ComponentPlaces { name: component.name.location, renamed, queue: task.and_then(|task| task.place("queue")) }
     };
     runs.map(place).collect()
 }
@@ -85,7 +82,7 @@ impl All<'_> {
     fn at(&self, end: &TopicEnd, topic: &TrafficTopic) -> Location {
         let place = &self.places[end.component];
         let renamed = place.renamed.iter().find(|one| one.new == topic.name);
-        renamed.map_or(place.name, |one| one.at)
+        renamed.map_or(place.name, |one| one.new_at)
     }
 
     /// `component X`, or `component X and 3 others`.

@@ -9,15 +9,15 @@ pub(crate) mod unique_values;
 
 use std::collections::HashSet;
 
-use saoms_api::PropertyField;
+use saoms_api::host::declaration::Scalar;
 
-use crate::assembly::{OF_RESTART, Restart, TaskProperties};
-use crate::check::component::{ComponentCheck, ComponentState};
+use crate::assembly::{OF_RESTART, Restart, TaskProperties, TopicRenames};
+use crate::check::component::{ComponentCheck, ComponentState, Renamed};
 use crate::check::fleet::class_index::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::properties::given_values::{GivenValue, PropertyValues};
 use crate::check::report::{Report, list};
-use crate::check::tasks::renames::{Renamed, Renames};
+use crate::check::tasks::renames::Renames;
 use crate::check::tasks::unique_values::{RepeatedValues, Unique};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::model::{ComponentElement, Part};
@@ -33,10 +33,10 @@ pub(crate) struct Task<'t, 'a> {
 
 impl Task<'_, '_> {
     fn get(&self, name: &str) -> Option<GivenValue<'_>> {
-        self.given.get(&self.class.table, name)
+        self.given.get(name)
     }
 
-    fn text(&self, name: &str) -> Option<Text> {
+    pub(crate) fn text(&self, name: &str) -> Option<Text> {
         self.get(name)?.text()
     }
 
@@ -44,24 +44,17 @@ impl Task<'_, '_> {
         Some(self.get(name)?.place)
     }
 
-    /// The topics that have new names.
-    pub(crate) fn renamed(&self, report: &Report<'_>) -> Vec<Renamed> {
-        self.text("topicRename").map_or_else(Vec::new, |text| renames::renamed(&text, report))
-    }
-
     /// Checks all values, each alone and those that have to go together: the properties, where they are sound.
-    fn check(&self, member: usize, renames: &mut Renames, report: &mut Report<'_>) -> Option<TaskProperties> {
+    fn check(&self, renamed: &[Renamed], report: &mut Report<'_>) -> Option<TaskProperties> {
         if let Some(url) = self.text("url") {
             check_url(&url, report);
-        }
-        if let Some(text) = self.text("topicRename") {
-            renames.add(member, &text, report);
         }
         self.use_jms(report);
         if !self.given.is_sound {
             return None;
         }
-        match TaskProperties::read(self.given.of_task(&self.class.table)) {
+        let renames = renamed.iter().map(|one| (one.old.clone(), one.new.clone())).collect();
+        match TaskProperties::read(self.given.of_task(&self.class.table), TopicRenames(renames)) {
             Ok(properties) => {
                 self.deadline(&properties, report);
                 self.restart(&properties, report);
@@ -81,7 +74,7 @@ impl Task<'_, '_> {
     /// Reports a component that has topics and must not use them.
     fn use_jms(&self, report: &mut Report<'_>) {
         let Some(given) = self.get("useJMS") else { return };
-        if !self.class.has_topics() || bool::from_value(given.value) != Ok(false) {
+        if !self.class.has_topics() || *given.as_task() != Scalar::Boolean(false).into() {
             return;
         }
         let mut uses = Vec::new();
@@ -188,13 +181,14 @@ pub(crate) fn check_all<'a>(
         let (class, component) = (&fleet.classes[index], member.component);
         unique.add((place, fleet), class, &check.given, report);
         let is_periodic = class.class.declaration().is_periodic();
-        let mut renamed = Vec::new();
         if is_periodic {
             let task = Task { component, class, given: &check.given };
-            check.task = task.check(place, &mut renames, report);
-            renamed = task.renamed(report);
+            if let Some(text) = task.text("topicRename") {
+                check.renamed = renames.add(place, &text, report);
+            }
+            check.task = task.check(&check.renamed, report);
         }
-        topics.add(member, (index, class), &renamed, report);
+        topics.add(member, (index, class), &check.renamed, report);
         let is_sound = check.given.is_sound && check.loops.is_some();
         check.state = match is_sound && is_periodic == check.task.is_some() {
             true => ComponentState::Sound,

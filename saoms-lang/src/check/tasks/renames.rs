@@ -2,32 +2,16 @@
 //! mistake.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::rc::Rc;
 
 use crate::assembly::topic_rename::{self, RenameFault};
+use crate::check::component::Renamed;
 use crate::check::fleet::Fleet;
 use crate::check::fleet::class_index::ClassIndex;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{Location, Text};
 use crate::syntax::escaped;
-
-/// A topic with a new name.
-pub(crate) struct Renamed {
-    pub(crate) old: String,
-    pub(crate) new: String,
-    /// The place of the new name.
-    pub(crate) at: Location,
-}
-
-/// The topics that a text renames.
-pub(crate) fn renamed(text: &Text, report: &Report<'_>) -> Vec<Renamed> {
-    let parts = report.parts(text);
-    let renamed = |pair: topic_rename::Pair<'_>| {
-        let (old, new) = (pair.old.text.to_owned(), pair.new.text.to_owned());
-        Renamed { old, new, at: parts.part(pair.new.at) }
-    };
-    topic_rename::read(text).0.into_iter().map(renamed).collect()
-}
 
 /// The lists of renamed topics of a fleet.
 #[derive(Default)]
@@ -38,35 +22,41 @@ pub(crate) struct Renames {
 }
 
 struct List {
-    /// The topics, and where each stands.
-    names: Vec<(String, Location)>,
+    renamed: Rc<[Renamed]>,
     /// The components that share it.
     members: Vec<usize>,
 }
 
 impl Renames {
-    /// Adds the list of a component. What is wrong with it as it stands is reported.
-    pub(super) fn add(&mut self, member: usize, text: &Text, report: &mut Report<'_>) {
+    /// Adds the list of a component, with the topics that it renames. What is wrong with it as it stands is reported.
+    pub(super) fn add(&mut self, member: usize, text: &Text, report: &mut Report<'_>) -> Rc<[Renamed]> {
         let (pairs, faults) = topic_rename::parse(text);
         let parts = report.parts(text);
         faults.into_iter().for_each(|fault| report.push(wrong(fault, text, &parts)));
         let place = *self.places.entry((text.location, text.to_string())).or_insert_with(|| {
-            let names = pairs.into_iter().map(|pair| (pair.old.text.to_owned(), parts.part(pair.old.at)));
-            self.all.push(List { names: names.collect(), members: Vec::new() });
+            let renamed = pairs.into_iter().map(|pair| Renamed {
+                old: pair.old.text.to_owned(),
+                old_at: parts.part(pair.old.at),
+                new: pair.new.text.to_owned(),
+                new_at: parts.part(pair.new.at),
+            });
+            self.all.push(List { renamed: renamed.collect(), members: Vec::new() });
             self.all.len() - 1
         });
-        self.all[place].members.push(member);
+        let list = &mut self.all[place];
+        list.members.push(member);
+        Rc::clone(&list.renamed)
     }
 
     /// Reports the topics that none of the components uses that list them.
     pub(super) fn finish(self, fleet: &Fleet<'_>, report: &mut Report<'_>) {
-        for List { names, members } in &self.all {
+        for List { renamed, members } in &self.all {
             let classes = members.iter().filter_map(|member| fleet.class_of(*member));
             let classes: HashMap<&str, &ClassIndex<'_>> = classes.map(|class| (class.class.name(), class)).collect();
             let used: BTreeSet<&str> = classes.values().flat_map(|class| topics(class)).collect();
-            let listed: HashSet<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
+            let listed: HashSet<&str> = renamed.iter().map(|one| one.old.as_str()).collect();
             let others: Vec<&str> = used.iter().copied().filter(|topic| !listed.contains(topic)).collect();
-            for (name, at) in names.iter().filter(|(name, _)| !used.contains(name.as_str())) {
+            for Renamed { old: name, old_at, .. } in renamed.iter().filter(|one| !used.contains(one.old.as_str())) {
                 let mut classes = classes.keys();
                 let whose = match (classes.next(), classes.len()) {
                     (Some(only), 0) => format!("class {} uses no topic", quoted(only)),
@@ -76,7 +66,7 @@ impl Renames {
                 let known = ("topics that keep their names are", others.iter().copied());
                 for member in members {
                     report.about(&fleet.members[*member]);
-                    let one = report.unknown(&codes::RENAME_UNUSED, *at, message.clone(), name, known.clone());
+                    let one = report.unknown(&codes::RENAME_UNUSED, *old_at, message.clone(), name, known.clone());
                     report.push(match others.is_empty() {
                         true => one.help("remove the pair: all topics there have new names already"),
                         false => one,

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use saoms_api::host::TopicKind;
 
-use super::renames::Renamed;
+use crate::check::component::Renamed;
 use crate::check::fleet::Member;
 use crate::check::fleet::class_index::ClassIndex;
 use crate::check::report::Report;
@@ -48,7 +48,7 @@ impl<'a> Topics<'a> {
         for (verb, topic) in published.chain(subscribed) {
             let renamed = renamed.iter().find(|one| one.old == topic.name);
             let name = renamed.map_or(&topic.name, |renamed| &renamed.new);
-            let place = renamed.map_or(member.component.name.location, |renamed| renamed.at);
+            let place = renamed.map_or(member.component.name.location, |renamed| renamed.new_at);
             let end = End { component: member.path(), place, declaration: topic, verb };
             match self.ends.get(name) {
                 None => _ = self.ends.insert(name.clone(), end),

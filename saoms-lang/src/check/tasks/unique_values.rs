@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use saoms_api::host::PropertyValue;
-use saoms_api::host::declaration::{PropertyKind, Scalar, parse_scalar};
 use smol_str::SmolStr;
 
 use crate::check::fleet::class_index::ClassIndex;
@@ -26,11 +25,11 @@ fn uses<'u, 'r>(
     let table = class.table.unique.iter().filter(|_| !member.is_partial);
     table.filter_map(move |&place| {
         let entry = &class.table.all[place];
-        let (value, place) = match given.at(place) {
+        let (value, place) = match given.get(&entry.name) {
             Some(given) => (given.value, given.place),
             None => (class.table.preset(&entry.name)?, member.component.name.location),
         };
-        Some((canonical(value, entry.main)?, place, entry))
+        Some((canonical(value)?, place, entry))
     })
 }
 
@@ -148,17 +147,8 @@ fn task(value: &str, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut R
     );
 }
 
-/// The canonical form of a value: `07` and `7` are one number.
-fn canonical(value: &PropertyValue, declaration: &PropertyDeclaration) -> Option<SmolStr> {
-    let text = value.as_text()?;
-    if matches!(declaration.kind, PropertyKind::String | PropertyKind::Enumeration) {
-        return Some(text.trim().into());
-    }
-    Some(match parse_scalar(declaration.kind, text)? {
-        Scalar::Integer(number) => number.to_string().into(),
-        Scalar::Float(number) => number.to_string().into(),
-        Scalar::Duration(duration) => saoms_api::host::format_duration(duration).into(),
-        Scalar::Boolean(value) => value.to_string().into(),
-        Scalar::Text(text) => text.into(),
-    })
+/// The canonical form of a value: `07` and `7` are one number, and blanks around a text do not count.
+fn canonical(value: &PropertyValue) -> Option<SmolStr> {
+    let PropertyValue::Scalar(scalar) = value else { return None };
+    Some(scalar.as_text().map_or_else(|| scalar.text(), |text| text.trim().into()))
 }

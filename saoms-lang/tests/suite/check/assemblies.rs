@@ -1,9 +1,16 @@
 //! Assemblies of composites without faults.
 
 use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::Arc;
 
 use expect_test::expect;
+use saoms_api::Failure;
+use saoms_api::host::{DynComponent, PropertyValue, Registration, SmolStr};
+use saoms_lang::project::Project;
+use saoms_lang::registry::Provider;
 
+use crate::check::classes::{Gps, registry};
 use crate::check::support::{fleet, fleet_1_0, run, shown};
 
 /// The assembly as text, after the warnings.
@@ -51,9 +58,9 @@ fn values_presets_wires_and_tasks() {
           task (unibg.robotics.tca.TaskInterface) -> 1 TaskInterface
         1 R is a example.Robot001
           ID = Text("Robot")
-          number = Text("1")
-          charger = Complex([("x", Text("3")), ("y", Text("4"))])
-          stops = Many([Text("1")])
+          number = Integer(1)
+          charger = Complex([("x", Integer(3)), ("y", Integer(4))])
+          stops = Many([Integer(1)])
           gps (example.Positions) -> 2 position
           TaskProperties { id: "Robot", period: 2s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: None, user: None, password: None, topic_rename: TopicRenames([("POSTOPIC", "pos")]), overrun: Skip, restart: OnFailure, restart_backoff: 100ms, restart_limit: 5, deadline: None, queue: 1024, loss: Fail }
         2 G is a example.Gps
@@ -97,10 +104,10 @@ fn the_files_of_the_manual() {
           help: topics that keep their names are `ORDERS` and `POSTOPIC`
         0 MessageBrokerComponent is a unibg.robotics.tca.MessageBrokerImpl
           IP = Text("localhost")
-          port = Text("61616")
+          port = Integer(61616)
         1 Robot001 is a robot.Robot001
           ID = Text("Robot001")
-          number = Text("1")
+          number = Integer(1)
           gps (example.Positions) -> nothing
           TaskProperties { id: "Robot001", period: 1s, delay: 0ns, run_on_startup: true, may_interrupt_if_running: true, use_jms: true, url: Some("localhost:61616"), user: None, password: None, topic_rename: TopicRenames([("POS001", "pos001"), ("POS002", "pos002")]), overrun: Skip, restart: Never, restart_backoff: 100ms, restart_limit: 5, deadline: None, queue: 1024, loss: Fail }
     "#]].assert_eq(&assembly(&[broker, &tasks], &[]));
@@ -131,11 +138,57 @@ fn values_have_the_order_of_the_class_however_they_are_written() {
     for (place, component) in assembly.components.iter().enumerate() {
         let values: Vec<String> = component.values.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
         let expected = format!(
-            r#"ID=Text("R{place}") number=Text("{}") awake=Text("false") stops=Many([Text("1"), Text("2")])"#,
+            r#"ID=Text("R{place}") number=Integer({}) awake=Boolean(false) stops=Many([Integer(1), Integer(2)])"#,
             place + 1
         );
         assert_eq!(values.join(" "), expected);
         let task = component.task.as_ref().unwrap();
         assert_eq!((task.id.as_str(), task.period.as_secs(), task.queue), (&*format!("R{place}"), 1, 9));
     }
+}
+
+/// A class of a library, of which nothing is known here but its declaration.
+#[derive(Debug)]
+struct Declared;
+
+impl Provider for Declared {
+    fn construct(&self, _: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        Registration::of::<Gps>().construct(&[])
+    }
+
+    fn origin(&self) -> Option<&Path> {
+        None
+    }
+}
+
+/// Where it says a task property again, as another type, class and task each have it as their own declaration says.
+#[test]
+fn values_have_the_types_that_a_library_declares() {
+    let properties = r#"[{"name": "ID", "type": "integer"}, {"name": "period", "type": "integer", "min": 1, "max": 5000},
+        {"name": "useJMS", "type": "string"}, {"name": "wait", "type": "duration", "max": "1s"},
+        {"name": "large", "type": "integer"}, {"name": "mode", "type": "enumeration", "allowed": ["slow", "fast"]}]"#;
+    let class = format!(r#"{{"contract": 1, "class": "lib.Timer", "kind": "periodic", "properties": {properties}}}"#);
+    let mut registry = registry();
+    registry.add_provided(&class, Arc::new(Declared)).unwrap();
+    let timer = |id: &str, wait: &str| {
+        let large = "123456789012345678901234567890";
+        let text = fleet(&format!(
+            r#"<component name="T"><implementation.rust class="lib.Timer"/><property name="ID" value="{id}"/>
+<property name="period" value="0250"/><property name="useJMS">false</property><property name="wait">{wait}</property>
+<property name="large">{large}</property><property name="mode" value=" fast "/></component>"#
+        ));
+        Project::new().in_memory().text("t", &*text).compile(&registry)
+    };
+    let compilation = timer("007", "1000");
+    let assembly = compilation.output.as_ref().unwrap();
+    let values: Vec<String> =
+        assembly.components[0].values.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
+    assert_eq!(
+        values.join(" "),
+        "ID=Integer(7) period=Integer(250) useJMS=Text(\"false\") wait=Duration(1s) large=Integer(123456789012345678901234567890) mode=Text(\"fast\")"
+    );
+    let task = assembly.components[0].task.as_ref().unwrap();
+    assert_eq!((task.id.as_str(), task.period.as_millis(), task.use_jms), ("007", 250, false));
+    assert!(timer("seven", "1001").text().contains("property `wait`: `1001` is out of range"));
+    assert!(timer("seven", "1000").text().contains("property `ID`: `seven` is not a whole number"));
 }

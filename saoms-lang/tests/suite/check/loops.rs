@@ -48,7 +48,7 @@ fn a_composite_adds_replaces_removes_moves_and_parametrises_loops() {
     );
     assert_eq!(
         loops(&all),
-        "PathMS example.PathMS\nCollisionMS example.Courteous\nSaver example.BatterySaver threshold=Text(\"50\")\nBatteryMS example.BatteryMS\n"
+        "PathMS example.PathMS\nCollisionMS example.Courteous\nSaver example.BatterySaver threshold=Float(50.0)\nBatteryMS example.BatteryMS\n"
     );
     let fewer = cart(
         "<saoms:loop name=\"BatteryMS\" remove=\"true\"/>
@@ -57,7 +57,7 @@ fn a_composite_adds_replaces_removes_moves_and_parametrises_loops() {
     );
     assert_eq!(
         loops(&fewer),
-        "CollisionMS example.CollisionMS patience=Text(\"7\")\nPathMS example.PathMS\nSaver example.BatterySaver threshold=Text(\"1\")\n"
+        "CollisionMS example.CollisionMS patience=Integer(7)\nPathMS example.PathMS\nSaver example.BatterySaver threshold=Float(1.0)\n"
     );
 }
 
@@ -77,7 +77,7 @@ fn a_loop_of_which_nothing_changes_is_told() {
 fn values_of_loops_come_from_properties_of_the_composite() {
     let text = cart("<saoms:loop name=\"CollisionMS\"><property name=\"patience\" source=\"$patience\"/></saoms:loop>")
         .replacen("<component", "<property name=\"patience\">9</property><component", 1);
-    assert!(loops(&text).contains("patience=Text(\"9\")\n"));
+    assert!(loops(&text).contains("patience=Integer(9)\n"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The loops of a component, as far as they can be known.
 
-use saoms_api::host::PropertyValue;
+use saoms_api::host::{PropertyValue, SmolStr};
 use saoms_lang::registry::{RegisteredClass, RegisteredLoop};
 
 use super::Scene;
@@ -13,7 +13,7 @@ impl Scene {
         let Some(class) = self.class(component) else { return Vec::new() };
         let loops = &class.declaration().loops;
         let choice = self.choice(class, file, component);
-        let chosen = choice.filter(|value| loops.lists.contains_key(*value));
+        let chosen = choice.as_deref().filter(|value| loops.lists.contains_key(*value));
         let mut all: Vec<(&str, &str)> = Vec::new();
         for (value, names) in loops.all() {
             if chosen.is_some() && value != chosen {
@@ -31,15 +31,15 @@ impl Scene {
 
     /// The value of the property that chooses a list of loops: what the composite gives, what the class's name presets,
     /// or the default.
-    fn choice<'s>(&'s self, class: &'s RegisteredClass, file: usize, component: &Component) -> Option<&'s str> {
+    fn choice(&self, class: &RegisteredClass, file: usize, component: &Component) -> Option<SmolStr> {
         let declaration = class.declaration();
         let property = declaration.loops.property.as_deref()?;
         if let Some(given) = component.properties.iter().find(|one| one.text == property) {
-            return self.given(file, given.element);
+            return self.given(file, given.element).map(SmolStr::from);
         }
         match class.presets().iter().find(|(name, _)| name == property) {
-            Some((_, PropertyValue::Text(text))) => Some(text),
-            _ => declaration.property(property)?.default.as_deref(),
+            Some((_, PropertyValue::Scalar(scalar))) => Some(scalar.text()),
+            _ => declaration.property(property)?.default.as_ref().map(SmolStr::from),
         }
     }
 

@@ -132,12 +132,12 @@ fn a_type_whose_prefix_means_nothing_is_told() {
     expect![[r#"
         2:26-33 warning S2050: the prefix `xsd` of this type is bound to no namespace
           fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
-        R (example.Robot) ID=Text("R") number=Text("3") gps->
+        R (example.Robot) ID=Text("R") number=Integer(3) gps->
     "#]].assert_eq(&with("xsd:int"));
     expect![[r#"
         2:26-35 warning S2050: the prefix `my` of this type is bound to no namespace
           help: declare it: `xmlns:my="..."`
-        R (example.Robot) ID=Text("R") number=Text("3") gps->
+        R (example.Robot) ID=Text("R") number=Integer(3) gps->
     "#]]
     .assert_eq(&with("my:number"));
 }
@@ -176,14 +176,14 @@ fn a_type_of_xml_schema_without_its_prefix_is_told() {
           fix: replace `int` with `xsd:int` [3:27-30 "xsd:int"]
         5:63-73 warning S4006: `password` is given without `user` (in `R1`, index 1)
           help: give both, or neither
-        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+        R1 (example.Robot) ID=Text("R1") number=Integer(1) gps->
     "#]].assert_eq(&with(&["int", "int"], ""));
     expect![[r#"
         2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
           fix: replace `int` with `xs:int`, and declare `xmlns:xs="http://www.w3.org/2001/XMLSchema"` in the root element [2:27-30 "xs:int"] [1:11-11 " xmlns:xs=\"http://www.w3.org/2001/XMLSchema\""]
         4:63-68 warning S4006: `password` is given without `user` (in `R1`, index 1)
           help: give both, or neither
-        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
+        R1 (example.Robot) ID=Text("R1") number=Integer(1) gps->
     "#]].assert_eq(&with(&["int"], "xmlns:xsd=\"urn:own\""));
 }
 

@@ -205,12 +205,12 @@ fn a_value_beside_a_source_counts_for_nothing() {
         5:36-37 warning S3012: the property `delay` is given a value beside its `source`
           5:32-34 this counts
           help: this value counts for nothing: keep one of them
-        R (example.Robot) ID=Text("R") number=Text("5") awake=Text("true") gps->
+        R (example.Robot) ID=Text("R") number=Integer(5) awake=Boolean(true) gps->
     "#]]
     .assert_eq(&of(&inside("5")));
     // What counts until somebody gives one from outside.
     expect![[r#"
-        R (example.Robot) ID=Text("R") number=Text("1") awake=Text("true") gps->
+        R (example.Robot) ID=Text("R") number=Integer(1) awake=Boolean(true) gps->
     "#]]
     .assert_eq(&of(&inside("")));
 }

@@ -18,20 +18,20 @@ fn conditions_take_away_what_is_checked_all_the_same() {
 <wire source="N/wheels" target="R1" saoms:if="simulated"/><wire source="N/wheels" target="R2" saoms:if="not simulated"/>"#;
     expect![[r#"
         Gps (example.Gps) other->
-        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
-        R2 (example.Robot) ID=Text("R2") number=Text("2") gps->
-        R4 (example.Robot) ID=Text("R4") number=Text("4") gps->
-        R5 (example.Robot) ID=Text("R5") number=Text("5") gps->
+        R1 (example.Robot) ID=Text("R1") number=Integer(1) gps->
+        R2 (example.Robot) ID=Text("R2") number=Integer(2) gps->
+        R4 (example.Robot) ID=Text("R4") number=Integer(4) gps->
+        R5 (example.Robot) ID=Text("R5") number=Integer(5) gps->
         N (example.Navigator) wheels->R1/move task->
     "#]]
     .assert_eq(&of(inside, &[]));
     expect![[r#"
         Gps (example.Gps) other->
         Spare (example.Gps) other->
-        R1 (example.Robot) ID=Text("R1") number=Text("1") gps->
-        R2 (example.Robot) ID=Text("R2") number=Text("2") gps->
-        R4 (example.Robot) ID=Text("R4") number=Text("4") gps->
-        R5 (example.Robot) ID=Text("R5") number=Text("5") gps->
+        R1 (example.Robot) ID=Text("R1") number=Integer(1) gps->
+        R2 (example.Robot) ID=Text("R2") number=Integer(2) gps->
+        R4 (example.Robot) ID=Text("R4") number=Integer(4) gps->
+        R5 (example.Robot) ID=Text("R5") number=Integer(5) gps->
         N (example.Navigator) wheels->R1/move task->
     "#]]
     .assert_eq(&of(inside, &["site=south"]));
@@ -158,13 +158,13 @@ fn expressions_take_the_properties_of_what_is_included() {
             N2 (example.Gps) other->
             G1 (example.Gps) other->
             G2 (example.Gps) other->
-            R (example.Robot) ID=Text("R") number=Text("2") gps->
+            R (example.Robot) ID=Text("R") number=Integer(2) gps->
         "#]]
         .assert_eq(&found("north", &includes));
         expect![[r#"
             S1 (example.Gps) other->
             G1 (example.Gps) other->
-            R (example.Robot) ID=Text("R") number=Text("1") gps->
+            R (example.Robot) ID=Text("R") number=Integer(1) gps->
         "#]]
         .assert_eq(&found("south", &includes));
     }
@@ -176,13 +176,13 @@ fn expressions_take_the_properties_of_what_is_included() {
         N2 (example.Gps) other->
         G1 (example.Gps) other->
         G2 (example.Gps) other->
-        R (example.Robot) ID=Text("R") number=Text("2") gps->
+        R (example.Robot) ID=Text("R") number=Integer(2) gps->
     "#]]
     .assert_eq(&found("north", &asking));
     expect![[r#"
         S1 (example.Gps) other->
         G1 (example.Gps) other->
-        R (example.Robot) ID=Text("R") number=Text("1") gps->
+        R (example.Robot) ID=Text("R") number=Integer(1) gps->
     "#]]
     .assert_eq(&found("south", &asking));
 }
@@ -209,7 +209,7 @@ fn includes_that_exclude_each_other_can_declare_the_same() {
     let twice = [&fleet(&inside("model")), all[1]];
     for (files, settings) in [(&all[..], &[][..]), (&all, &["real=true"]), (&twice, &[])] {
         expect![[r#"
-            N (example.Robot) ID=Text("N") number=Text("7") gps->
+            N (example.Robot) ID=Text("N") number=Integer(7) gps->
         "#]]
         .assert_eq(&outcome(files, settings));
     }

@@ -87,6 +87,51 @@ fn all_that_is_resolved_is_written_out() {
 }
 
 #[test]
+fn values_are_written_as_they_were_and_known_by_what_they_are() {
+    let fleet = |values: &str| {
+        let robot =
+            format!("<component name=\"R\"><implementation.java class=\"example.Robot001\"/>{values}</component>");
+        part("fleet", "", &robot)
+    };
+    let fancy = fleet(
+        r#"<property name="ID" value=" 007 "/><property name="period" value="1000"/><property name="speed" value="0.50"/>
+<property name="colour" value=" red "/><property name="awake" value="1"/><property name="grace">1.5s</property>
+<property name="charger"><x xmlns="">+3</x><y xmlns="">4</y></property><property name="stops"><value>01</value><value>2</value></property>"#,
+    );
+    let plain = fleet(
+        r#"<property name="ID" value=" 007 "/><property name="period" value="1s"/><property name="speed" value="0.5"/>
+<property name="colour" value="red"/><property name="awake" value="true"/><property name="grace">1500ms</property>
+<property name="charger"><x xmlns="">3</x><y xmlns="">4</y></property><property name="stops"><value>1</value><value>2</value></property>"#,
+    );
+    let [(fancy, written), (plain, usual)] = [fancy, plain].map(|text| expand(&[&text]));
+    assert_eq!(fancy.components[0].values, plain.components[0].values);
+    assert_eq!(fancy.components[0].task, plain.components[0].task);
+    expect![[r#"
+        <composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet" targetNamespace="urn:t">
+          <component name="R">
+            <implementation.rust class="example.Robot001"/>
+            <property name="ID">007</property>
+            <property name="speed">0.50</property>
+            <property name="colour">red</property>
+            <property name="awake">1</property>
+            <property name="charger">
+              <x xmlns="">+3</x>
+              <y xmlns="">4</y>
+            </property>
+            <property name="stops">
+              <value>01</value>
+              <value>2</value>
+            </property>
+            <property name="grace">1.5s</property>
+            <property name="period">1s</property>
+          </component>
+        </composite>
+    "#]]
+    .assert_eq(&settled(&[&written]));
+    assert_eq!(settled(&[&usual]), usual);
+}
+
+#[test]
 fn references_without_a_target_make_it_one_of_sca_1_0() {
     let text = part("fleet", "", r#"<component name="N"><implementation.java class="example.Navigator"/></component>"#)
         .replace("http://docs.oasis-open.org/ns/opencsa/sca/200912", "http://www.osoa.org/xmlns/sca/1.0");

@@ -24,15 +24,15 @@ const ROBOTS: &str = r#"<property name="robots">3</property>
 #[test]
 fn replicas_have_their_index_in_names_values_and_targets() {
     expect![[r#"
-        Robot001 (example.Robot) ID=Text("Robot001") number=Text("3") charger=Complex([("x", Text("1")), ("y", Text("3"))]) gps->Gps1/position
-        Robot002 (example.Robot) ID=Text("Robot002") number=Text("5") charger=Complex([("x", Text("0")), ("y", Text("3"))]) gps->Gps2/position
-        Robot003 (example.Robot) ID=Text("Robot003") number=Text("7") charger=Complex([("x", Text("1")), ("y", Text("3"))]) gps->Gps3/position
+        Robot001 (example.Robot) ID=Text("Robot001") number=Integer(3) charger=Complex([("x", Integer(1)), ("y", Integer(3))]) gps->Gps1/position
+        Robot002 (example.Robot) ID=Text("Robot002") number=Integer(5) charger=Complex([("x", Integer(0)), ("y", Integer(3))]) gps->Gps2/position
+        Robot003 (example.Robot) ID=Text("Robot003") number=Integer(7) charger=Complex([("x", Integer(1)), ("y", Integer(3))]) gps->Gps3/position
         Gps1 (example.Gps) other->
         Gps2 (example.Gps) other->
         Gps3 (example.Gps) other->
     "#]].assert_eq(&of(ROBOTS, &[]));
     expect![[r#"
-        Robot001 (example.Robot) ID=Text("Robot001") number=Text("3") charger=Complex([("x", Text("1")), ("y", Text("1"))]) gps->Gps1/position
+        Robot001 (example.Robot) ID=Text("Robot001") number=Integer(3) charger=Complex([("x", Integer(1)), ("y", Integer(1))]) gps->Gps1/position
         Gps1 (example.Gps) other->
     "#]].assert_eq(&of(ROBOTS, &["robots=1"]));
     expect![""].assert_eq(&of(ROBOTS, &["robots=0"]));
@@ -54,8 +54,8 @@ fn a_star_names_all_replicas() {
     expect![[r#"
         N1 (example.Navigator) wheels->R01/move task->
         N2 (example.Navigator) wheels->R01/move task->
-        R01 (example.Robot) ID=Text("R1") number=Text("1") gps->G1/position
-        R02 (example.Robot) ID=Text("R2") number=Text("2") gps->G1/position
+        R01 (example.Robot) ID=Text("R1") number=Integer(1) gps->G1/position
+        R02 (example.Robot) ID=Text("R2") number=Integer(2) gps->G1/position
         G1 (example.Gps) other->
         G2 (example.Gps) other->
         C (example.Conductor) wheels->R01/move+R02/move gps->G1/position+G2/position
@@ -111,10 +111,10 @@ fn composites_are_replicated_with_all_that_is_in_them() {
 <component name="C"><implementation.java class="example.Conductor"/><reference name="gps" target="Hall*/s"/></component>"#;
     expect![[r#"
         Hall1/G1 (example.Gps) other->
-        Hall1/R (example.Robot) ID=Text("R1") number=Text("1") gps->
+        Hall1/R (example.Robot) ID=Text("R1") number=Integer(1) gps->
         Hall2/G1 (example.Gps) other->
         Hall2/G2 (example.Gps) other->
-        Hall2/R (example.Robot) ID=Text("R2") number=Text("2") gps->
+        Hall2/R (example.Robot) ID=Text("R2") number=Integer(2) gps->
         C (example.Conductor) wheels-> gps->Hall1/G1/position+Hall2/G1/position
     "#]]
     .assert_eq(&outcome(&[&fleet(inside), &hall], &[]));
@@ -270,17 +270,17 @@ fn tables_say_what_differs() {
         found + &values.collect::<String>()
     };
     expect![[r#"
-        R01 [("ID", Text("R1")), ("number", Text("1"))] 100ms
-        R02 [("ID", Text("R2")), ("number", Text("2")), ("colour", Text("red"))] 100ms
-        R03 [("ID", Text("R3")), ("number", Text("3"))] 100ms
-        R04 [("ID", Text("R4")), ("number", Text("4")), ("colour", Text("red"))] 200ms
+        R01 [("ID", Text("R1")), ("number", Integer(1))] 100ms
+        R02 [("ID", Text("R2")), ("number", Integer(2)), ("colour", Text("red"))] 100ms
+        R03 [("ID", Text("R3")), ("number", Integer(3))] 100ms
+        R04 [("ID", Text("R4")), ("number", Integer(4)), ("colour", Text("red"))] 200ms
     "#]]
     .assert_eq(&found("index,colour,period\n2,red,\n 4 ,\"red\",200\n"));
     expect![[r#"
-        R01 [("ID", Text("R1")), ("number", Text("1"))] 100ms
-        R02 [("ID", Text("R2")), ("number", Text("2"))] 100ms
-        R03 [("ID", Text("R3")), ("number", Text("30"))] 100ms
-        R04 [("ID", Text("R4")), ("number", Text("4"))] 100ms
+        R01 [("ID", Text("R1")), ("number", Integer(1))] 100ms
+        R02 [("ID", Text("R2")), ("number", Integer(2))] 100ms
+        R03 [("ID", Text("R3")), ("number", Integer(30))] 100ms
+        R04 [("ID", Text("R4")), ("number", Integer(4))] 100ms
     "#]]
     .assert_eq(&found("name,number\r\nR03,30\r\n\r\n"));
     expect![[r#"

@@ -116,8 +116,8 @@ fn a_composite_implements_components_each_with_its_own_values() {
     );
     let robot = part("robot", "", ROBOT);
     expect![[r#"
-        one/Robot (example.Robot001) ID=Text("R1") number=Text("1") gps->
-        two/Robot (example.Robot001) ID=Text("R2") number=Text("1") gps->gps/position
+        one/Robot (example.Robot001) ID=Text("R1") number=Integer(1) gps->
+        two/Robot (example.Robot001) ID=Text("R2") number=Integer(1) gps->gps/position
         gps (example.Gps) other->
         N (example.Navigator) wheels->one/Robot/move task->
         M (example.Navigator) wheels->two/Robot/move task->
@@ -214,8 +214,8 @@ fn references_are_wired_from_outside_through_every_level() {
     let others = [hall.as_str(), &band, &robot];
     let with = |fleet: &str| outcome(&[fleet, others[0], others[1], others[2]], &[]);
     expect![[r#"
-        hall/a/Robot (example.Robot001) ID=Text("A") number=Text("1") gps->gps/position
-        hall/b/Robot (example.Robot001) ID=Text("B") number=Text("1") gps->gps/position
+        hall/a/Robot (example.Robot001) ID=Text("A") number=Integer(1) gps->gps/position
+        hall/b/Robot (example.Robot001) ID=Text("B") number=Integer(1) gps->gps/position
         gps (example.Gps) other->
         band/C (example.Conductor) wheels->hall/a/Robot/move+hall/b/Robot/move gps->gps/position
     "#]]

@@ -115,10 +115,10 @@ fn lines_of_tables_are_about_a_replica_in_any_of_the_places_of_a_composite() {
     "#]]
     .assert_eq(&with("index,number\n1,5\n12,6\n7,7\nx,8\n"));
     expect![[r#"
-        A/R1 Some(Text("5"))
-        A/R2 Some(Text("2"))
-        B/R11 Some(Text("11"))
-        B/R12 Some(Text("6"))
+        A/R1 Some(Integer(5))
+        A/R2 Some(Integer(2))
+        B/R11 Some(Integer(11))
+        B/R12 Some(Integer(6))
     "#]]
     .assert_eq(&with("name,number\nR1,5\nR12,6\n"));
 }

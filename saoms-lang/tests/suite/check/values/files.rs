@@ -1,9 +1,11 @@
 //! Values from files beside the composite.
 
 use std::fs;
+use std::time::Duration;
 
 use expect_test::expect;
 use saoms_api::host::PropertyValue;
+use saoms_api::host::declaration::Scalar;
 use saoms_lang::assembly::Assembly;
 use saoms_lang::load::MAX_SIZE;
 use saoms_lang::project::Project;
@@ -30,6 +32,10 @@ fn value(assembly: &Assembly, name: &str) -> PropertyValue {
     values.iter().find(|(given, _)| given == name).unwrap().1.clone()
 }
 
+fn integer(number: i128) -> PropertyValue {
+    Scalar::Integer(number.into()).into()
+}
+
 #[test]
 fn a_value_is_what_its_file_holds() {
     let inside = robot(
@@ -42,9 +48,9 @@ fn a_value_is_what_its_file_holds() {
     let (assembly, found) = checked(&inside, &files, MAX_SIZE);
     assert_eq!(found, "");
     let assembly = assembly.unwrap();
-    assert_eq!(value(&assembly, "grace"), "20ms".into());
-    assert_eq!(value(&assembly, "number"), "7".into());
-    assert_eq!(value(&assembly, "speed"), "1.5".into());
+    assert_eq!(value(&assembly, "grace"), Scalar::Duration(Duration::from_millis(20)).into());
+    assert_eq!(value(&assembly, "number"), integer(7));
+    assert_eq!(value(&assembly, "speed"), Scalar::Float(1.5).into());
 }
 
 #[test]
@@ -107,14 +113,14 @@ fn files_are_named_by_uris() {
             checked(&robot(&format!("<property name=\"speed\" file=\"{file}\"/>")), &files, MAX_SIZE);
         assembly.map_or(found, |assembly| format!("{:?}", value(&assembly, "speed")))
     };
-    assert_eq!(one("my%20speed.txt"), "Text(\"1.5\")");
-    assert_eq!(one("my speed.txt"), "Text(\"1.5\")");
-    assert_eq!(one("50%20.txt"), "Text(\"2.0\")", "a file of that very name");
+    assert_eq!(one("my%20speed.txt"), "Float(1.5)");
+    assert_eq!(one("my speed.txt"), "Float(1.5)");
+    assert_eq!(one("50%20.txt"), "Float(2.0)", "a file of that very name");
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a b"), "0.5").unwrap();
     let path = folder.path().display();
     for scheme in ["file://", "file://localhost", "FILE:"] {
-        assert_eq!(one(&format!("{scheme}{path}/a%20b")), "Text(\"0.5\")");
+        assert_eq!(one(&format!("{scheme}{path}/a%20b")), "Float(0.5)");
     }
     let wrong = ["http://x/y.txt", "file://other/y.txt", "file:///nowhere/y%41", "no/%zz.txt", "%ff"];
     expect![[r#"
@@ -154,7 +160,7 @@ fn a_component_type_gives_the_values_that_components_do_not() {
         });
         (speeds, found)
     };
-    let values: Vec<_> = ["0.75", "0.5"].map(|text| Some(PropertyValue::from(text))).into();
+    let values: Vec<_> = [0.75, 0.5].map(|speed| Some(PropertyValue::from(Scalar::Float(speed)))).into();
     assert_eq!(outcome("0.75"), (Some(values), String::new()));
     let (speeds, found) = outcome("fast");
     assert_eq!(speeds, None);
@@ -212,9 +218,9 @@ fn values_of_a_file_are_in_elements() {
         let (assembly, found) = outcome(&stops, &charger);
         assert_eq!(found, "");
         let assembly = assembly.unwrap();
-        assert_eq!(value(&assembly, "number"), "7".into());
-        assert_eq!(value(&assembly, "stops"), PropertyValue::Many(["1".into(), "2".into()].into()));
-        assert_eq!(value(&assembly, "charger"), PropertyValue::Complex([("x".into(), "3".into())].into()));
+        assert_eq!(value(&assembly, "number"), integer(7));
+        assert_eq!(value(&assembly, "stops"), PropertyValue::Many([integer(1), integer(2)].into()));
+        assert_eq!(value(&assembly, "charger"), PropertyValue::Complex([("x".into(), integer(3))].into()));
     }
     let (_, found) = outcome(&values("<s:value>1</s:value><s:value>two</s:value>"), "<at>\n<x>three</x><z>4</z></at>");
     expect![[r#"

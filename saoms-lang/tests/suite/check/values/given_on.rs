@@ -44,14 +44,14 @@ fn expressions_take_what_is_in_an_element() {
         expect![[r#"
             H/G1 (example.Gps) other->
             H/G2 (example.Gps) other->
-            H/R (example.Robot) ID=Text("R") number=Text("2") gps->
+            H/R (example.Robot) ID=Text("R") number=Integer(2) gps->
         "#]]
         .assert_eq(&taken("<property name=\"n\"/>", outside, given));
     }
     expect![[r#"
         H/G1 (example.Gps) other->
         H/G2 (example.Gps) other->
-        H/R (example.Robot) ID=Text("R") number=Text("2") gps->
+        H/R (example.Robot) ID=Text("R") number=Integer(2) gps->
     "#]]
     .assert_eq(&taken("<property name=\"n\" element=\"x:n\"><x:n>2</x:n></property>", "", ""));
 }
@@ -110,7 +110,7 @@ fn a_variable_counts_where_a_component_gives_nothing() {
     expect![[r#"
         H/G1 []
         H/G2 []
-        H/R [("ID", Text("R")), ("number", Text("2"))]
+        H/R [("ID", Text("R")), ("number", Integer(2))]
     "#]]
     .assert_eq(&of("<property name=\"n\" source=\"$nothing\"/>", "2"));
     expect![[r#"
@@ -119,7 +119,7 @@ fn a_variable_counts_where_a_component_gives_nothing() {
         H/G1 []
         H/G2 []
         H/G3 []
-        H/R [("ID", Text("R")), ("number", Text("3"))]
+        H/R [("ID", Text("R")), ("number", Integer(3))]
     "#]]
     .assert_eq(&of("<property name=\"n\">3</property>", "2"));
     expect![[r#"

@@ -71,16 +71,16 @@ fn sources_are_paths() {
         all += &format!("{source}: {}\n", value(source, "number"));
     }
     expect![[r#"
-        $b/bays/bay[1]/x: Text("3"
-        $b/bay[1]/x: Text("3"
-        $b/p:bay[ 2 ]/p:x: Text("5"
-        $b/child::bay[last()]/x/text(): Text("8"
-        $b/bay[@id='b/c']/*: Text("5"
+        $b/bays/bay[1]/x: Integer(3
+        $b/bay[1]/x: Integer(3
+        $b/p:bay[ 2 ]/p:x: Integer(5
+        $b/child::bay[last()]/x/text(): Integer(8
+        $b/bay[@id='b/c']/*: Integer(5
         $b/*[1]/*[2]: S3007: the property `number` has elements inside: expected a whole number from 1 to 99
-        $b/bay[3]/text(): Text("7"
-        $b/*[local-name()='bay'][2]/x: Text("5"
-        $many[2]: Text("2"
-        $many[last()]: Text("2"
+        $b/bay[3]/text(): Integer(7
+        $b/*[local-name()='bay'][2]/x: Integer(5
+        $many[2]: Integer(2
+        $many[last()]: Integer(2
         $b/bay[2]/y: S2023: there is no part `y`; the parts are `x`
         $b/bay[4]: S2023: there are 3 parts `bay`, from `[1]` on
         $b/bay[0]/x: S2023: there are 3 parts `bay`, from `[1]` on
@@ -90,7 +90,7 @@ fn sources_are_paths() {
         $b/bay/@di: S2023: there is no attribute `di`; the attributes are `id`
         $b/bay[2]/@id/x: S2023: an attribute has no parts
         $b/bay[1]/text(): S2023: there is no text here
-        $b/bay[x=3]/x: Text("3"
+        $b/bay[x=3]/x: Integer(3
         $b//x: S3011: the property `number` takes one value, and here are 3
         $b/bay/../x: S2023: no step of a path is written like this
         $b/bay[1]x: S2023: no step of a path is written like this
@@ -99,7 +99,7 @@ fn sources_are_paths() {
         $many/x: S2023: the property has a simple value: there are no parts in it
         $many/value[2]: S2023: the property has a simple value: there are no parts in it; the values of a property are `$name` itself, the second is `$name[2]`
         $many/text(): S3011: the property `number` takes one value, and here are 2
-        $many[2]/text(): Text("2"
+        $many[2]/text(): Integer(2
         $b/bay/x[2]: S2023: there are 3 parts `x` in 3 elements, at most 1 in each, and a place counts in each
         ($b/bay/x)[2]: S2023: `($b/bay/x)[2]` is no path from a property
         count($b/bay): S2023: `count($b/bay)` is no path from a property
@@ -197,7 +197,7 @@ fn one_of_several_elements_is_asked_for_by_its_place() {
             )
         );
         expect![[r#"
-            R (example.Robot001) ID=Text("R") number=Text("1") speed=Text("2") charger=Complex([("x", Text("2")), ("y", Text("4"))]) gps->
+            R (example.Robot001) ID=Text("R") number=Integer(1) speed=Float(2.0) charger=Complex([("x", Integer(2)), ("y", Integer(4))]) gps->
         "#]]
         .assert_eq(&outcome(&[&fleet(&all)], &[]));
     }
@@ -240,8 +240,8 @@ fn each_of_many_groups_is_searched_for_its_parts() {
     };
     let robots: String = (0..70).map(taking).collect();
     let found = outcome(&[&fleet(&format!("<property name=\"zones\">{zones}</property>{robots}"))], &[]);
-    for (z, line) in found.lines().enumerate() {
-        assert!(line.contains(&format!("speed=Text(\"1.0{z:02}\")")), "{found}");
+    for (z, line) in (0..).zip(found.lines()) {
+        assert!(line.contains(&format!("speed=Float({:?})", 1.0 + f64::from(z) / 1000.0)), "{found}");
     }
     assert_eq!(found.lines().count(), 70, "{found}");
 }

@@ -11,7 +11,7 @@ fn a_target_of_nothing_is_told() {
     expect![[r#"
         4:23-33 warning S1011: `target` names nothing
           help: name a component, or leave `target` out
-        R (example.Robot) ID=Text("R") number=Text("1") gps->
+        R (example.Robot) ID=Text("R") number=Integer(1) gps->
     "#]]
     .assert_eq(&of(&inside));
     let needed = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/>\n<reference name=\"wheels\" target=\"\"/></component>";
