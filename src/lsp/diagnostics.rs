@@ -8,9 +8,9 @@ use lsp_types::{
     DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, TextEdit, Uri,
 };
 use saoms_lang::diagnostic::{Diagnostic, Severity, codes};
-use saoms_lang::source::{FileId, Location as Place, Sources, identity};
+use saoms_lang::source::{FileId, LineIndex, Location as Place, Sources, identity};
 
-use saoms_tools::editor::{LineIndex, describe_code};
+use saoms_tools::editor::describe_code;
 
 use super::position;
 use super::uri;
@@ -99,7 +99,7 @@ impl Places<'_> {
 
     fn range(&mut self, at: Place) -> lsp_types::Range {
         let text = self.sources.get(at.file).text();
-        let lines = self.lines.entry(at.file).or_insert_with(|| LineIndex::new(text));
+        let lines = self.lines.entry(at.file).or_insert_with(|| position::lines(text));
         position::range(lines, text, at.span.start as usize..at.span.end.max(at.span.start) as usize)
     }
 }

@@ -7,9 +7,7 @@ use std::sync::Arc;
 use lsp_types::TextDocumentContentChangeEvent;
 use saoms_lang::source::{OpenTexts, identity};
 
-use saoms_tools::editor::LineIndex;
-
-use super::position::offset;
+use super::position::{lines, offset};
 use super::uri;
 
 /// A text that is open.
@@ -69,7 +67,7 @@ fn apply(text: &mut String, change: TextDocumentContentChangeEvent) {
         *text = change.text;
         return;
     };
-    let lines = LineIndex::new(text);
+    let lines = lines(text);
     let start = offset(&lines, text, range.start);
     let end = offset(&lines, text, range.end).max(start);
     text.replace_range(start..end, &change.text);

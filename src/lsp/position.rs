@@ -3,28 +3,27 @@
 use std::ops::Range;
 
 use lsp_types::Position;
-use saoms_tools::editor::{File, LineIndex};
+use saoms_lang::source::{ColumnUnit, LineColumn, LineIndex};
+use saoms_tools::editor::File;
+
+/// The lines of a text with columns as editors count them.
+pub(super) fn lines(text: &str) -> LineIndex {
+    LineIndex::new(text, ColumnUnit::Utf16)
+}
 
 /// The byte at a position: the end of the line for one behind it, the end of the text for a line that is not there.
 pub(super) fn offset(lines: &LineIndex, text: &str, position: Position) -> usize {
-    let Some(line) = lines.range(text, position.line as usize) else { return text.len() };
-    let mut left = position.character as usize;
-    for (at, character) in text[line.clone()].char_indices() {
-        // A position within a character is before it.
-        if left < character.len_utf16() {
-            return line.start + at;
-        }
-        left -= character.len_utf16();
+    if position.line as usize >= lines.line_count() {
+        return text.len();
     }
-    line.end
+    let place = LineColumn { line: position.line + 1, column: position.character.saturating_add(1) };
+    lines.offset(text, place)
 }
 
 /// The position of a byte; one behind the text counts as its end.
 pub(super) fn position(lines: &LineIndex, text: &str, at: usize) -> Position {
-    let at = text.floor_char_boundary(at);
-    let line = lines.line(at);
-    let before = lines.start(line).and_then(|start| text.get(start..at)).unwrap_or_default();
-    Position::new(line as u32, before.encode_utf16().count() as u32)
+    let LineColumn { line, column } = lines.line_column(text, at);
+    Position::new(line - 1, column - 1)
 }
 
 /// The positions of both ends of a range of bytes.
@@ -49,7 +48,7 @@ mod tests {
     #[test]
     fn columns_are_utf_16_units_there_and_back() {
         let text = "aä\r\n🤖x\rü\n\nz";
-        let lines = LineIndex::new(text);
+        let lines = super::lines(text);
         for (at, place) in [(0, (0, 0)), (3, (0, 2)), (5, (1, 0)), (9, (1, 2)), (10, (1, 3))].into_iter().chain([
             (11, (2, 0)),
             (13, (2, 1)),
@@ -65,7 +64,7 @@ mod tests {
     #[test]
     fn places_that_do_not_exist_become_the_nearest() {
         let text = "ä\n🤖\n";
-        let lines = LineIndex::new(text);
+        let lines = super::lines(text);
         let offset = |line, character| super::offset(&lines, text, Position::new(line, character));
         assert_eq!(offset(0, 99), 2);
         assert_eq!(offset(1, 1), 3, "within the robot");
@@ -78,7 +77,7 @@ mod tests {
     #[test]
     fn a_byte_order_mark_is_not_there() {
         let text = "\u{feff}<a/>";
-        let lines = LineIndex::new(text);
+        let lines = super::lines(text);
         assert_eq!(position(&lines, text, 4), Position::new(0, 1));
         assert_eq!(position(&lines, text, 0), Position::new(0, 0));
         assert_eq!(super::offset(&lines, text, Position::new(0, 1)), 4);

@@ -13,8 +13,7 @@ mod tests;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
-use lines::LineIndex;
-pub use lines::{LineColumn, LineRange};
+pub use lines::{ColumnUnit, LineColumn, LineIndex, LineRange};
 pub use located::{Located, Text};
 pub use open::{OpenTexts, identity};
 
@@ -99,7 +98,7 @@ impl SourceFile {
 
     /// The line and column of byte `at`; a place past the end counts as the end.
     pub fn line_column(&self, at: u32) -> LineColumn {
-        self.index().line_column(&self.text, at)
+        self.index().line_column(&self.text, at as usize)
     }
 
     /// Lines and columns of both ends of `span`.
@@ -109,11 +108,11 @@ impl SourceFile {
 
     /// The byte at a line and column, the nearest one when the text has no such place.
     pub fn offset(&self, place: LineColumn) -> u32 {
-        self.index().offset(&self.text, place)
+        self.index().offset(&self.text, place) as u32
     }
 
     fn index(&self) -> &LineIndex {
-        self.lines.get_or_init(|| LineIndex::new(&self.text))
+        self.lines.get_or_init(|| LineIndex::new(&self.text, ColumnUnit::Scalar))
     }
 }
 

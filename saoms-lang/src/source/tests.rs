@@ -44,18 +44,21 @@ fn places_in_endless_lines_are_those_that_counting_gives() {
             text.push('\n');
         }
     }
-    let mut sources = Sources::new();
-    let file = sources.add("t", text.as_str());
-    let file = sources.get(file);
-    let (mut line, mut column) = (1, 1);
-    for (at, letter) in text.char_indices().skip(1) {
-        let place = LineColumn { line, column };
-        assert_eq!(file.line_column(at as u32), place, "byte {at}");
-        assert_eq!(file.offset(place), at as u32, "{place:?}");
-        (line, column) = if letter == '\n' { (line + 1, 1) } else { (line, column + 1) };
+    for unit in [ColumnUnit::Scalar, ColumnUnit::Utf16] {
+        let index = LineIndex::new(&text, unit);
+        let (mut line, mut column) = (1, 1);
+        for (at, letter) in text.char_indices().skip(1) {
+            let place = LineColumn { line, column };
+            assert_eq!(index.line_column(&text, at), place, "byte {at}");
+            assert_eq!(index.offset(&text, place), at, "{place:?}");
+            let width = if unit == ColumnUnit::Scalar { 1 } else { letter.len_utf16() as u32 };
+            let inside = LineColumn { column: column + width - 1, ..place };
+            assert_eq!(index.offset(&text, inside), at, "within a character is before it");
+            (line, column) = if letter == '\n' { (line + 1, 1) } else { (line, column + width) };
+        }
+        assert_eq!(index.line_column(&text, usize::MAX), LineColumn { line, column });
+        assert_eq!(index.offset(&text, LineColumn { line, column: u32::MAX }), text.len());
+        let end = text.find('\n').unwrap();
+        assert_eq!(index.offset(&text, LineColumn { line: 1, column: u32::MAX }), end);
     }
-    assert_eq!(file.line_column(u32::MAX), LineColumn { line, column });
-    assert_eq!(file.offset(LineColumn { line, column: u32::MAX }), text.len() as u32);
-    let end = text.find('\n').unwrap() as u32;
-    assert_eq!(file.offset(LineColumn { line: 1, column: u32::MAX }), end);
 }

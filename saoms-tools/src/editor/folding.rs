@@ -19,7 +19,7 @@ pub struct Fold {
 /// Elements and comments of several lines. The line of an end tag stays; of several that begin in one line the
 /// outermost is folded.
 pub fn folds(file: &File) -> Vec<Fold> {
-    let line = |byte: u32| file.lines.line(byte as usize);
+    let line = |byte: u32| file.lines.line(byte as usize) - 1;
     let elements = file.document.elements().filter_map(|one| {
         let (whole, tag) = (one.span(), one.start_tag_span());
         let start = line(tag.start);

@@ -6,10 +6,9 @@ use proptest::prelude::*;
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::OpenTexts;
-use saoms_tools::editor::LineIndex;
 
 use crate::lsp::diagnostics::reported;
-use crate::lsp::position::offset;
+use crate::lsp::position::{lines, offset};
 use crate::lsp::tests::composite;
 
 const INSIDE: &str = "<!-- ü🤖 -->\r\n<component name=\"R🤖${index:03}\" s:count=\"2 * n\">\r\
@@ -25,7 +24,7 @@ fn hold(text: &str) -> usize {
     let all: Vec<_> = found.reported().cloned().collect();
     let told: Vec<_> = reported(&all, &found.sources).collect();
     assert_eq!(all.len(), told.len());
-    let lines = LineIndex::new(text);
+    let lines = lines(text);
     for (one, (path, told)) in all.iter().zip(&told) {
         assert_eq!(one.suggestions.len(), told.fixes.len());
         assert_eq!(path, Path::new("/nowhere/fleet.composite"));

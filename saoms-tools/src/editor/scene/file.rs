@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use saoms_lang::load::vocabulary::{CONTRIBUTION, Kind};
+use saoms_lang::source::{ColumnUnit, LineIndex};
 use saoms_lang::syntax::{Document, Element, ElementId};
 
 use super::outline::Outline;
-use crate::editor::LineIndex;
 use crate::editor::syntax::{Cursor, kinds, parse};
 
 /// The text of a composite, or of a file beside one, and what is known of it.
@@ -17,7 +17,7 @@ pub struct File {
     pub path: PathBuf,
     /// The text.
     pub text: Arc<String>,
-    /// The lines of the text.
+    /// The lines of the text, with columns in UTF-16.
     pub lines: LineIndex,
     /// The tree of the text; empty for a file beside composites.
     pub(crate) document: Document,
@@ -34,14 +34,14 @@ impl File {
         let document = parse(&text);
         let kinds = kinds(&document);
         let outline = Outline::of(&document, &kinds);
-        Self { path, lines: LineIndex::new(&text), document, kinds, outline, text, is_beside: false }
+        Self { path, lines: LineIndex::new(&text, ColumnUnit::Utf16), document, kinds, outline, text, is_beside: false }
     }
 
     /// A file beside composites, which holds values.
     pub fn beside(path: PathBuf, text: Arc<String>) -> Self {
         let document = parse(&Arc::default());
         let (kinds, outline) = (Vec::new(), Outline::default());
-        Self { path, lines: LineIndex::new(&text), document, kinds, outline, text, is_beside: true }
+        Self { path, lines: LineIndex::new(&text, ColumnUnit::Utf16), document, kinds, outline, text, is_beside: true }
     }
 
     /// True if it describes a contribution.
