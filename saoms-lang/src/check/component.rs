@@ -44,7 +44,7 @@ pub(crate) enum ComponentState {
 }
 
 impl<'a> ComponentCheck<'a> {
-    /// The component with these values and loops, of which no task is known yet.
+    /// The component with these values and loops, whose task is not known yet.
     pub(crate) fn new((given, loops): (PropertyValues, Option<loops::Resolved<'a>>)) -> Self {
         Self { given, loops, ..Self::default() }
     }

@@ -150,8 +150,8 @@ fn topics<'a>(
     (registry, options): (&'a Registry, &Options),
     sources: &Sources,
 ) -> HashMap<ElementPath, Vec<TopicUse>> {
-    let mut unheard = Diagnostics::new();
-    let report = &mut Report::new(sources, &mut unheard);
+    let mut dropped = Diagnostics::new();
+    let report = &mut Report::new(sources, &mut dropped);
     classes::resolve(fleet, registry, options, report);
     let given = properties::check_all(fleet, &mut parameters, report);
     loops::resolve(fleet, &given, (registry, options), &mut parameters, report);

@@ -23,7 +23,7 @@ impl Candidates {
     }
 
     /// The length of a list up to which it is searched: the rest need not be counted.
-    pub(crate) fn telling(&self) -> usize {
+    pub(crate) fn most_to_count(&self) -> usize {
         usize::try_from(self.0.left()).unwrap_or(usize::MAX).max(FEW) + 1
     }
 }
@@ -38,6 +38,6 @@ mod tests {
         let admitted = (0..10_000).filter(|_| candidates.admit(1000)).count();
         assert_eq!(admitted as u64, CANDIDATES / 1000);
         assert!(!candidates.admit(FEW + 1) && candidates.admit(FEW), "short ones always");
-        assert_eq!(candidates.telling(), FEW + 1);
+        assert_eq!(candidates.most_to_count(), FEW + 1);
     }
 }

@@ -157,6 +157,7 @@ impl Loader<'_> {
     }
 
     fn looping(&mut self, element: Element<'_>) -> LoopElement {
+        let known = self.diagnostics.len();
         self.check_attributes(element, &LOOP);
         self.no_text(element);
         let mut properties = Vec::new();
@@ -176,6 +177,7 @@ impl Loader<'_> {
             after: self.optional(element, "after"),
             remove: self.boolean(element, "remove"),
             properties,
+            is_misread: element.is_damaged() || self.diagnostics.len() > known,
         }
     }
 

@@ -114,6 +114,8 @@ pub struct LoopElement {
     pub remove: Option<Located<bool>>,
     /// Its properties in order.
     pub properties: Vec<Property>,
+    /// True if something in it is faulty, which is reported: it may be meant to say more.
+    pub is_misread: bool,
 }
 
 impl LoopElement {

@@ -69,7 +69,7 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
     for reference in &fleet.members[member].component.references {
         let name = &reference.name;
         let declared = class.and_then(|class| class.references.iter().find(|known| known.name == name.as_str()));
-        // Of most nothing is said but where they lead.
+        // Most say only where they lead.
         if declared.is_some() && reference.contract.is_none() && reference.multiplicity.is_none() {
             continue;
         }

@@ -35,7 +35,7 @@ pub(crate) struct PropertyTable<'r> {
 /// stricter rule counts.
 pub(crate) struct TableEntry<'r> {
     pub(crate) name: SmolStr,
-    /// The declaration that people are told of: that of the class, if it has one.
+    /// The declaration that messages are about: that of the class, if it has one.
     pub(crate) main: &'r PropertyDeclaration,
     /// True if it is the class that declares it.
     is_own: bool,

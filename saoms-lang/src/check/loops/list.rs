@@ -12,7 +12,7 @@ use crate::check::report::{Report, list, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{LoopElement, Part};
 use crate::registry::Registry;
-use crate::source::{Location, Text};
+use crate::source::Text;
 use crate::syntax::escaped;
 
 /// The loops of a component in their order, and whether nothing about them is wrong.
@@ -78,7 +78,7 @@ pub(super) fn plan<'a>(
             }
             (Some(place), class) => {
                 if is_sound {
-                    unchanged(one, member, report);
+                    unchanged(one, report);
                 }
                 loops[place].element = Some(one);
                 if let Some(class) = class {
@@ -148,15 +148,10 @@ fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
     true
 }
 
-/// Says that an element names a loop that the component has, and leaves all of it as it is. What was meant to change it
-/// may be wrong, which is told.
-fn unchanged(one: &LoopElement, member: &Member<'_>, report: &mut Report<'_>) {
+/// Reports an element that names a loop that the component has, and leaves all of it as it is.
+fn unchanged(one: &LoopElement, report: &mut Report<'_>) {
     let says_something = [&one.class, &one.before, &one.after].into_iter().any(Option::is_some);
-    let document = &member.composite.document;
-    let span = one.origin().element(document).span();
-    let is_inside = |at: Location| at.file == document.file() && span.contains(at.span);
-    if says_something || !one.properties.is_empty() || report.diagnostics().iter().any(|told| is_inside(told.location))
-    {
+    if says_something || !one.properties.is_empty() || one.is_misread {
         return;
     }
     let message = format!("this changes nothing: the component has the loop {} by its class", quoted(&one.name));

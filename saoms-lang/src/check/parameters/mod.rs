@@ -56,12 +56,12 @@ struct Parameter<'a> {
     /// True if it has to be given a value, and what the component says that the composite implements comes to none.
     lacks_value: bool,
     is_used: bool,
-    /// Its values, once somebody asked for them.
+    /// Its values, once they are asked for.
     whole: Option<Rc<SharedValues<'a>>>,
 }
 
 impl<'a> Parameter<'a> {
-    /// The variable of the environment that counts where nobody else gives a value.
+    /// The variable of the environment that counts where nothing else gives a value.
     fn variable(&self, options: &'a Options) -> Option<&'a Text> {
         options.variable(self.property.env()?)
     }
@@ -162,7 +162,7 @@ impl<'a> Parameters<'a> {
     }
 
     /// Holds what comes from the command line and the environment to the types of the properties, or else what
-    /// components give properties that nobody took: it has to be right all the same, and there where it has to be.
+    /// components give properties that were not taken: it has to be right all the same, and there where it has to be.
     fn judge(&mut self, fleet: &Fleet<'a>, is_of_components: bool, report: &mut Report<'_>) {
         for (place, unit) in fleet.units.iter().enumerate().filter(|(_, unit)| !(is_of_components && unit.is_absent)) {
             if let Some(owner) = fleet.scopes[unit.scope].owner.filter(|_| is_of_components) {
@@ -274,7 +274,7 @@ impl<'a> Parameters<'a> {
         self.units[unit].source = Some(Faulty);
     }
 
-    /// Counts what composites of which not all is known take from those around them.
+    /// Counts what composites that are not fully known take from those around them.
     fn pass_on(&mut self, fleet: &Fleet<'a>) {
         for unit in (0..self.units.len()).rev() {
             let is_open = self.units[unit].source.is_some() || fleet.scopes[fleet.units[unit].scope].fault.is_some();

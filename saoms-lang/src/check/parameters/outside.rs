@@ -91,19 +91,19 @@ impl Parameters<'_> {
             quoted(&owner.name),
             quoted(name)
         );
-        let told = |at, message| {
+        let missing = |at, message| {
             let one = Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, at, message);
             one.label(name.location, "declared here, without a value")
         };
         match self.units[unit].by_name.get(name.as_str()).and_then(|parameter| parameter.given) {
             Some(Given::Component(place, given)) => match given.source() {
                 Some(source) => {
-                    let one = told(source.location, format!("{message}: its source has none"));
+                    let one = missing(source.location, format!("{message}: its source has none"));
                     self.supply(place.unit, source, one)
                 }
-                None => told(given.name.location, message).help("write the value inside"),
+                None => missing(given.name.location, message).help("write the value inside"),
             },
-            _ => told(owner.name.location, message)
+            _ => missing(owner.name.location, message)
                 .help(format!("add `<property name=\"{}\">...</property>`", escaped(name))),
         }
     }

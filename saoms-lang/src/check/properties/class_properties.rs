@@ -17,7 +17,7 @@ use crate::registry::PropertyDeclaration;
 use crate::source::Location;
 use crate::syntax::Document;
 
-/// Checks the properties that somebody gives to a component of a class, or to a loop: their values.
+/// Checks the properties that a component of a class, or a loop, is given: their values.
 pub(crate) fn check<'a>(
     giver: &Giver<'_, 'a>,
     table: &PropertyTable<'a>,

@@ -14,7 +14,7 @@ use crate::limits::{LISTED_NAMES, MERGED_DIAGNOSTICS, REMEMBERED_DIAGNOSTICS};
 use crate::source::{FileId, Location, Sources, Span, Text};
 use crate::syntax::SourceMap;
 
-/// Collects diagnostics, and knows the texts they are about.
+/// A collector of diagnostics that knows the texts they are about.
 pub(crate) struct Report<'a> {
     sources: &'a Sources,
     diagnostics: &'a mut Diagnostics,
@@ -36,7 +36,7 @@ pub(crate) struct Report<'a> {
     lines: HashSet<Location>,
     /// Diagnostics about lines without a replica: the same composite may have the replica where it is there another
     /// time.
-    lines_of_none: Vec<Diagnostic>,
+    lines_without_replica: Vec<Diagnostic>,
 }
 
 /// A component that is a replica, or inside one.
@@ -69,19 +69,19 @@ impl<'a> Report<'a> {
             copies: Vec::new(),
             known_copies: HashMap::new(),
             lines: HashSet::new(),
-            lines_of_none: Vec::new(),
+            lines_without_replica: Vec::new(),
         }
     }
 
-    /// A report about the same texts that nobody hears.
-    pub(crate) fn unheard<'u>(&self, diagnostics: &'u mut Diagnostics) -> Report<'u>
+    /// A report about the same texts that is dropped.
+    pub(crate) fn dropped<'u>(&self, diagnostics: &'u mut Diagnostics) -> Report<'u>
     where
         'a: 'u,
     {
         Report::new(self.sources, diagnostics)
     }
 
-    /// Takes back what was told of this code at this place, since something else says it better.
+    /// Withdraws what was reported of this code at this place, since something else says it better.
     pub(crate) fn withdraw(&mut self, code: &'static Code, at: Location) {
         self.diagnostics.withdraw(code, at);
     }
@@ -103,11 +103,11 @@ impl<'a> Report<'a> {
     }
 
     /// Lets what is said inside be about the fleet, and not about the replica at hand.
-    pub(crate) fn of_all<T>(&mut self, say: impl FnOnce(&mut Self) -> T) -> T {
+    pub(crate) fn about_fleet<T>(&mut self, check: impl FnOnce(&mut Self) -> T) -> T {
         let copy = self.copy.take();
-        let said = say(self);
+        let found = check(self);
         self.copy = copy;
-        said
+        found
     }
 
     /// Lets what is reported inside be of this severity at most.
@@ -131,15 +131,15 @@ impl<'a> Report<'a> {
         self.lines.insert(key);
     }
 
-    /// Adds what is told of a line of a table that is about no replica of this composite, unless it is about one
+    /// Adds a diagnostic about a line of a table that is about no replica of this composite, unless it is about one
     /// elsewhere.
-    pub(crate) fn line_of_none(&mut self, diagnostic: Diagnostic) {
-        self.lines_of_none.push(diagnostic);
+    pub(crate) fn line_without_replica(&mut self, diagnostic: Diagnostic) {
+        self.lines_without_replica.push(diagnostic);
     }
 
-    /// Tells what was said of replicas and lines of tables.
+    /// Reports what was kept of replicas and lines of tables.
     pub(crate) fn finish(&mut self) {
-        for one in std::mem::take(&mut self.lines_of_none) {
+        for one in std::mem::take(&mut self.lines_without_replica) {
             // Said once of each line.
             if self.lines.insert(one.location) {
                 self.diagnostics.push(one);
@@ -147,7 +147,7 @@ impl<'a> Report<'a> {
         }
         for kept in std::mem::take(&mut self.copies) {
             let ReplicaDiagnostic { mut one, first: Copied { path, index }, more, .. } = kept;
-            // What a component around them is told at this place is the same mistake.
+            // What is reported of a component around them at this place is the same mistake.
             if self.said.contains(&said(&one)) {
                 continue;
             }
@@ -187,9 +187,9 @@ impl<'a> Report<'a> {
         let is_of_all = |suggestion: &Suggestion| {
             suggestion.edits.iter().any(|edit| has_expression(self.sources.snippet(edit.location)))
         };
-        let (of_all, suggestions): (Vec<_>, Vec<_>) = one.suggestions.into_iter().partition(is_of_all);
+        let (of_each, suggestions): (Vec<_>, Vec<_>) = one.suggestions.into_iter().partition(is_of_all);
         one.suggestions = suggestions;
-        one.help.extend(of_all.into_iter().map(|suggestion| suggestion.description));
+        one.help.extend(of_each.into_iter().map(|suggestion| suggestion.description));
         self.known_copies.insert(key, self.copies.len());
         self.copies.push(ReplicaDiagnostic { one, first: copy.clone(), last: copy, more: 0 });
     }
@@ -206,7 +206,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// True if a prefix is the first one of its name in its file that is told to be bound to nothing.
+    /// True if a prefix is the first one of its name in its file that is reported to be bound to nothing.
     pub(crate) fn is_first_unbound(&mut self, file: FileId, prefix: &str) -> bool {
         self.unbound.insert((file, prefix.to_owned()))
     }
@@ -216,10 +216,11 @@ impl<'a> Report<'a> {
         self.diagnostics
     }
 
-    /// True if an error was said, of whatever is told at the end as well.
+    /// True if there is an error among what is reported now or at the end.
     pub(crate) fn has_errors(&self) -> bool {
-        let is_told = |one: &&Diagnostic| !self.lines.contains(&one.location);
-        let mut later = self.copies.iter().map(|kept| &kept.one).chain(self.lines_of_none.iter().filter(is_told));
+        let is_open = |one: &&Diagnostic| !self.lines.contains(&one.location);
+        let mut later =
+            self.copies.iter().map(|kept| &kept.one).chain(self.lines_without_replica.iter().filter(is_open));
         self.diagnostics.has_errors() || later.any(|one| one.severity == Severity::Error)
     }
 
@@ -273,7 +274,7 @@ impl<'a> Report<'a> {
         if self.copy.is_none() && self.diagnostics.is_full(code, at.file) {
             return one;
         }
-        let count = candidates.clone().into_iter().take(self.candidates.telling()).count();
+        let count = candidates.clone().into_iter().take(self.candidates.most_to_count()).count();
         if !self.candidates.admit(count) {
             return one;
         }

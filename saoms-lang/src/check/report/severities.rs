@@ -65,7 +65,7 @@ struct Rule {
     set: SetBy,
     scope: Scope,
     is_used: bool,
-    /// True if it is wrong, which is reported: what is no error and it may be about is not told beside that.
+    /// True if it is wrong, which is reported: nothing but errors of its code is reported beside that.
     is_wrong: bool,
 }
 
@@ -162,7 +162,7 @@ impl Severities {
         Self { rules, preventing }
     }
 
-    /// True if files have faults of syntax or structure that nobody lets pass.
+    /// True if files have faults of syntax or structure that no severity lets pass.
     pub(crate) fn is_misread(&self, diagnostics: &Diagnostics) -> bool {
         diagnostics.iter().any(|one| one.code.id.starts_with("S10") && !self.mentions(one.code))
     }

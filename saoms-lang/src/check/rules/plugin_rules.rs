@@ -33,7 +33,7 @@ pub(crate) fn check<'s>(
 ) {
     let mut parts: Vec<usize> = Vec::with_capacity(fleet.members.len());
     let mut indices: Vec<Option<usize>> = Vec::with_capacity(fleet.members.len());
-    // One of each class is enough, and one for all of which nobody knows the class.
+    // One of each class is enough, and one for all whose class is not known.
     let mut missing: Vec<Option<Vec<&'s str>>> = Vec::new();
     let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
     let mut miss = |missing: &mut Vec<_>, class: Option<&'s ClassIndex<'_>>| {
@@ -47,7 +47,7 @@ pub(crate) fn check<'s>(
     }
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
         let class = fleet.class_of(place);
-        // Of two components of one name nobody can say which is meant.
+        // Which of two components of one name is meant is not known.
         if member.runs() && member.repeated.is_none() && check.is_sound() && class.is_some() {
             indices.push(Some(parts.len()));
             parts.push(place);

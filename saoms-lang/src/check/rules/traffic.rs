@@ -44,20 +44,20 @@ pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mu
     let is_lone = |topic: &&TrafficTopic| topic.writers.is_empty() || topic.readers.is_empty();
     let mut lone: HashMap<&str, &TrafficTopic> =
         traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
-    let mut told: HashSet<&str> = HashSet::new();
+    let mut reported: HashSet<&str> = HashSet::new();
     for topic in &traffic.topics {
         if lone.contains_key(topic.name.as_str())
             && let Some(meant) = meant(topic, &mut similar)
         {
             for name in [topic.name.as_str(), meant.name.as_str()] {
                 lone.remove(name);
-                told.insert(name);
+                reported.insert(name);
             }
             all.near(topic, meant, report);
         }
     }
     for topic in &traffic.topics {
-        if !told.contains(topic.name.as_str())
+        if !reported.contains(topic.name.as_str())
             && let Some(meant) = left(topic, &mut similar).or_else(|| all.missed(topic, &mut similar))
         {
             all.alone(topic, meant, report);
@@ -158,7 +158,7 @@ impl All<'_> {
         });
     }
 
-    /// Says that one end of a topic is nobody.
+    /// Reports a topic without writers or without readers.
     fn lone(&self, topic: &TrafficTopic, report: &mut Report<'_>) {
         let (code, does, ends, missing): (&'static Code, _, _, _) = match topic.writers.is_empty() {
             true => (&codes::TOPIC_UNWRITTEN, "reads", &topic.readers, "publishes"),
@@ -176,7 +176,7 @@ impl All<'_> {
         let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
         let pace = topic.pace();
         let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
-        // Those of one period, and of these those that lose messages with one queue: one is told of each, since a fleet
+        // Those of one period, and of these those that lose messages with one queue: each is reported once, since a fleet
         // of robots says the same.
         let mut alike: HashMap<Duration, Vec<TopicEnd>> = HashMap::new();
         let mut queues: HashMap<(Duration, usize), Vec<TopicEnd>> = HashMap::new();
@@ -247,7 +247,7 @@ fn meant<'t>(lone: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t Traff
     })
 }
 
-/// The topic that a component has left that uses this one alone and hears nobody but itself: of the same messages, with
+/// The topic that a component has left that uses this one alone and hears only itself: of the same messages, with
 /// nearly its name, and used by several others.
 fn left<'t>(topic: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t TrafficTopic> {
     let only = topic.writers.first()?.component;

@@ -61,7 +61,7 @@ impl Task<'_, '_> {
                 self.credentials(&properties, report);
                 Some(properties)
             }
-            // Not reached with sound properties; and if it is, somebody hears of it.
+            // Not reached with sound properties; and if it is, it is reported.
             Err(failure) => {
                 let name = &self.component.name;
                 let message = format!("component {}: {failure}", quoted(name));

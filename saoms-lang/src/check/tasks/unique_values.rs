@@ -43,8 +43,8 @@ pub(crate) struct Unique<'a> {
     pub(crate) repeated: RepeatedValues,
 }
 
-/// The places of values that components share and must not, which is reported, with whether replicas have them. Rules
-/// over them say no more.
+/// The places of values that components share and must not, which is reported: with whether replicas have them. Rules
+/// over them report nothing else.
 #[derive(Default)]
 pub(crate) struct RepeatedValues(HashMap<Location, bool>);
 
@@ -90,8 +90,8 @@ impl<'a> Unique<'a> {
             }
             if entry.is_task_id() {
                 let (first, of_first) = *self.tasks.entry(value.clone()).or_insert((user, word));
-                let is_told = word.is_some() && word == of_first;
-                if is_other(&first) && !is_told {
+                let is_reported = word.is_some() && word == of_first;
+                if is_other(&first) && !is_reported {
                     task(&value, [first, user], fleet, report);
                 }
             }

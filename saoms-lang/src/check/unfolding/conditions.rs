@@ -24,7 +24,7 @@ struct Included<'a> {
     open: Vec<&'a Include>,
 }
 
-/// True if a component is there.
+/// Presence of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Presence {
     There,
@@ -62,8 +62,8 @@ impl<'a> Unfolding<'a, '_, '_> {
     /// The scope of expressions in a unit of these composites. What is wrong with the values of their properties is
     /// reported when the whole fleet is known.
     fn names_in(&mut self, composites: &[&'a Composite], unit: usize, owner: Option<usize>) -> Names {
-        let mut unheard = Diagnostics::new();
-        let report = &mut self.report.unheard(&mut unheard);
+        let mut dropped = Diagnostics::new();
+        let report = &mut self.report.dropped(&mut dropped);
         let owner = owner.map(|owner| &self.fleet.members[owner]);
         self.parameters.declare(unit, (composites, false), owner, report);
         let component = owner.map(|owner| owner.component);

@@ -119,7 +119,7 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     sizes: HashMap<usize, usize>,
     pub(crate) replicas: Appender<'a, Replica>,
     pub(crate) replicas_left: Budget,
-    /// The properties for what expressions take while composites are unfolded. Their faults are told later, when the
+    /// The properties for what expressions take while composites are unfolded. Their faults are reported later, when the
     /// properties of the whole fleet are found.
     pub(crate) parameters: Parameters<'a>,
 }
@@ -224,7 +224,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             return;
         }
         if !self.is_there(include.condition.as_ref(), include.origin, unit) {
-            // Its components see what they would see, and nobody sees them.
+            // Its components see what they would see, and no other sees them.
             let unit = self.absent_unit(unit);
             return self.open(place, composite, unit, Some(naming));
         }

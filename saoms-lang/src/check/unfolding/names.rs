@@ -9,7 +9,7 @@ use crate::model::{Composite, Missing, Naming, Version};
 use crate::source::{Location, Span};
 use crate::syntax::{Element, escaped};
 
-/// Checks that no two components have one path. Where nobody gives one, names alone see to that.
+/// Checks that no two components have one path. Where none is given, names alone see to that.
 pub(crate) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     if fleet.members.iter().all(|member| member.component.path.is_none()) {
         return;

@@ -80,7 +80,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         true
     }
 
-    /// Looks at a component of which it is not known how many there are.
+    /// Looks at a component whose number of replicas is not known.
     fn unplanned(&mut self, component: &'a ComponentElement, replicas: &Replicas, names: &Rc<Names>) {
         let first = first_index(replicas, names);
         let index = first.unwrap_or(1);

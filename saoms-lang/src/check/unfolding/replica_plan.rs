@@ -116,7 +116,7 @@ impl<'a> Plan<'a> {
     /// Finds the line of each replica. What is wrong with the lines is reported.
     fn rows(&mut self, table: &Table, report: &mut Report<'_>) {
         if self.left.is_empty() {
-            // As where the number comes from outside: nothing in the table is about anybody now.
+            // As where the number comes from outside: no line of the table is about a replica now.
             return;
         }
         let is_by_name = table.key == *"name";
@@ -159,7 +159,7 @@ impl<'a> Plan<'a> {
                 };
                 // Fewer robots than the table knows are no mistake where the number is set from outside.
                 let severity = if is_possible { Severity::Warning } else { Severity::Error };
-                report.line_of_none(one.severity(severity));
+                report.line_without_replica(one.severity(severity));
                 continue;
             };
             report.line(row.key.location);
@@ -202,7 +202,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The names of which a table says nothing, in order.
+/// The names without a line in a table, in order.
 fn without_line<'n>(names: &'n HashMap<String, i64>, table: &Table) -> Vec<&'n str> {
     let said: HashSet<&str> = table.rows.iter().map(|row| row.key.as_str()).collect();
     let mut names: Vec<&str> = names.keys().map(String::as_str).filter(|name| !said.contains(name)).collect();

@@ -89,7 +89,7 @@ impl Names {
             Some(Name { mistyped: Some(property), text: Ok(Some(text)), .. }) => {
                 let faulty = &self.faulty;
                 faulty.is_mistyped(text.location)
-                    || report.of_all(|report| !value_type::holds_by_name(property, text, faulty, report))
+                    || report.about_fleet(|report| !value_type::holds_by_name(property, text, faulty, report))
             }
             Some(Name { text: Err(Faulty), .. }) => true,
             Some(Name { lack, text: Ok(None), .. }) => lack.replace(Some(Faulty)).is_some(),

@@ -219,7 +219,7 @@ impl<'p> Test<'p> {
         self.name.is_none_or(|name| one.local_name() == name)
     }
 
-    /// The reason why the step at these bytes leads to none of these elements, of which some have its name.
+    /// The reason why the step at these bytes leads to none of these elements, some of which have its name.
     pub(crate) fn fault(&self, at: Range<usize>, all: &[Element<'_>], named: &[Element<'_>]) -> PathFault {
         if named.is_empty() {
             let known = different(all.iter().map(|one| one.local_name()));

@@ -1,4 +1,4 @@
-//! Values as files give them, before anybody asks what they should be.
+//! Values as files give them, before they are held against what they should be.
 
 use std::borrow::Cow;
 use std::rc::Rc;
@@ -185,7 +185,7 @@ fn ways<'a>(
 }
 
 /// Reports a value beside a `source`, which comes before all others (SCA Assembly 1.1, 4.5). Where the composite's
-/// property has no value of its own, it is what counts until somebody gives one from outside.
+/// property has no value of its own, it is what counts until one is given from outside.
 pub(crate) fn beside_source(property: &Property, source: &Text, document: &Document, report: &mut Report<'_>) {
     let texts = [property.value.as_ref(), property.text.as_ref(), property.file()];
     let listed = property.values().first().map(Part::tag);

@@ -112,7 +112,7 @@ impl<'a> SharedValues<'a> {
         let mut steps = all.iter();
         // Once the limit is reached, no path is walked any more.
         look_at(0, &all[0].0, budget)?;
-        // From the last step on of which it is known where it leads.
+        // From the last step on whose end is known.
         let known = (1..=all.len()).rev().find_map(|count| Some((count, self.known(path, &all[count - 1])?)));
         let mut level = match known {
             Some((count, found)) => {

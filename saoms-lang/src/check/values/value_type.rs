@@ -1,5 +1,5 @@
-//! The simple types of XML Schema that properties name: values against them, and the types of two properties of which
-//! one gives the other its values. Values of other types are accepted unjudged.
+//! The simple types of XML Schema that properties name: values against them, and the types of two properties where one
+//! gives the other its values. Values of other types are accepted unjudged.
 
 use std::ops::RangeInclusive;
 
@@ -80,7 +80,7 @@ fn holds(
     false
 }
 
-/// Reports two properties of simple types of XML Schema of which neither holds the values of the other. What other
+/// Reports two properties of simple types of XML Schema where neither holds the values of the other. What other
 /// types and elements are made of is in the schemas of users. The other one is the declaration of the first, or where
 /// the `source` at a place leads to.
 pub(crate) fn check_match(own: Typed<'_>, other: Typed<'_>, source: Option<Location>, report: &mut Report<'_>) {

@@ -7,7 +7,7 @@ use crate::check::contracts::offer::Provider;
 use crate::check::fleet::Fleet;
 use crate::registry::InterfaceDeclaration;
 
-/// The services of each scope by interface, collected when somebody asks.
+/// The services of each scope by interface, collected when they are asked for.
 #[derive(Default)]
 pub(crate) struct Autowire<'c> {
     scopes: HashMap<usize, Services<'c>>,
@@ -18,7 +18,7 @@ pub(crate) struct Autowire<'c> {
 struct Services<'c> {
     /// By the name of the interface, with the component of the scope that offers each.
     by_interface: HashMap<&'c str, Vec<(usize, Provider)>>,
-    /// True if there are components of which it is not known what they offer.
+    /// True if there are components whose services are not known.
     is_open: bool,
 }
 

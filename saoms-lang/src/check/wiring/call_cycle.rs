@@ -27,7 +27,7 @@ struct Wire<'f> {
 
 impl<'f> CallCycles<'f> {
     /// Adds a wire, unless no circle can go through it: what the host serves for a component does not disturb the
-    /// component, and one without references calls nobody.
+    /// component, and one without references calls none.
     pub(crate) fn add(&mut self, member: usize, reference: &'f str, to: Provider, place: Location, fleet: &Fleet<'_>) {
         let ends = fleet
             .class_of(to.member)

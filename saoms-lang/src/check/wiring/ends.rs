@@ -39,7 +39,7 @@ impl<'f> Wires<'f, '_> {
     ) -> Ends {
         let (fleet, promoted) = (self.fleet, self.promoted);
         let mut ends = self.level(place, Some(interface), report);
-        // That the reference of a composite has too many is told where it has them.
+        // That the reference of a composite has too many is reported where it has them.
         ends.is_unknown |= ends.written.len() > 1
             && !fleet.members[place.0].runs()
             && fleet.multiplicity(place).is_some_and(|takes| !takes.is_many());

@@ -93,7 +93,7 @@ struct Narrower<'f> {
 }
 
 /// Checks the multiplicities of what a composite's reference promotes, and that it may be overridden. What is wrong
-/// with several of them is told once, as one thing is to be changed.
+/// with several of them is reported once, as one thing is to be changed.
 pub(crate) fn multiplicities<'f>(
     by: &ReferenceElement,
     found: impl Iterator<Item = ReferenceId<'f>>,

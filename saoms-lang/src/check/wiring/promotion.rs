@@ -21,7 +21,7 @@ pub(crate) struct Promoted<'f> {
     pub(crate) outermost: HashMap<ReferenceId<'f>, Vec<&'f Text>>,
     /// By composites that implement components: to these references of theirs.
     pub(crate) to: HashMap<ReferenceId<'f>, Vec<ReferenceId<'f>>>,
-    /// Those of which one composite's reference promotes several with different interfaces, which is reported.
+    /// Those that one composite's reference promotes together although their interfaces differ, which is reported.
     pub(crate) differing: HashSet<ReferenceId<'f>>,
     /// Names of promoted parts that are not there, which is reported.
     pub(crate) dangling: DanglingNames<'f>,

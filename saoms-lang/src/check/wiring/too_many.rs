@@ -50,7 +50,7 @@ impl<'f> Wires<'f, '_> {
         });
     }
 
-    /// With the replicas of which one is probably meant by a text that names all of them.
+    /// With the replicas one of which is probably meant by a text that names all of them.
     fn one_of(&self, text: &Text, members: &[usize], own: usize, one: Diagnostic) -> Diagnostic {
         let (component, _) = parts(text);
         let rest = &text[component.len()..];
