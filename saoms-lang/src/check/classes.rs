@@ -1,6 +1,6 @@
 //! The class of each component.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use crate::check::fleet::class_index::ClassIndex;
@@ -12,7 +12,7 @@ use crate::expression::has_expression;
 use crate::limits::OFFERED_NAMES;
 use crate::model::{ComponentElement, Contribution, ImplementationKind, LibraryLink, Part};
 use crate::registry::Registry;
-use crate::source::{Sources, Text};
+use crate::source::{FileId, Sources, Text};
 
 /// Finds the class of every component.
 pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options: &Options, report: &mut Report<'_>) {
@@ -61,20 +61,30 @@ pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options
         };
     }
     report.about_all();
+    if !options.assume_classes {
+        without_implementation(fleet, report);
+    }
+}
+
+/// Makes errors of what the loader reports as a warning in files of SCA 1.0: components without an implementation.
+fn without_implementation(fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let lacking = fleet.members.iter().filter(|member| !member.is_absent && member.component.implementation.is_none());
+    let files: HashSet<FileId> = lacking.map(|member| member.component.origin.file()).collect();
+    if !files.is_empty() {
+        report.diagnostics().adjust(0, |one| {
+            let is_meant = one.code == &codes::MISSING_IMPLEMENTATION && files.contains(&one.location.file);
+            if is_meant && one.severity == Severity::Warning {
+                one.severity = Severity::Error;
+                one.help.push("SCA 1.0 allows a component without an implementation, but it cannot run".to_owned());
+            }
+        });
+    }
 }
 
 /// The name of the class of a component that names one.
 fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &mut Report<'_>) -> Option<&'a Text> {
     const SUPPORTED: &str = "components are implemented by a class: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
-    let Some(implementation) = &component.implementation else {
-        if assume_classes {
-            return None;
-        }
-        // Reported by the loader, for SCA 1.0 as a warning.
-        let why = "SCA 1.0 allows a component without an implementation, but it cannot run";
-        report.diagnostics().escalate(&codes::MISSING_IMPLEMENTATION, component.origin.file(), why);
-        return None;
-    };
+    let implementation = component.implementation.as_ref()?;
     match &implementation.kind {
         ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
         // Unfolded already.

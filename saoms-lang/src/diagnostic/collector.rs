@@ -1,6 +1,6 @@
 //! The collection of diagnostics.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 
 use super::codes::{Nature, natures};
 use super::{Code, Diagnostic, Severity, codes};
@@ -23,8 +23,6 @@ pub struct Diagnostics {
     /// overlaps another.
     damaged: BTreeMap<(FileId, u32), u32>,
     hidden: HiddenNames,
-    /// The codes whose warnings are errors in a file.
-    escalated: HashSet<(FileId, &'static str)>,
 }
 
 /// The kinds of names that faults of texts may hide: one of them that is found nowhere may be there.
@@ -120,27 +118,6 @@ impl Diagnostics {
         let count = self.counts.entry((file, code.id)).or_insert(new);
         count.number += 1;
         count
-    }
-
-    /// Makes errors of all warnings of one code that one file has so far, once, and says why: what a file may say can
-    /// still be wrong for what is to be done with it.
-    pub fn escalate(&mut self, code: &'static Code, file: FileId, why: &str) {
-        if !self.escalated.insert((file, code.id)) {
-            return;
-        }
-        let is_meant =
-            |one: &&mut Diagnostic| one.code == code && one.location.file == file && one.severity == Severity::Warning;
-        let mut kept = 0;
-        for one in self.items.iter_mut().filter(is_meant) {
-            one.severity = Severity::Error;
-            one.help.push(why.to_owned());
-            kept += 1;
-        }
-        // Those that were not kept are of the severity of the last that was.
-        let beyond = self.counts.get(&(file, code.id)).map_or(0, |count| count.number - count.kept);
-        let changed = if kept > 0 { kept + beyond as usize } else { 0 };
-        self.warnings -= changed;
-        self.errors += changed;
     }
 
     /// Lets severities be set: `set` changes the diagnostics from this place on. Those that are allowed count no more.

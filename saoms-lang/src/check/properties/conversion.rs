@@ -218,10 +218,10 @@ fn given_parts<'e>(elements: &[Element<'e>], target: Target<'_>, report: &mut Re
 fn tell(mut one: Diagnostic, target: Target<'_>, report: &mut Report<'_>) {
     if let Some(Source { at, faulty, is_copy }) = target.source {
         // It is not of the type of the composite's property, or another replica takes it.
-        if faulty.is_mistyped(one.location) || is_copy && faulty.is_refused_of(one.code, one.location, true) {
+        let is_mistyped = faulty.has(&codes::COMPOSITE_VALUE_TYPE, one.location, false);
+        if is_mistyped || !faulty.add(one.code, one.location, is_copy) && is_copy {
             return;
         }
-        faulty.add_refused(one.code, one.location, is_copy);
         one = one.label(at, format!("used here as {}", target.quoted()));
     }
     one.help.extend(target.about());

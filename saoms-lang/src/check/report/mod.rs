@@ -110,20 +110,12 @@ impl<'a> Report<'a> {
         found
     }
 
-    /// Lets what is reported inside be of this severity at most.
-    pub(crate) fn at_most<T>(&mut self, most: Severity, check: impl FnOnce(&mut Self) -> T) -> T {
-        let around = std::mem::replace(&mut self.most, most);
-        let found = check(self);
-        self.most = around;
-        found
-    }
-
-    /// Lets what is reported inside have this line of help as well.
-    pub(crate) fn with_help<T>(&mut self, help: Option<&'static str>, check: impl FnOnce(&mut Self) -> T) -> T {
-        let around = std::mem::replace(&mut self.help, help);
-        let found = check(self);
-        self.help = around;
-        found
+    /// Lets what is reported inside be of this severity at most, and have this line of help as well.
+    pub(crate) fn within(&mut self, most: Severity, help: Option<&'static str>, check: impl FnOnce(&mut Self)) {
+        let around = (self.most, self.help);
+        (self.most, self.help) = (most, help);
+        check(self);
+        (self.most, self.help) = around;
     }
 
     /// Notes that there is a replica that the line of a table is about which has its name or index here.

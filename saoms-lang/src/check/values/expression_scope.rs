@@ -11,7 +11,7 @@ use crate::check::values::raw::Piece;
 use crate::check::values::shared_values::Answer;
 use crate::check::values::value_type::SimpleType;
 use crate::check::values::{type_name, value_type};
-use crate::diagnostic::{nearest, quoted};
+use crate::diagnostic::{codes, nearest, quoted};
 use crate::expression::{ExpressionError, ExpressionValue, INDEX};
 use crate::limits::MISSPELT_NAMES;
 use crate::model::{ComponentElement, Composite, Property};
@@ -88,7 +88,7 @@ impl Names {
         match self.all.get(name) {
             Some(Name { mistyped: Some(property), text: Ok(Some(text)), .. }) => {
                 let faulty = &self.faulty;
-                faulty.is_mistyped(text.location)
+                faulty.has(&codes::COMPOSITE_VALUE_TYPE, text.location, false)
                     || report.about_fleet(|report| !value_type::holds_by_name(property, text, faulty, report))
             }
             Some(Name { text: Err(Faulty), .. }) => true,

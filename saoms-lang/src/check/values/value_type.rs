@@ -62,7 +62,7 @@ fn holds(
     let at = if is_hidden { property.tag() } else { value.location };
     let code = &codes::COMPOSITE_VALUE_TYPE;
     // The class that takes a value may refuse it as well, which says more.
-    if report.skip(code, Severity::Error, at) || faulty.is_refused(value.location) || !faulty.add_mistyped(at) {
+    if report.skip(code, Severity::Error, at) || faulty.is_refused(value.location) || !faulty.add(code, at, false) {
         return false;
     }
     let message = format!(

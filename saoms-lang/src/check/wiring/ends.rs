@@ -7,7 +7,7 @@ use crate::check::contracts::offer::ReferenceId;
 use crate::check::contracts::offer::{Provider, parts};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::ReferenceElement;
 use crate::registry::InterfaceDeclaration;
 use crate::source::{Location, Text};
@@ -103,7 +103,7 @@ impl<'f> Wires<'f, '_> {
         for text in declared.map_or(&[][..], |declared| &declared.targets) {
             let is_inside = inner.is_some_and(|inner| fleet.find(inner.scope, parts(text).0).is_some());
             let help = "what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`";
-            report.with_help(is_inside.then_some(help), |report| {
+            report.within(Severity::Error, is_inside.then_some(help), |report| {
                 self.add(text, (scope, own), true, interface, &mut ends, report);
             });
         }

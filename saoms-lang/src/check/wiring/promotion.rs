@@ -38,7 +38,7 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
         // other programs report those of SCA 1.0. A component that it implements is another matter.
         let is_lenient = is_outermost(&unit) && unit.composites.iter().all(|composite| !composite.version.is_1_1());
         let most = if is_lenient { Severity::Warning } else { Severity::Error };
-        report.at_most(most, |report| all.add(unit, fleet, report));
+        report.within(most, None, |report| all.add(unit, fleet, report));
     }
     all
 }
