@@ -177,7 +177,7 @@ impl Loader<'_> {
             after: self.optional(element, "after"),
             remove: self.boolean(element, "remove"),
             properties,
-            is_misread: element.is_damaged() || self.diagnostics.len() > known,
+            is_misread: self.diagnostics.len() > known || self.faults.iter().any(|one| element.span().contains(*one)),
         }
     }
 

@@ -59,6 +59,7 @@ pub fn load_file(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics)
         damage::add(&document, diagnostics);
     }
     let mut loader = Loader::new(Version::Osoa10, "", diagnostics);
+    loader.faults = faults.iter().map(|fault| fault.location.span).collect();
     let composite = loader.root(document.root()).then(|| {
         let document = Arc::new(document);
         let composite = loader.composite(&document);
@@ -111,6 +112,8 @@ struct Loader<'d> {
     /// The first attribute that probably says how many replicas there are, and is passed over for its namespace: this
     /// and its name.
     passed_over: Option<(String, String)>,
+    /// The places of the faults of the text.
+    faults: Vec<Span>,
     /// The severity settings.
     severities: Vec<SeverityRule>,
 }
@@ -126,6 +129,7 @@ impl<'d> Loader<'d> {
             meant: Vec::new(),
             refused: Vec::new(),
             passed_over: None,
+            faults: Vec::new(),
             severities: Vec::new(),
         }
     }
