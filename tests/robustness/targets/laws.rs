@@ -79,7 +79,8 @@ fn mended(input: &Input, fleet: &Compilation, settings: Settings, registry: &Reg
     assert!(parsed(text).is_none() || parsed(&edited).is_some(), "{}", context());
     let after = Input::Text(edited.clone()).compiled(settings, registry);
     let number = |fleet: &Compilation| kinds(fleet).iter().filter(|kind_| **kind_ == kind(one)).count();
-    // Where tags do not fit at several places, which of them is wrong is a guess: to mend one may make another the wrong one.
+    // Where tags do not fit at several places, which of them is wrong is a guess: when one is mended, another may be
+    // the wrong one.
     let is_mismatch = |one: &&Diagnostic| one.code == &codes::XML_TAG_MISMATCH;
     if one.code == &codes::XML_TAG_MISMATCH && fleet.diagnostics.iter().filter(is_mismatch).count() > 1 {
         return;

@@ -77,7 +77,7 @@ impl<'a> Parameters<'a> {
             return Ok(());
         }
         unit.source = Some(Faulty);
-        // That it is not there is reported where a component gives it a value, or where one is declared without its name.
+        // That it is not there is reported where a component gives it a value, or where one is declared without a name.
         if unit.name.is_some() || unit.owner.is_some_and(|owner| owner.property(name).is_some()) {
             return Err(Faulty);
         }

@@ -176,8 +176,8 @@ impl All<'_> {
         let fastest = topic.writers.iter().filter_map(|writer| writer.period).min();
         let pace = topic.pace();
         let parts: u64 = topic.writers.iter().map(|writer| u64::from(writer.parts)).sum();
-        // Those of one period, and of these those that lose messages with one queue: each is reported once, since a fleet
-        // of robots says the same.
+        // Those of one period, and of these those that lose messages with one queue: each is reported once, since a
+        // fleet of robots says the same.
         let mut alike: HashMap<Duration, Vec<TopicEnd>> = HashMap::new();
         let mut queues: HashMap<(Duration, usize), Vec<TopicEnd>> = HashMap::new();
         let losing = |reader: &TopicEnd| {

@@ -119,8 +119,8 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     sizes: HashMap<usize, usize>,
     pub(crate) replicas: Appender<'a, Replica>,
     pub(crate) replicas_left: Budget,
-    /// The properties for what expressions take while composites are unfolded. Their faults are reported later, when the
-    /// properties of the whole fleet are found.
+    /// The properties for what expressions take while composites are unfolded. Their faults are reported later, when
+    /// the properties of the whole fleet are found.
     pub(crate) parameters: Parameters<'a>,
 }
 

@@ -25,8 +25,8 @@ pub(crate) struct Wire<'f> {
     pub(crate) is_replacing: bool,
 }
 
-/// The `<wire>` elements of all composites by the reference they start from, whose name is empty where any may be meant,
-/// and those that start nowhere.
+/// The `<wire>` elements of all composites by the reference they start from, whose name is empty where any may be
+/// meant, and those that start nowhere.
 pub(crate) fn wires<'f>(
     fleet: &'f Fleet<'_>,
     options: &Options,
