@@ -25,6 +25,11 @@ pub(crate) struct FleetArguments {
     #[command(flatten)]
     pub(crate) plugins: PluginArguments,
 
+    /// Read also what composites name outside their folders and contributions; without it, a composite of somebody else
+    /// cannot show your files
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
+
     /// Refuse larger files
     #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
     pub(crate) max_size: u64,

@@ -22,6 +22,7 @@ pub(crate) fn project(arguments: &FleetArguments) -> Project {
         .severities(&arguments.severities)
         .environment(|name| env::var_os(name))
         .max_size(arguments.max_size)
+        .allow_outside(arguments.allow_outside)
 }
 
 /// Takes a step with a project and the classes of a command line.

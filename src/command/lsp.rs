@@ -20,6 +20,10 @@ pub(crate) struct LspArguments {
     /// Take classes that this program does not know as given, as `saoms check --assume-classes` does
     #[arg(long)]
     pub(crate) assume_classes: bool,
+
+    /// Read also what composites name outside their folders and contributions, as `saoms check --allow-outside` does
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
 }
 
 pub(super) fn lsp(arguments: &LspArguments) -> Exit {

@@ -56,6 +56,7 @@ enum FileKind {
 pub(super) struct Checker {
     pub(super) registries: Arc<Registries>,
     pub(super) assume_classes: bool,
+    pub(super) allow_outside: bool,
     /// The newest generation: older jobs are given up.
     pub(super) newest: Arc<AtomicU64>,
     pub(super) workspace: Workspace,
@@ -145,6 +146,7 @@ impl Checker {
         // Nothing of a plugin runs because somebody looks at a file.
         let project = Project::new()
             .files(fleet)
+            .allow_outside(self.allow_outside)
             .open_texts(job.open.clone())
             .assume_classes(self.assume_classes)
             .without_plugin_code()

@@ -42,6 +42,7 @@ pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
     let checker = Checker {
         registries: Arc::clone(&registries),
         assume_classes: arguments.assume_classes,
+        allow_outside: arguments.allow_outside,
         newest: Arc::clone(&newest),
         workspace: Workspace::default(),
     };

@@ -54,6 +54,9 @@ fn value(tag: &BytesStart<'_>, name: &str) -> Option<String> {
 
 /// The result of the first tag of a file.
 fn first_tag<T>(path: &Path, open: &OpenTexts, make: impl FnOnce(&BytesStart<'_>) -> Option<T>) -> Option<T> {
+    if open.outside(path).is_some() {
+        return None;
+    }
     let mut bytes = Vec::new();
     let text = if let Some(open) = open.get(path) {
         Cow::Borrowed(open.as_str())

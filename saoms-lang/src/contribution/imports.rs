@@ -170,6 +170,10 @@ impl Imports {
     }
 
     fn description(&mut self, root: &Path, context: &mut ReadContext<'_>) -> Option<&Description> {
+        if description::path_in(root).is_some() {
+            // What describes itself as a contribution is there for others to read.
+            context.sources.open().permit(root);
+        }
         let known = self.descriptions.entry(root.to_owned());
         known.or_insert_with(|| Description::of(root, context)).as_ref()
     }

@@ -334,7 +334,7 @@ pub(super) fn describes(folder: &Path) -> bool {
 }
 
 /// The nearest folder from `folder` up that describes a contribution; `folder` itself where there is none.
-pub(super) fn root(folder: &Path) -> PathBuf {
+pub fn root(folder: &Path) -> PathBuf {
     // The folder that we are in, which an empty path means, has no absolute one by that name.
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(absolute) = std::path::absolute(here) else { return folder.to_owned() };

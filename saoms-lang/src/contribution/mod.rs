@@ -23,7 +23,7 @@ use std::path::Path;
 pub use finder::{Finder, SideFile};
 pub use fleets::{FolderFleet, composites_below, load_folder};
 pub use imports::{imported_near, importing_near};
-pub use index::{composites_near, description_near};
+pub use index::{composites_near, description_near, root};
 pub use overrides::table;
 pub use resolve::load_named;
 pub use values::read_values;

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::encoding;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes, nearest_few, quoted};
@@ -148,6 +148,8 @@ enum Failure {
     Irregular,
     /// With the size, where it is known.
     TooLarge(Option<u64>),
+    /// Nobody allowed to read it; with its path without links.
+    Outside(PathBuf),
     Io(io::Error),
 }
 
@@ -170,6 +172,14 @@ impl Failure {
                     None => format!("the file has more than the limit of {max_size} bytes"),
                 };
                 (&codes::FILE_TOO_LARGE, message, Some("the limit is set with `--max-size`".to_owned()))
+            }
+            Self::Outside(real) => {
+                let message = "this file is outside the folder of the composite, and is not read".to_owned();
+                let help = format!(
+                    "it is {}: keep it in the folder of the composite or in its contribution, or allow it with `--allow-outside`",
+                    quoted(&real.display().to_string())
+                );
+                (&codes::FILE_OUTSIDE, message, Some(help))
             }
             Self::Io(error) if error.raw_os_error() == Some(libc::ELOOP) => {
                 let help = "let it lead to a file, or remove it".to_owned();
@@ -195,6 +205,9 @@ impl Failure {
 }
 
 fn bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failure> {
+    if let Some(real) = open.outside(path) {
+        return Err(Failure::Outside(real));
+    }
     if let Some(text) = open.get(path) {
         return limited(text.as_bytes(), Vec::with_capacity(text.len()), max_size);
     }
@@ -214,7 +227,7 @@ fn bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failur
 fn named_bytes(path: &Path, max_size: u64, open: &OpenTexts) -> Result<Vec<u8>, Failure> {
     let about = fs::metadata(path);
     let is_irregular = about.is_ok_and(|about| !about.is_file() && !about.is_dir());
-    if is_irregular && open.get(path).is_none() {
+    if is_irregular && open.get(path).is_none() && open.outside(path).is_none() {
         return Err(Failure::Irregular);
     }
     bytes(path, max_size, open)

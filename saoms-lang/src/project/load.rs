@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{ClassPath, Classes, Compilation, Input, PluginFault, Project, folder, libraries};
 use crate::assembly::Assembly;
 use crate::check::{self, Occurrences, Options, Setting, SeveritySetting, Variable};
-use crate::contribution::{Finder, read_values};
+use crate::contribution::{Finder, read_values, root};
 use crate::diagnostic::Diagnostics;
 use crate::load::{self, STANDARD_INPUT, load_file, read_from};
 use crate::model::{Composite, Contribution};
@@ -56,7 +56,24 @@ impl Project {
         self.load_fleet(&inputs, finder, classes, options, (sources, diagnostics))
     }
 
+    /// No texts yet. What is asked for may be read, and what belongs to it.
     pub(super) fn sources(&self) -> Sources {
+        let permit = |path: &Path, folder: &Path| {
+            self.open.permit(path);
+            self.open.permit(folder);
+            self.open.permit(&root(folder));
+        };
+        let above = |path: &Path| path.parent().unwrap_or(Path::new("")).to_owned();
+        for input in &self.inputs {
+            match input {
+                Input::Path(path) if path.is_dir() => permit(path, path),
+                Input::Path(path) => permit(path, &above(path)),
+                Input::Text { name, .. } => permit(Path::new(name), &above(Path::new(name))),
+            }
+        }
+        for (name, _) in &self.others {
+            permit(Path::new(name), &above(Path::new(name)));
+        }
         Sources::with_open(self.open.clone())
     }
 

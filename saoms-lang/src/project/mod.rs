@@ -52,6 +52,7 @@ pub struct Project {
     /// Composites that are not part of the fleet, but can be named by it: names and texts.
     others: Vec<(String, String)>,
     open: OpenTexts,
+    allows_outside: bool,
     settings: Vec<String>,
     severities: Vec<String>,
     environment: Environment,
@@ -83,7 +84,8 @@ impl Project {
         Self {
             inputs: Vec::new(),
             others: Vec::new(),
-            open: OpenTexts::default(),
+            open: OpenTexts::default().confined(true),
+            allows_outside: false,
             settings: Vec::new(),
             severities: Vec::new(),
             environment: Arc::new(|_| None),
@@ -134,7 +136,15 @@ impl Project {
     /// Takes these texts in place of what their files hold on disk.
     #[must_use]
     pub fn open_texts(self, open: OpenTexts) -> Self {
-        Self { open, ..self }
+        Self { open: open.confined(!self.allows_outside), ..self }
+    }
+
+    /// Reads whatever file a composite names. Without it, a file is read that was asked for, that is in the folder of
+    /// such a one or in its contribution, or in a contribution that this one may import from: links count as what they
+    /// lead to. What a composite of somebody else names could otherwise be any file of the user.
+    #[must_use]
+    pub fn allow_outside(self, allows_outside: bool) -> Self {
+        Self { open: self.open.confined(!allows_outside), allows_outside, ..self }
     }
 
     /// Gives a composite property another value, as `NAME=VALUE`.

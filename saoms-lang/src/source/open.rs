@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::fs::File;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Texts that count in place of what their files hold on disk.
@@ -12,6 +12,8 @@ pub struct OpenTexts {
     texts: HashMap<PathBuf, Arc<String>>,
     /// The files that were read from disk, of all clones together.
     read: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// The files and folders that may be read, of all clones together; `None` where all may.
+    inside: Option<Arc<Mutex<BTreeSet<PathBuf>>>>,
 }
 
 impl OpenTexts {
@@ -24,6 +26,26 @@ impl OpenTexts {
     pub fn get(&self, path: &Path) -> Option<&Arc<String>> {
         // As a rule there are none, and then the file system need not be asked.
         if self.texts.is_empty() { None } else { self.texts.get(&identity(path)) }
+    }
+
+    /// The same, with nothing to be read but what is [`permit`](Self::permit)ted, or with all files.
+    #[must_use]
+    pub(crate) fn confined(self, is_confined: bool) -> Self {
+        Self { inside: is_confined.then(Arc::default), ..self }
+    }
+
+    /// Lets a file be read, or all in a folder and below.
+    pub(crate) fn permit(&self, path: &Path) {
+        let Some(inside) = &self.inside else { return };
+        inside.lock().unwrap_or_else(PoisonError::into_inner).insert(real(path));
+    }
+
+    /// The path, without links, of a file that must not be read; `None` for one that may be.
+    pub(crate) fn outside(&self, path: &Path) -> Option<PathBuf> {
+        let inside = self.inside.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner);
+        let real = real(path);
+        let is_inside = real.ancestors().any(|above| inside.contains(above));
+        (!is_inside).then_some(real)
     }
 
     /// Opens a file on disk to read it, and keeps that in mind.
@@ -43,6 +65,21 @@ impl OpenTexts {
         let folder = (!self.texts.is_empty()).then(|| identity(folder));
         self.texts.keys().map(PathBuf::as_path).filter(move |path| path.parent() == folder.as_deref())
     }
+}
+
+/// The absolute path without links and `..`, also of a file that does not exist.
+fn real(path: &Path) -> PathBuf {
+    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let known = absolute.ancestors().find_map(|above| Some((above, above.canonicalize().ok()?)));
+    let Some((above, mut real)) = known else { return absolute };
+    for part in absolute.strip_prefix(above).unwrap_or(Path::new("")).components() {
+        match part {
+            Component::ParentDir => _ = real.pop(),
+            part => real.push(part),
+        }
+    }
+    real
 }
 
 /// One path for one file, however it is written.

@@ -50,7 +50,8 @@ fn fixes(id: i32) -> Event {
 fn checked(generation: u64, text: &str) -> Event {
     let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new(), copies: false }));
     let newest = Arc::new(AtomicU64::new(generation));
-    let mut checker = Checker { registries, assume_classes: false, newest, workspace: Workspace::default() };
+    let mut checker =
+        Checker { registries, assume_classes: false, allow_outside: false, newest, workspace: Workspace::default() };
     let mut open = OpenTexts::default();
     let path = Path::new("/nowhere/fleet.composite");
     open.insert(path, text.to_owned());

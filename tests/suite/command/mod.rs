@@ -13,5 +13,6 @@ mod outcomes;
 mod outputs;
 mod paths;
 mod schema;
+mod trust;
 mod usage;
 mod why;

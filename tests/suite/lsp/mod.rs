@@ -317,3 +317,15 @@ fn a_text_without_a_file_is_checked_and_completed() {
     assert_eq!(answer["result"]["items"][0]["label"], "wire");
     assert_eq!(editor.end(), 0);
 }
+
+#[test]
+fn files_outside_the_folder_are_not_read() {
+    let text = OUTER.replace(
+        "<include name=\"tns:inner\"/>",
+        "<component name=\"R\"><implementation.rust class=\"saoms.Robot\"/><property name=\"battery\" file=\"/etc/hostname\"/></component>",
+    );
+    let mut editor = Editor::started("outside", &[("outer.composite", &text)]);
+    editor.open("outer.composite", &text);
+    editor.wait_for("outer.composite", |all| all.iter().any(|one| one.starts_with("S0009")));
+    assert_eq!(editor.end(), 0);
+}

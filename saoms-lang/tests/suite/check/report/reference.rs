@@ -91,6 +91,17 @@ fn example(code: &Code) -> Result<String, String> {
             let text = crate::check::support::fleet(&components.repeat(1500));
             checked(&[("fleet.composite".to_owned(), text)], 1, &[])
         }
+        "S0009" => {
+            let folder = tempfile::tempdir().unwrap();
+            fs::create_dir(folder.path().join("fleet")).unwrap();
+            fs::write(folder.path().join("secret.txt"), "secret").unwrap();
+            let text = fs::read_to_string(self::folder().join("S3007.composite")).unwrap();
+            let text = text.replace("\"speed\">fast</property>", "\"speed\" file=\"../secret.txt\"/>");
+            let path = folder.path().join("fleet/fleet.composite");
+            fs::write(&path, text).unwrap();
+            let found = Project::new().file(path).compile(&registry());
+            without_folder(found.diagnostics, &found.sources, folder.path())
+        }
         "S2035" => {
             let level = |level: u32| {
                 let inner = format!("<implementation.composite name=\"t:hall{}\"/>", level - 1);
@@ -224,14 +235,17 @@ fn unreadable(id: &str) -> (Vec<Diagnostic>, Sources) {
     };
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     assert!(read(&path, limit, &mut sources, &mut diagnostics).is_none());
-    // The page must not depend on where the folder for temporary files is.
-    let here = folder.path().display().to_string();
+    without_folder(diagnostics.into_sorted(), &sources, folder.path())
+}
+
+/// The same diagnostics with paths from this folder: the page must not depend on where temporary files are.
+fn without_folder(mut diagnostics: Vec<Diagnostic>, sources: &Sources, folder: &Path) -> (Vec<Diagnostic>, Sources) {
+    let here = folder.display().to_string();
     let shown = |text: &str| text.replace(&format!("{here}/"), "").replace(&here, "fleets");
     let mut renamed = Sources::new();
     for (_, file) in sources.iter() {
         renamed.add(shown(file.path()), file.text().as_str());
     }
-    let mut diagnostics = diagnostics.into_sorted();
     for one in &mut diagnostics {
         one.message = shown(&one.message);
         one.help = one.help.iter().map(|help| shown(help)).collect();

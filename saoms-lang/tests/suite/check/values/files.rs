@@ -24,7 +24,7 @@ pub(crate) fn checked(inside: &str, beside: &[(&str, &[u8])], max_size: u64) -> 
     }
     // The limit is for the files of values: the composite is not read from one.
     let text = Project::new().text(folder.path().join("fleet.composite").display().to_string(), fleet(inside));
-    compiled_in(folder.path(), &text.max_size(max_size))
+    compiled_in(folder.path(), &text.max_size(max_size).allow_outside(true))
 }
 
 fn value(assembly: &Assembly, name: &str) -> PropertyValue {
