@@ -38,8 +38,8 @@ impl<'a> Fleet<'a> {
         names.into_iter().collect()
     }
 
-    /// Reports the name of a service or reference that such a component does not have, as far as that is known. Where it
-    /// is not, one that is nearly a name that the component itself has is probably that one.
+    /// Reports the name of a service or reference that such a component does not have, as far as that is known. Where
+    /// it is not, one that is nearly a name that the component itself has is probably that one.
     pub(crate) fn unknown_name(
         &self,
         member: usize,

@@ -17,9 +17,9 @@ use saoms_api::host::{PropertyValue, contain::contained};
 use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
-/// Judges a component some of whose values are not known, for faults that are reported: `unsure` are the places of these
-/// properties. What the constructor finds about the others is reported if it finds it with the unknown ones at both ends
-/// of what is allowed, so that a wrong value has no consequences.
+/// Judges a component some of whose values are not known, for faults that are reported: `unsure` are the places of
+/// these properties. What the constructor finds about the others is reported if it finds it with the unknown ones at
+/// both ends of what is allowed, so that a wrong value has no consequences.
 fn partly(
     subject: Subject<'_>,
     class: &ClassIndex<'_>,
