@@ -488,6 +488,14 @@ typedef struct SaomsWireView {
     size_t target;
 } SaomsWireView;
 
+// A topic of a component with another name on the bus.
+typedef struct SaomsRenamedView {
+    // Its name in the declaration.
+    struct SaomsBytes declared;
+    // Its name on the bus.
+    struct SaomsBytes on_bus;
+} SaomsRenamedView;
+
 // A component of a fleet.
 typedef struct SaomsMemberView {
     // Its path in the composite.
@@ -514,6 +522,12 @@ typedef struct SaomsMemberView {
     const struct SaomsWireView *wires;
     // Their number.
     size_t wire_count;
+    // The topics that have another name on the bus than in the declaration of its class.
+    const struct SaomsRenamedView *renamed;
+    // Their number.
+    size_t renamed_count;
+    // 1 if it starts with the fleet; 0 if it waits until another component schedules it.
+    uint32_t starts;
 } SaomsMemberView;
 
 // The components of a fleet.

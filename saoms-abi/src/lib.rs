@@ -43,7 +43,7 @@ pub use host::{HostFunctions, HostHandle, LoopVisitor};
 pub use looping::{LoopClassTable, LoopInstance, LoopTable, Step};
 pub use message::{Inbox, MessageView, TopicView};
 pub use plugin::{EntryPoint, PluginTable, SECTION};
-pub use rule::{FleetList, MemberView, RuleTable, TextList, WireView};
+pub use rule::{FleetList, MemberView, RenamedView, RuleTable, TextList, WireView};
 pub use status::Status;
 pub use value::{PropertyView, RecordView, ReportView, ValueView};
 

@@ -75,6 +75,22 @@ pub struct MemberView {
     pub wires: *const WireView,
     /// Their number.
     pub wire_count: usize,
+    /// The topics that have another name on the bus than in the declaration of its class.
+    pub renamed: *const RenamedView,
+    /// Their number.
+    pub renamed_count: usize,
+    /// 1 if it starts with the fleet; 0 if it waits until another component schedules it.
+    pub starts: u32,
+}
+
+/// A topic of a component with another name on the bus.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct RenamedView {
+    /// Its name in the declaration.
+    pub declared: Bytes,
+    /// Its name on the bus.
+    pub on_bus: Bytes,
 }
 
 /// A reference of a component that is wired.

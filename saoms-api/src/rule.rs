@@ -253,8 +253,13 @@ pub struct ComponentView<'a> {
     pub values: &'a [(SmolStr, PropertyValue)],
     /// From one execution to the next, where it is periodic.
     pub period: Option<Duration>,
+    /// False if it does not start with the fleet, but waits until another component schedules it.
+    pub starts: bool,
     /// True if its messages go to a broker, which may have users outside this fleet.
     pub has_broker: bool,
+    /// The topics that have another name on the bus than in the declaration of its class: that one, and the one on the
+    /// bus.
+    pub renamed: &'a [(&'a str, &'a str)],
     /// Its references that are wired, and the index of the component that each leads to.
     pub wires: &'a [(&'a str, usize)],
 }
@@ -280,6 +285,11 @@ impl ComponentView<'_> {
             Kinship::Extends => C::Properties::from_values(&values_of(self.values, C::Properties::NAMES)).ok(),
             Kinship::None => None,
         }
+    }
+
+    /// The name on the bus of a topic that its class declares under this name.
+    pub fn topic<'t>(&'t self, declared: &'t str) -> &'t str {
+        self.renamed.iter().find(|(old, _)| *old == declared).map_or(declared, |(_, new)| new)
     }
 
     /// The index of the component that this reference leads to.

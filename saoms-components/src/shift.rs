@@ -5,20 +5,20 @@ use std::time::Duration;
 use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterface, TaskInterfaceReference, Time};
 
 /// Properties of shifts.
-#[derive(Debug, Properties)]
+#[derive(Clone, Debug, Properties)]
 pub struct ShiftProperties {
     /// Time of the first shift, from the start of this component.
     #[property(default = "0s", range = "0s"..="24h")]
-    start: Duration,
+    pub(crate) start: Duration,
     /// Length of a shift.
     #[property(range = "1ms"..="24h")]
-    work: Duration,
+    pub(crate) work: Duration,
     /// Time from the end of a shift to the start of the next one.
     #[property(default = "0s", range = "0s"..="24h")]
-    pause: Duration,
+    pub(crate) pause: Duration,
     /// Number of shifts; by default they do not end.
     #[property(range = 1..)]
-    shifts: Option<u32>,
+    pub(crate) shifts: Option<u32>,
 }
 
 /// Schedules other components in shifts: it starts them, and they stop after the time that it gives them.

@@ -78,7 +78,8 @@ fn layout() -> String {
         RuleTable { size, state, check }
         FleetList { components, component_count, missing, missing_count }
         TextList { texts, count }
-        MemberView { path, class_name, declaration, extends, values, value_count, period, has_broker, publishes, loops, wires, wire_count }
+        MemberView { path, class_name, declaration, extends, values, value_count, period, has_broker, publishes, loops, wires, wire_count, renamed, renamed_count, starts }
+        RenamedView { declared, on_bus }
         WireView { reference, target }
     }
     let functions = [

@@ -33,10 +33,11 @@ unsafe extern "C" fn check(
                 .map(|view| read_properties(view.values, view.value_count))
                 .collect::<Result<Vec<_>, _>>()?;
             let wires = views.iter().map(|view| read_wires(view)).collect::<Result<Vec<_>, _>>()?;
+            let renamed = views.iter().map(|view| read_renamed(view)).collect::<Result<Vec<_>, _>>()?;
             let components = views
                 .iter()
-                .zip(values.iter().zip(&wires))
-                .map(|(view, (values, wires))| read_member(view, values, wires))
+                .zip(values.iter().zip(wires.iter().zip(&renamed)))
+                .map(|(view, (values, (wires, renamed)))| read_member(view, values, wires, renamed))
                 .collect::<Result<Vec<_>, _>>()?;
             let missing = list(fleet.missing, fleet.missing_count)?
                 .iter()
@@ -67,10 +68,21 @@ unsafe fn read_wires<'a>(view: &MemberView) -> Result<Vec<(&'a str, usize)>, Fai
 
 /// # Safety
 /// The view and what it leads to are readable for as long as the result is used.
+unsafe fn read_renamed<'a>(view: &MemberView) -> Result<Vec<(&'a str, &'a str)>, Failure> {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let renamed = list(view.renamed, view.renamed_count)?.iter();
+        renamed.map(|one| Ok((one.declared.get_text()?, one.on_bus.get_text()?))).collect()
+    }
+}
+
+/// # Safety
+/// The view and what it leads to are readable for as long as the result is used.
 unsafe fn read_member<'a>(
     view: &MemberView,
     values: &'a [(SmolStr, PropertyValue)],
     wires: &'a [(&'a str, usize)],
+    renamed: &'a [(&'a str, &'a str)],
 ) -> Result<ComponentView<'a>, Failure> {
     // SAFETY: as the caller promises.
     unsafe {
@@ -85,7 +97,9 @@ unsafe fn read_member<'a>(
             }),
             values,
             period: (view.period != u64::MAX).then(|| Duration::from_nanos(view.period)),
+            starts: view.starts != 0,
             has_broker: view.has_broker != 0,
+            renamed,
             wires,
         })
     }

@@ -3,13 +3,18 @@
 //! Each rule has a file and a code of its own. A rule reports an error only if it is certain. If robots of other
 //! classes, or a message broker, may make up for the mistake, it warns or reports nothing.
 
+mod apart;
 mod budget;
 mod charger;
 mod divided;
+mod environments;
 mod luggage;
 mod map;
+mod map_size;
+mod masters;
 mod number;
 mod robots;
+mod shifts;
 mod start;
 mod sustain;
 mod unknown_robot;
@@ -26,4 +31,9 @@ saoms_api::fleet_rules!(
     divided::RULE,
     unserved::RULE,
     unused_world::RULE,
+    masters::RULE,
+    environments::RULE,
+    apart::RULE,
+    shifts::RULE,
+    map_size::RULE,
 );

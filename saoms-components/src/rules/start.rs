@@ -3,7 +3,7 @@
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
-use super::robots::{robots, sharing};
+use super::robots::{FleetRobot, robots, sharing};
 use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -25,8 +25,11 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let robots = robots(fleet);
+    // Where there is one world, robots that are not wired to it drive between those that are.
+    let are_several = fleet.indices::<World>().nth(1).is_some();
+    let world = |robot: &FleetRobot| robot.world.filter(|_| are_several);
     let mut findings = Vec::new();
-    for (robot, other) in sharing(&robots, |robot| (robot.world, robot.charger.y, robot.charger.x)) {
+    for (robot, other) in sharing(&robots, |robot| (world(robot), robot.charger.y, robot.charger.x)) {
         // Robots with the same number are reported by another rule.
         if other.number != robot.number {
             let message = format!(

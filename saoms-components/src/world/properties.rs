@@ -10,10 +10,10 @@ use crate::text::TextFault;
 pub struct WorldProperties {
     /// Number of columns of the area, unless `map` is set.
     #[property(default = 11, range = 1..=8192, unit = "blocks")]
-    pub(super) width: u32,
+    pub(crate) width: u32,
     /// Number of rows of the area, unless `map` is set.
     #[property(default = 11, range = 1..=8192, unit = "blocks")]
-    pub(super) height: u32,
+    pub(crate) height: u32,
     /// The map as text: one line for each row, `.` for a free block, `@` for a blocked one. The header of a MovingAI
     /// map may stand before the rows.
     pub(crate) map: Option<String>,

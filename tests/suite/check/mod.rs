@@ -3,3 +3,4 @@
 mod cascades;
 mod mistakes;
 mod rules;
+mod shared;

@@ -61,7 +61,7 @@ fn the_examples_have_the_faults_that_they_say() {
 }
 
 /// A component: its name, class and properties, and whether it is wired to the world.
-type Component<'a> = (&'a str, &'a str, &'a [(&'a str, &'a str)], bool);
+pub(super) type Component<'a> = (&'a str, &'a str, &'a [(&'a str, &'a str)], bool);
 
 /// A composite of these components, from line 2 on, each in a line.
 fn fleet(components: &[Component<'_>]) -> String {
@@ -80,7 +80,7 @@ fn fleet(components: &[Component<'_>]) -> String {
 }
 
 /// The findings, without lines and columns.
-fn found(components: &[Component<'_>]) -> Vec<String> {
+pub(super) fn found(components: &[Component<'_>]) -> Vec<String> {
     let found = Fleet::of_text(fleet(components)).diagnostics();
     let plain = |line: &str| {
         let mut words = line.splitn(4, ' ');
@@ -89,9 +89,9 @@ fn found(components: &[Component<'_>]) -> Vec<String> {
     found.lines().map(plain).collect()
 }
 
-const MASTER: Component<'_> = ("Master", "saoms.MasterEnvironment", &[], false);
+pub(super) const MASTER: Component<'_> = ("Master", "saoms.MasterEnvironment", &[], false);
 
-const ROBOT: Component<'_> = ("Robot1", "saoms.Robot", &[], true);
+pub(super) const ROBOT: Component<'_> = ("Robot1", "saoms.Robot", &[], true);
 
 /// The findings with this scenario on this map, and one robot.
 fn with_scenario(map: &str, scenario: &str) -> Vec<String> {
@@ -143,6 +143,7 @@ fn chargers_are_looked_at_in_the_world_that_they_are_in() {
             "error S5002 the charger of robot 2 is at (0,2), blocked on the map",
             "error S5002 the charger of robot 9 is at (0,9), outside the map, which goes from (0,0) to (3,3)",
             "warning S5009 this robot is wired to no world, and others are: neither the world nor they know where it is",
+            "warning S5002 the charger of robot 8 is at (0,8), outside the map, which goes from (0,0) to (3,3)",
         ]
     );
 }

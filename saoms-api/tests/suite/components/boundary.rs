@@ -398,11 +398,21 @@ fn a_rule_finds_the_same_behind_the_boundary() {
         class: Rc::new(class.clone()),
         values: &values,
         period: Some(Duration::from_millis(50)),
+        starts: true,
         has_broker: true,
+        renamed: &[("A", "a"), ("B", "b")],
         wires: &[("adder", 1)],
     };
     let class = Rc::new(ClassView { publishes: Vec::new(), ..class });
-    let other = ComponentView { class, period: None, has_broker: false, values: &[], ..one.clone() };
+    let other = ComponentView {
+        class,
+        period: None,
+        starts: false,
+        has_broker: false,
+        renamed: &[],
+        values: &[],
+        ..one.clone()
+    };
     // SAFETY: the function of the table is this crate's own.
     let imported = unsafe { ImportedRule::new(rule_table(&SHOWN)) };
     for missing in

@@ -1,4 +1,4 @@
-use saoms_abi::{Bytes, FleetList, MemberView, RuleTable, TextList, WireView};
+use saoms_abi::{Bytes, FleetList, MemberView, RenamedView, RuleTable, TextList, WireView};
 use saoms_api::boundary::{PropertyViews, call_with_findings};
 use saoms_api::rule::FleetView;
 use saoms_api::{Failure, Finding};
@@ -41,6 +41,16 @@ impl ImportedRule {
                 one.wires.iter().map(wire).collect()
             })
             .collect();
+        let renamed: Vec<Vec<_>> = components
+            .iter()
+            .map(|one| {
+                let renamed = |(declared, on_bus): &(&str, &str)| RenamedView {
+                    declared: Bytes::text(declared),
+                    on_bus: Bytes::text(on_bus),
+                };
+                one.renamed.iter().map(renamed).collect()
+            })
+            .collect();
         let views: Vec<_> = components
             .iter()
             .enumerate()
@@ -57,6 +67,9 @@ impl ImportedRule {
                 loops: texts[place][2].list(),
                 wires: wires[place].as_ptr(),
                 wire_count: wires[place].len(),
+                renamed: renamed[place].as_ptr(),
+                renamed_count: renamed[place].len(),
+                starts: u32::from(one.starts),
             })
             .collect();
         let missing: Vec<_> = fleet.missing().iter().map(|one| Texts::of(one.as_deref().unwrap_or_default())).collect();

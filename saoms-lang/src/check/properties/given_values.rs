@@ -99,6 +99,11 @@ impl PropertyValues {
         of_task.map(as_task).collect()
     }
 
+    /// The values of all properties.
+    pub(crate) fn all(&self) -> &[(SmolStr, PropertyValue)] {
+        &self.values
+    }
+
     /// The values of the class's own properties, as constructors take them.
     pub(crate) fn own(&self) -> &[(SmolStr, PropertyValue)] {
         &self.values[..self.own]

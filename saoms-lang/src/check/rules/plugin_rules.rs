@@ -62,7 +62,9 @@ pub(crate) fn check<'s>(
     let subject = |index: usize| {
         let place = *parts.get(index)?;
         let member = &fleet.members[place];
-        Some(Subject { name: member.path(), ..checks[place].subject(member) })
+        // Rules judge the values of the task, too.
+        let values = checks[place].given.all();
+        Some(Subject { name: member.path(), values, ..checks[place].subject(member) })
     };
     let Some(first) = subject(0) else { return };
     let is_whole = missing.is_empty();
@@ -79,12 +81,15 @@ pub(crate) fn check<'s>(
     });
     let wires: Vec<Vec<(&str, usize)>> = wires.collect();
     let mut classes = ClassViews::new();
-    let views = all().zip(&wires).map(|((place, check, class), wires)| ComponentView {
+    let renamed: Vec<Vec<(&str, &str)>> = all().map(|(_, check, _)| renamed(check)).collect();
+    let views = all().zip(wires.iter().zip(&renamed)).map(|((place, check, class), (wires, renamed))| ComponentView {
         path: fleet.members[place].path(),
         class: class_view(&mut classes, class, check),
         values: check.given.own(),
         period: check.task.as_ref().map(|task| task.period),
+        starts: check.task.as_ref().is_none_or(|task| task.run_on_startup),
         has_broker: check.task.as_ref().is_some_and(|task| task.url.is_some()),
+        renamed,
         wires,
     });
     let views: Vec<ComponentView<'_>> = views.collect();
@@ -115,6 +120,12 @@ pub(crate) fn check<'s>(
             }
         }
     }
+}
+
+/// The topics to which a component gives new names.
+fn renamed<'s>(check: &'s ComponentCheck<'_>) -> Vec<(&'s str, &'s str)> {
+    let pairs = check.task.iter().flat_map(|task| &task.topic_rename.0);
+    pairs.map(|(old, new)| (old.as_str(), new.as_str())).collect()
 }
 
 /// The views of classes with their loops, each made once.

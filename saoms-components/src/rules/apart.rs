@@ -1,0 +1,77 @@
+//! Rule: robots of one world use different names of the topics that they share.
+
+use std::collections::{HashMap, HashSet};
+
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
+
+use super::robots::{FleetRobot, by_world, robots};
+use crate::messages::{CRITICAL_SITUATION, POSITION, ROBOT_LIST};
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5012",
+        name: "robot-apart",
+        meaning: "A `topicRename` parts a robot from a topic that the others in its world use: they collide with it, or \
+            do not know of its state.",
+        severity: Severity::Error,
+        rule: None,
+    },
+    judges_parts: true,
+    prevents_start: false,
+    check,
+};
+
+/// Topics by which the robots of a world know of each other, the most important first, and what happens without. Teams
+/// may have their own names of those with warnings: a robot that is alone with its name is in none.
+const SHARED: [(&str, Severity, &str); 3] = [
+    (POSITION.name(), Severity::Error, "they do not know where it is and collide with it"),
+    (CRITICAL_SITUATION.name(), Severity::Warning, "if it breaks down, nobody takes its luggage over"),
+    (ROBOT_LIST.name(), Severity::Warning, "they do not know of its state"),
+];
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let robots = robots(fleet);
+    let by_world = by_world(&robots);
+    let (mut findings, mut told) = (Vec::new(), HashSet::new());
+    for inside in by_world.chunk_by(|(one, _), (other, _)| one == other) {
+        for (topic, severity, effect) in SHARED {
+            let name = |robot: &FleetRobot| fleet.components()[robot.index].topic(topic);
+            let mut counts: HashMap<&str, usize> = HashMap::new();
+            for (_, robot) in inside {
+                *counts.entry(name(robot)).or_default() += 1;
+            }
+            // The first robot with the name that most of them use.
+            let most = counts.values().max().copied().unwrap_or_default();
+            let Some((_, usual)) = inside.iter().find(|(_, robot)| counts[name(robot)] == most) else { continue };
+            let others = name(usual);
+            for (_, robot) in inside {
+                let own = name(robot);
+                let is_apart = own != others && (severity == Severity::Error || most > 1 && counts[own] == 1);
+                if !is_apart || !told.insert(robot.index) {
+                    continue;
+                }
+                let message = format!(
+                    "robot {} uses the topic `{own}` where the other robots in its world use `{others}`: {effect}",
+                    robot.number
+                );
+                let help = match others == topic {
+                    true => format!("remove the pair `{topic},{own}`: all robots of a world need the same topics"),
+                    false => format!("give it the pair `{topic},{others}`, as the others have it"),
+                };
+                findings.push(
+                    Finding::new(renamed(robot), message)
+                        .severity(severity)
+                        .label(renamed(usual), "one of the others")
+                        .help(help),
+                );
+            }
+        }
+    }
+    findings
+}
+
+/// Place of the new names of a robot's topics.
+fn renamed(robot: &FleetRobot) -> Place {
+    Place::property("topicRename").in_component(robot.index)
+}

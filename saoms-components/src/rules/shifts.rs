@@ -1,0 +1,101 @@
+//! Rule: shifts that cannot keep to their times.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use saoms_api::host::format_duration;
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
+
+use crate::shift::{Shift, ShiftProperties};
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5013",
+        name: "shift",
+        meaning: "A shift schedules itself, a component that runs already when the fleet starts, or one whose time \
+            another shift sets, too.",
+        severity: Severity::Warning,
+        rule: None,
+    },
+    judges_parts: true,
+    prevents_start: false,
+    check,
+};
+
+/// Maximum number of shifts of two components that are compared.
+const COMPARED: usize = 10_000;
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let components = fleet.components();
+    let path = |index: usize| components[index].path;
+    // The first shift that schedules each component.
+    let mut first: HashMap<usize, (usize, ShiftProperties)> = HashMap::new();
+    let mut findings = Vec::new();
+    for (index, properties) in fleet.all::<Shift>() {
+        let mut tasks: Vec<usize> = components[index].wires.iter().map(|(_, target)| *target).collect();
+        tasks.sort_unstable();
+        tasks.dedup();
+        for task in tasks {
+            if task == index {
+                let message = format!("`{}` schedules itself: after its first shift it runs no more", path(index));
+                let help = "wire its reference `tasks` to the components that work in shifts";
+                findings.push(Finding::new(Place::component(index), message).severity(Severity::Error).help(help));
+                continue;
+            }
+            if let Some((other, others)) = first.get(&task) {
+                let Some(at) = properties.overlaps(others) else { continue };
+                let message = format!(
+                    "both `{}` and `{}` schedule `{}` at {}: the later one sets anew when it ends",
+                    path(*other),
+                    path(index),
+                    path(task),
+                    format_duration(at)
+                );
+                findings.push(
+                    Finding::new(Place::component(index), message)
+                        .label(Place::component(*other), "the other shift")
+                        .help(
+                            "let their shifts not overlap (`start`, `work`, `pause`), or wire only one of them to it",
+                        ),
+                );
+                continue;
+            }
+            if components[task].starts {
+                let message = format!(
+                    "`{}` works in shifts of `{}`, and runs from the start of the fleet until its first one ends",
+                    path(task),
+                    path(index)
+                );
+                findings.push(
+                    Finding::new(Place::property("runOnStartup").in_component(task), message)
+                        .label(Place::component(index), "its shifts")
+                        .help("set `runOnStartup` to `false`: it then waits for its first shift"),
+                );
+            }
+            first.insert(task, (index, properties.clone()));
+        }
+    }
+    findings
+}
+
+impl ShiftProperties {
+    /// Start and end of a shift; `None` after the last one.
+    fn shift(&self, number: u32) -> Option<(Duration, Duration)> {
+        let start = self.start + (self.work + self.pause).checked_mul(number)?;
+        self.shifts.is_none_or(|shifts| number < shifts).then(|| (start, start + self.work))
+    }
+
+    /// Time at which a shift begins during one of the others, as far as they are compared.
+    fn overlaps(&self, others: &ShiftProperties) -> Option<Duration> {
+        let (mut own, mut other) = (0, 0);
+        for _ in 0..COMPARED {
+            let ((start, end), (other_start, other_end)) = (self.shift(own)?, others.shift(other)?);
+            if start < other_end && other_start < end {
+                return Some(start.max(other_start));
+            }
+            if end <= other_start { own += 1 } else { other += 1 }
+        }
+        None
+    }
+}

@@ -1,0 +1,141 @@
+//! The rules about what components of a fleet share: events, numbers of luggage, topics, blocks and shifts.
+
+use super::rules::{Component, MASTER, ROBOT, found};
+
+const WORLD: Component<'_> = ("World", "saoms.World", &[], false);
+
+const ENVIRONMENT: Component<'_> =
+    ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (3,1) to (4,2)")], false);
+
+#[test]
+fn one_master_passes_on_the_events_of_an_environment() {
+    let second = |properties: &'static [(&str, &str)]| -> Component<'_> {
+        ("Master2", "saoms.MasterEnvironment", properties, false)
+    };
+    let with = |properties| found(&[WORLD, ENVIRONMENT, MASTER, second(properties), ROBOT]);
+    let message =
+        "error S5010 `Master2` passes on the same events as `Master`: all luggage is requested and counted twice";
+    assert_eq!(with(&[]), [message]);
+    assert_eq!(with(&[("topicRename", "ELMSTOPIC,jobs")])[0], message);
+    assert!(with(&[("runOnStartup", "false")]).is_empty(), "it may relieve the other one");
+    assert!(!with(&[("topicRename", "ETOPIC,events")]).concat().contains("S5010"), "it hears other events");
+}
+
+#[test]
+fn one_environment_numbers_the_luggage() {
+    let second = |properties: &'static [(&str, &str)]| -> Component<'_> {
+        ("Environment2", "saoms.Environment", properties, false)
+    };
+    let with = |properties| found(&[WORLD, ENVIRONMENT, second(properties), MASTER, ROBOT]);
+    assert_eq!(
+        with(&[("scenario", "at 9s breakdown Robot1; at 5s luggage (1,1) to (2,2)")]),
+        ["error S5011 `Environment` and `Environment2` both number their luggage from 1 on: of two pieces with one \
+          number only the first is brought"]
+    );
+    assert!(with(&[("scenario", "at 9s breakdown Robot1")]).is_empty(), "it has no luggage");
+    let elsewhere = with(&[("scenario", "at 5s luggage (1,1) to (2,2)"), ("topicRename", "ETOPIC,events")]);
+    assert!(!elsewhere.concat().contains("S5011"), "{elsewhere:?}");
+}
+
+#[test]
+fn robots_of_a_world_share_their_topics() {
+    fn robot<'a>(name: &'a str, renamed: &'a [(&'a str, &'a str)]) -> Component<'a> {
+        (name, "saoms.Robot", renamed, true)
+    }
+    let with = |one, two, three| {
+        let renamed = [one, two, three].map(|pairs| [("topicRename", pairs)]);
+        let robot = |place: usize| robot(["Robot1", "Robot2", "Robot3"][place], &renamed[place]);
+        found(&[WORLD, ENVIRONMENT, MASTER, robot(0), robot(1), robot(2)])
+    };
+    let collide = "they do not know where it is and collide with it";
+    assert_eq!(
+        with("POSTOPIC,far", "", ""),
+        [format!(
+            "error S5012 robot 1 uses the topic `far` where the other robots in its world use `POSTOPIC`: {collide}"
+        )]
+    );
+    assert_eq!(
+        with("POSTOPIC,far", "", "POSTOPIC,far"),
+        [format!(
+            "error S5012 robot 2 uses the topic `POSTOPIC` where the other robots in its world use `far`: {collide}"
+        )]
+    );
+    assert!(with("POSTOPIC,far", "POSTOPIC,far", "POSTOPIC,far").is_empty());
+    // One finding a robot, the worst.
+    assert_eq!(with("RLMSTOPIC,a::POSTOPIC,b", "", "").len(), 1);
+    let apart = with("CSMSTOPIC,alone", "", "").concat();
+    assert!(apart.starts_with("warning S5012 robot 1 uses the topic `alone`"), "{apart}");
+    // Each of two halls has topics of its own.
+    let far = [("topicRename", "POSTOPIC,far")];
+    let halls = [WORLD, ENVIRONMENT, MASTER, ROBOT, ("Robot2", "saoms.Robot", &far, false)];
+    assert!(!found(&halls).concat().contains("S5012"));
+}
+
+#[test]
+fn robots_beside_the_world_need_chargers_of_their_own() {
+    let beside = ("Robot2", "saoms.Robot", &[("chargeY", "1")][..], false);
+    let told = found(&[WORLD, ENVIRONMENT, MASTER, ROBOT, beside]);
+    assert_eq!(told[1], "error S5003 robots 1 and 2 both start at (0,1), where their chargers are");
+}
+
+#[test]
+fn sides_beside_a_map_are_its_own() {
+    let with = |width: &str, height: &str| {
+        let world = [("map", "....\n...."), ("width", width), ("height", height)];
+        found(&[("World", "saoms.World", &world, false), MASTER, ROBOT])
+    };
+    assert!(with("4", "2").is_empty());
+    assert_eq!(
+        with("9", "11"),
+        [
+            "warning S5014 `width` is 9, and the map has 4 columns: the map counts",
+            "warning S5014 `height` is 11, and the map has 2 rows: the map counts",
+        ]
+    );
+}
+
+/// The findings about shifts with these properties, wired to these components.
+fn shifts(all: &[(&str, &str, &str)], waits: bool) -> Vec<String> {
+    let mut text = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" \
+                    name=\"t\">\n"
+        .to_owned();
+    let component = |name: &str, class: &str, properties: &str, inside: &str| {
+        let given = [("ID", name), ("period", "100")].into_iter();
+        let more = properties.split(' ').filter_map(|one| one.split_once('='));
+        let given = given.chain(more).map(|(name, value)| format!("<property name=\"{name}\">{value}</property>"));
+        let given: String = given.collect();
+        format!("<component name=\"{name}\"><implementation.java class=\"{class}\"/>{given}{inside}</component>\n")
+    };
+    for (name, properties, task) in all {
+        let wire = format!("<reference name=\"tasks\" target=\"{task}/TaskInterface\"/>");
+        text += &component(name, "saoms.Shift", properties, &wire);
+    }
+    text += &component("Robot1", "saoms.Robot", &format!("runOnStartup={}", !waits), "");
+    text += "</composite>";
+    let found = saoms_testkit::Fleet::of_text(text).diagnostics();
+    found.lines().map(|line| line.splitn(4, ' ').last().unwrap_or(line).to_owned()).collect()
+}
+
+#[test]
+fn shifts_schedule_others_that_wait_for_them() {
+    assert!(shifts(&[("Early", "work=1s", "Robot1")], true).is_empty());
+    assert_eq!(
+        shifts(&[("Early", "work=1s", "Robot1")], false),
+        ["`Robot1` works in shifts of `Early`, and runs from the start of the fleet until its first one ends"]
+    );
+    assert_eq!(
+        shifts(&[("Early", "work=1s", "Early")], true),
+        ["`Early` schedules itself: after its first shift it runs no more"]
+    );
+}
+
+#[test]
+fn two_shifts_of_a_component_do_not_overlap() {
+    let two = |early, late| shifts(&[("Early", early, "Robot1"), ("Late", late, "Robot1")], true);
+    assert!(two("work=1s pause=1s", "start=1s work=1s pause=1s").is_empty());
+    assert!(two("work=1s shifts=5", "start=5s work=9s").is_empty());
+    assert_eq!(
+        two("work=1s pause=1s", "start=3s work=1500ms pause=500ms"),
+        ["both `Early` and `Late` schedule `Robot1` at 4s: the later one sets anew when it ends"]
+    );
+}
