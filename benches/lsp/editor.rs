@@ -1,9 +1,8 @@
-//! An editor with one file open.
+//! An editor with open files, of which one is typed into.
 
 use std::env;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
@@ -21,12 +20,17 @@ pub(crate) struct Editor {
 }
 
 impl Editor {
-    /// Starts a server and opens a file with this text.
-    pub(crate) fn open(text: &str) -> Outcome<Self> {
-        let folder = Path::new(RESULTS).join("lsp");
+    /// Starts a server with these files in a folder of their own, and opens all of them, the last one to type into.
+    pub(crate) fn open(folder: &str, files: &[(String, String)]) -> Outcome<Self> {
+        let folder = env::current_dir()?.join(RESULTS).join("lsp").join(folder);
+        if folder.exists() {
+            fs::remove_dir_all(&folder)?;
+        }
         fs::create_dir_all(&folder)?;
-        let file = env::current_dir()?.join(folder).join("fleet.composite");
-        fs::write(&file, text)?;
+        let uri = |name: &str| format!("file://{}", folder.join(name).display());
+        for (name, text) in files {
+            fs::write(folder.join(name), text)?;
+        }
         let mut server = Command::new(env!("CARGO_BIN_EXE_saoms"))
             .arg("lsp")
             .stdin(Stdio::piped())
@@ -34,19 +38,21 @@ impl Editor {
             .spawn()?;
         let input = server.stdin.take().ok_or("no input")?;
         let output = BufReader::new(server.stdout.take().ok_or("no output")?);
-        let uri = format!("file://{}", file.display());
-        let mut editor = Self { server, input, output, uri, next: 0, opened: Instant::now() };
+        let (last, _) = files.last().ok_or("no file")?;
+        let mut editor = Self { server, input, output, uri: uri(last), next: 0, opened: Instant::now() };
         editor.ask("initialize", &json!({ "capabilities": {} }))?;
         editor.tell("initialized", &json!({}))?;
-        let document = json!({ "uri": editor.uri, "languageId": "saoms", "version": 0, "text": text });
         editor.opened = Instant::now();
-        editor.tell("textDocument/didOpen", &json!({ "textDocument": document }))?;
+        for (name, text) in files {
+            let document = json!({ "uri": uri(name), "languageId": "saoms", "version": 0, "text": text });
+            editor.tell("textDocument/didOpen", &json!({ "textDocument": document }))?;
+        }
         Ok(editor)
     }
 
-    /// Waits for the first diagnostics; returns the time since the file was opened, in ms.
+    /// Waits for the first diagnostics of the file; returns the time since the files were opened, in ms.
     pub(crate) fn diagnostics(&mut self) -> Outcome<f64> {
-        while self.read()?["method"] != "textDocument/publishDiagnostics" {}
+        self.shown(0)?;
         Ok(milliseconds(self.opened))
     }
 
@@ -56,51 +62,61 @@ impl Editor {
         let (start, end) = places(text, at, typed.len());
         let begun = Instant::now();
         self.change(&start, &start, typed)?;
-        self.shown()?;
+        self.shown(self.next)?;
         let took = milliseconds(begun);
         self.change(&start, &end, "")?;
         // The next check must not wait for this one.
-        self.shown()?;
+        self.shown(self.next)?;
         Ok(took)
     }
 
-    /// Waits for the diagnostics of the current text.
-    fn shown(&mut self) -> Outcome<()> {
-        let version = self.next;
+    /// Waits for the diagnostics of the file in this version.
+    fn shown(&mut self, version: i32) -> Outcome<()> {
         loop {
             let message = self.read()?;
             let is_shown = message["method"] == "textDocument/publishDiagnostics";
-            if is_shown && message["params"]["version"] == version {
+            let about = &message["params"];
+            if is_shown && about["uri"] == self.uri && about["version"] == version {
                 return Ok(());
             }
         }
     }
 
-    /// Sends a request about a position; returns the time until the response, in ms.
-    pub(crate) fn question(&mut self, method: &str, text: &str, at: usize) -> Outcome<f64> {
+    /// Sends a request about a position; returns the time until the response, in ms. A response may be empty where
+    /// `may_be_empty` says so.
+    pub(crate) fn question(&mut self, method: &str, text: &str, at: usize, may_be_empty: bool) -> Outcome<f64> {
         let (place, _) = places(text, at, 0);
-        let document = json!({ "uri": self.uri });
-        let context = json!({ "includeDeclaration": true });
         // Each request takes the parameters that it knows.
-        let asked = json!({ "textDocument": document, "position": place, "newName": "Another", "context": context });
+        let asked = json!({
+            "textDocument": { "uri": self.uri },
+            "position": place,
+            "positions": [place],
+            "range": { "start": place, "end": place },
+            "newName": "Another",
+            "context": { "includeDeclaration": true, "diagnostics": [] },
+            "options": { "tabSize": 2, "insertSpaces": true },
+        });
         let begun = Instant::now();
         let answer = self.ask(method, &asked)?;
         let took = milliseconds(begun);
-        if answer["result"].is_null() {
+        // A name that cannot be changed is refused.
+        let is_refused = answer["error"]["code"] == -32803;
+        let is_empty = answer["result"].is_null() && (is_refused || answer["error"].is_null());
+        if answer["result"].is_null() && !(may_be_empty && is_empty) {
             return Err(format!("{method} has no answer: {answer}").into());
         }
         Ok(took)
     }
 
     /// Types `typed`, requests completions, and undoes it; returns the time from typing to the response, in ms.
-    pub(crate) fn complete(&mut self, text: &str, at: usize, typed: &str) -> Outcome<f64> {
+    pub(crate) fn complete(&mut self, text: &str, at: usize, typed: &str, may_be_empty: bool) -> Outcome<f64> {
         let (start, end) = places(text, at, typed.len());
         let begun = Instant::now();
         self.change(&start, &start, typed)?;
         let asked = json!({ "textDocument": { "uri": self.uri }, "position": end });
         let answer = self.ask("textDocument/completion", &asked)?;
         let took = milliseconds(begun);
-        if answer["result"]["items"].as_array().is_none_or(Vec::is_empty) {
+        if answer["result"]["items"].as_array().is_none_or(|all| all.is_empty() && !may_be_empty) {
             return Err(format!("nothing can be written at {start}: {answer}").into());
         }
         self.change(&start, &end, "")?;
@@ -162,11 +178,11 @@ impl Editor {
     }
 }
 
-/// A position in an ASCII text, and the position `length` characters after it.
+/// A position in a text, and the position `length` characters of ASCII after it.
 fn places(text: &str, at: usize, length: usize) -> (Value, Value) {
     let before = &text[..at];
     let line = before.matches('\n').count();
-    let column = at - before.rfind('\n').map_or(0, |found| found + 1);
+    let column = before[before.rfind('\n').map_or(0, |found| found + 1)..].encode_utf16().count();
     let place = |column: usize| json!({ "line": line, "character": column });
     (place(column), place(column + length))
 }

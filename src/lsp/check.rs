@@ -1,21 +1,19 @@
 //! Checks on a thread of their own, after a short pause in typing.
 
-use std::collections::{BTreeMap, HashSet};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
-use saoms_lang::contribution::Finder;
-use saoms_lang::diagnostic::{Diagnostic, codes};
-use saoms_lang::project::Project;
-use saoms_lang::source::{OpenTexts, Sources, identity};
-
 use saoms_api::host::contain::contained;
-use saoms_tools::editor::{Scene, SceneFleet, Workspace};
+use saoms_lang::contribution::Finder;
+use saoms_lang::source::OpenTexts;
+use saoms_tools::editor::Workspace;
 
-use super::diagnostics::{Reported, reported};
+use super::diagnostics::Reported;
+use super::fleets::{CheckedFleets, Fleet};
 use super::registries::Registries;
 use crate::output::eprint;
 
@@ -28,8 +26,6 @@ pub(super) struct Job {
     /// Rises with each change.
     pub(super) generation: u64,
     pub(super) open: OpenTexts,
-    /// The files that are open.
-    pub(super) paths: Vec<PathBuf>,
     /// True if files came or went.
     pub(super) looks_anew: bool,
 }
@@ -38,31 +34,35 @@ pub(super) struct Job {
 #[derive(Debug)]
 pub(super) struct Outcome {
     pub(super) generation: u64,
-    pub(super) files: BTreeMap<PathBuf, Vec<Reported>>,
+    pub(super) files: BTreeMap<PathBuf, Arc<Vec<Reported>>>,
 }
 
-/// The kind of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum FileKind {
-    Composite,
-    /// Of a contribution.
-    Description,
-    /// It holds values for composites.
-    Values,
+/// What the user wants of all checks.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CheckOptions {
+    /// True if classes that are not known are taken as given.
+    pub(super) assume_classes: bool,
+    /// True if composites may name files outside their folder and contribution.
+    pub(super) allow_outside: bool,
 }
 
 /// The checker of the editor's documents.
 #[derive(Debug)]
 pub(super) struct Checker {
-    pub(super) registries: Arc<Registries>,
-    pub(super) assume_classes: bool,
-    pub(super) allow_outside: bool,
+    registries: Arc<Registries>,
+    options: CheckOptions,
     /// The newest generation: older jobs are given up.
-    pub(super) newest: Arc<AtomicU64>,
-    pub(super) workspace: Workspace,
+    newest: Arc<AtomicU64>,
+    workspace: Workspace,
+    fleets: CheckedFleets,
 }
 
 impl Checker {
+    pub(super) fn new(registries: Arc<Registries>, options: CheckOptions, newest: Arc<AtomicU64>) -> Self {
+        let (workspace, fleets) = (Workspace::default(), CheckedFleets::default());
+        Self { registries, options, newest, workspace, fleets }
+    }
+
     /// Takes jobs until all senders are gone; of several that wait only the newest.
     pub(super) fn run(mut self, jobs: &Receiver<Job>, done: impl Fn(Outcome)) {
         while let Ok(mut job) = jobs.recv() {
@@ -74,109 +74,54 @@ impl Checker {
                 }
             }
             // A fault of ours costs one check, and not all that follow.
-            match contained(|| self.check(job)) {
-                Ok(Some(outcome)) => done(outcome),
-                Ok(None) => {}
-                Err(failure) => eprint(&format!("saoms: the check {failure}\n")),
+            if let Err(failure) = contained(|| self.check(&job, &done)) {
+                eprint(&format!("saoms: the check {failure}\n"));
             }
         }
     }
 
-    /// All that is wrong; `None` where something changed in the meantime.
-    pub(super) fn check(&mut self, job: Job) -> Option<Outcome> {
+    /// Checks all fleets that what changed has to do with, those of changed files first. What is wrong is given to
+    /// `done` when these are checked, and when all are; not where something changed in the meantime.
+    pub(super) fn check(&mut self, job: &Job, done: impl Fn(Outcome)) {
         self.workspace.set_open(job.open.clone());
         if job.looks_anew {
             self.workspace.refresh();
         }
-        let mut files: BTreeMap<PathBuf, Vec<Reported>> = BTreeMap::new();
-        let (mut checked, mut seen) = (HashSet::new(), HashSet::new());
+        let changed = self.fleets.update(job, &mut self.workspace, &self.registries);
         let mut finder = Finder::new(job.open.clone());
-        for path in &job.paths {
-            let (fleets, kind) = self.fleets(path);
-            if kind == FileKind::Description {
-                contribution(path, &job, &mut finder, &mut files);
-            }
-            for (fleet, may_be_part) in fleets {
-                if checked.insert(fleet.clone()) {
-                    self.one(&fleet, may_be_part, &job, &mut finder, &mut files, &mut seen)?;
-                }
-            }
-            // A fleet that is broken does not lead here.
-            let alone = vec![path.clone()];
-            if kind == FileKind::Composite && !seen.contains(path) && checked.insert(alone.clone()) {
-                self.one(&alone, false, &job, &mut finder, &mut files, &mut seen)?;
+        let (first, others) = self.fleets.stale(&changed);
+        let (has_both, mut is_whole) = (!first.is_empty() && !others.is_empty(), true);
+        for stale in [first, others] {
+            is_whole &= stale.iter().all(|fleet| self.one(fleet, job, &mut finder));
+            if is_whole && has_both {
+                self.tell(job, &done);
             }
         }
-        (self.newest.load(Ordering::Relaxed) == job.generation).then_some(Outcome { generation: job.generation, files })
-    }
-
-    /// The fleets that one file is part of, and of each whether others elsewhere may use it; then what it is itself.
-    fn fleets(&mut self, path: &Path) -> (Vec<(Vec<PathBuf>, bool)>, FileKind) {
-        let around = self.workspace.around(path);
-        if around.file().is_none_or(|first| first.path != path) {
-            return (Vec::new(), FileKind::Composite);
+        // A fleet that is broken does not lead to all of its files.
+        is_whole = is_whole && self.fleets.unseen().iter().all(|fleet| self.one(fleet, job, &mut finder));
+        if is_whole {
+            self.tell(job, &done);
         }
-        let scene = Scene::new(around, self.registries.of(path, &[]));
-        let paths = |fleet: &SceneFleet| fleet.files.iter().map(|file| scene.files[*file].path.clone()).collect();
-        let fleets = scene.fleets().iter().map(|fleet| (paths(fleet), fleet.may_be_part)).collect();
-        let sort = match scene.file() {
-            one if one.is_beside => FileKind::Values,
-            one if one.is_description() => FileKind::Description,
-            _ => FileKind::Composite,
-        };
-        (fleets, sort)
     }
 
-    /// Checks composites as one fleet, with all that they name. `None` where something changed in the meantime.
-    fn one(
-        &self,
-        fleet: &[PathBuf],
-        may_be_part: bool,
-        job: &Job,
-        finder: &mut Finder,
-        files: &mut BTreeMap<PathBuf, Vec<Reported>>,
-        seen: &mut HashSet<PathBuf>,
-    ) -> Option<()> {
+    /// Checks one fleet; false where something changed in the meantime.
+    fn one(&mut self, fleet: &Fleet, job: &Job, finder: &mut Finder) -> bool {
         if self.newest.load(Ordering::Relaxed) != job.generation {
-            return None;
+            return false;
         }
-        if fleet.is_empty() {
-            return Some(());
-        }
-        // Nothing of a plugin runs because somebody looks at a file.
-        let project = Project::new()
-            .files(fleet)
-            .allow_outside(self.allow_outside)
-            .open_texts(job.open.clone())
-            .assume_classes(self.assume_classes)
-            .without_plugin_code()
-            .part(may_be_part);
-        let found = project.load_with(finder, self.registries.as_ref()).compile();
-        for (_, file) in found.sources.iter() {
-            seen.insert(identity(Path::new(file.path())));
-        }
-        let reported: Vec<_> = found.reported().cloned().collect();
-        add(&reported, &found.sources, files);
-        Some(())
+        // Nor does it cost more than one fleet, which is checked again when it changes.
+        let found = contained(|| fleet.check(&job.open, self.options, finder, &self.registries));
+        let found = found.unwrap_or_else(|failure| {
+            eprint(&format!("saoms: the check {failure}\n"));
+            fleet.unchecked()
+        });
+        self.fleets.add(fleet, found);
+        true
     }
-}
 
-/// Diagnostics of the description of a contribution, and of the names of the composites there.
-fn contribution(description: &Path, job: &Job, finder: &mut Finder, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
-    let folder = description.parent().unwrap_or(Path::new(""));
-    let inner = folder.ends_with("META-INF").then(|| folder.parent()).flatten();
-    let project = Project::new().file(inner.unwrap_or(folder)).open_texts(job.open.clone());
-    let (mut found, sources) = project.check_folders(finder);
-    found.retain(|one| one.code != &codes::FILE_IS_DIRECTORY);
-    add(&found, &sources, files);
-}
-
-fn add(diagnostics: &[Diagnostic], sources: &Sources, files: &mut BTreeMap<PathBuf, Vec<Reported>>) {
-    for (path, one) in reported(diagnostics, sources) {
-        let known = files.entry(path).or_default();
-        // Composites that several others name have their faults once.
-        if !known.contains(&one) {
-            known.push(one);
+    fn tell(&self, job: &Job, done: &impl Fn(Outcome)) {
+        if self.newest.load(Ordering::Relaxed) == job.generation {
+            done(Outcome { generation: job.generation, files: self.fleets.diagnostics() });
         }
     }
 }

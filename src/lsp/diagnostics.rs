@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::Arc;
 
 use lsp_types::{
     DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, TextEdit, Uri,
 };
 use saoms_lang::diagnostic::{Diagnostic, Severity, codes};
-use saoms_lang::source::{FileId, LineIndex, Location as Place, Sources, identity};
+use saoms_lang::source::{FileId, LineIndex, Location as SourcePlace, Sources, identity};
 
 use saoms_tools::editor::describe_code;
 
@@ -39,7 +40,7 @@ pub(super) fn reported<'d>(
     all: &'d [Diagnostic],
     sources: &'d Sources,
 ) -> impl Iterator<Item = (PathBuf, Reported)> + use<'d> {
-    let mut places = Places { sources, lines: HashMap::new() };
+    let mut places = Places { sources, lines: HashMap::new(), paths: HashMap::new() };
     all.iter().map(move |one| {
         let related: Vec<DiagnosticRelatedInformation> = one
             .labels
@@ -82,22 +83,54 @@ pub(super) fn reported<'d>(
     })
 }
 
+/// The diagnostics of one file in several fleets, the same one once. A place that one fleet reports is not reported
+/// again for another one in other words, unless it is worse there: so `saoms check` has it for a folder.
+pub(super) fn merged(of_fleets: &[&Arc<Vec<Reported>>]) -> Arc<Vec<Reported>> {
+    let mut all: Vec<Reported> = Vec::new();
+    let mut known: HashMap<_, Place> = HashMap::new();
+    for (fleet, one) in of_fleets.iter().enumerate().flat_map(|(fleet, of)| of.iter().map(move |one| (fleet, one))) {
+        let shown = &one.shown;
+        let (Some(code), Some(severity)) = (&shown.code, shown.severity) else { continue };
+        let place = known.entry((shown.range.start, shown.range.end, code));
+        let place = place.or_insert(Place { fleet, severity, messages: Vec::new() });
+        let is_wanted = place.fleet == fleet || severity < place.severity;
+        if is_wanted && !place.messages.contains(&shown.message.as_str()) {
+            place.fleet = fleet;
+            place.severity = place.severity.min(severity);
+            place.messages.push(&shown.message);
+            all.push(one.clone());
+        }
+    }
+    Arc::new(all)
+}
+
+/// The reports of one code at one place.
+struct Place<'d> {
+    /// The last fleet with such a report.
+    fleet: usize,
+    /// The worst severity; the smaller, the worse.
+    severity: DiagnosticSeverity,
+    messages: Vec<&'d str>,
+}
+
 /// Translator of the places of a check.
 struct Places<'s> {
     sources: &'s Sources,
     lines: HashMap<FileId, LineIndex>,
+    paths: HashMap<FileId, PathBuf>,
 }
 
 impl Places<'_> {
-    fn path(&self, file: FileId) -> PathBuf {
-        identity(Path::new(self.sources.get(file).path()))
+    fn path(&mut self, file: FileId) -> PathBuf {
+        let path = || identity(Path::new(self.sources.get(file).path()));
+        self.paths.entry(file).or_insert_with(path).clone()
     }
 
-    fn uri(&self, file: FileId) -> Option<Uri> {
+    fn uri(&mut self, file: FileId) -> Option<Uri> {
         Uri::from_str(&uri::uri(&self.path(file))).ok()
     }
 
-    fn range(&mut self, at: Place) -> lsp_types::Range {
+    fn range(&mut self, at: SourcePlace) -> lsp_types::Range {
         let text = self.sources.get(at.file).text();
         let lines = self.lines.entry(at.file).or_insert_with(|| position::lines(text));
         position::range(lines, text, at.span.start as usize..at.span.end.max(at.span.start) as usize)

@@ -1,7 +1,7 @@
 //! The texts that the editor has open.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lsp_types::TextDocumentContentChangeEvent;
@@ -24,15 +24,24 @@ pub(super) struct Document {
 #[derive(Debug, Default)]
 pub(super) struct Documents {
     all: HashMap<String, Document>,
+    texts: OpenTexts,
+    /// The URIs of files that are open.
+    uris: HashMap<PathBuf, String>,
 }
 
 impl Documents {
     /// Takes in a text. One that has no file yet, as `untitled:Untitled-1`, counts as one in the folder that the server
-    /// was started in.
+    /// was started in; so does one whose URI names no file, as `file:///a/..`.
     pub(super) fn open(&mut self, uri: String, version: i32, text: String) {
-        let path = uri::path(&uri).unwrap_or_else(|| uri.replace('/', "_").into());
-        let path = identity(&path);
-        self.all.insert(uri, Document { path, version, text: text.into() });
+        self.close(&uri);
+        let names_file = |path: &PathBuf| path.file_name().is_some();
+        let named = uri::path(&uri).filter(names_file);
+        let nameless = || Some(PathBuf::from(uri.replace('/', "_"))).filter(names_file);
+        let path = named.or_else(nameless).unwrap_or_else(|| format!("untitled:{uri}").into());
+        let document = Document { path: identity(&path), version, text: text.into() };
+        self.texts.insert(&document.path, Arc::clone(&document.text));
+        self.uris.insert(document.path.clone(), uri.clone());
+        self.all.insert(uri, document);
     }
 
     pub(super) fn change(&mut self, uri: &str, version: i32, changes: Vec<TextDocumentContentChangeEvent>) {
@@ -40,10 +49,22 @@ impl Documents {
         let text = Arc::make_mut(&mut document.text);
         changes.into_iter().for_each(|change| apply(text, change));
         document.version = version;
+        self.texts.insert(&document.path, Arc::clone(&document.text));
     }
 
     pub(super) fn close(&mut self, uri: &str) {
-        self.all.remove(uri);
+        let Some(Document { path, .. }) = self.all.remove(uri) else { return };
+        // One file can be open under several URIs.
+        match self.all.iter().find(|(_, other)| other.path == path) {
+            Some((uri, other)) => {
+                self.texts.insert(&path, Arc::clone(&other.text));
+                self.uris.insert(path, uri.clone());
+            }
+            None => {
+                self.texts.remove(&path);
+                self.uris.remove(&path);
+            }
+        }
     }
 
     pub(super) fn get(&self, uri: &str) -> Option<&Document> {
@@ -54,11 +75,14 @@ impl Documents {
         self.all.iter().map(|(uri, document)| (uri.as_str(), document))
     }
 
+    /// The URI of a file that is open.
+    pub(super) fn uri(&self, path: &Path) -> Option<&str> {
+        self.uris.get(path).map(String::as_str)
+    }
+
     /// As loaders take them.
-    pub(super) fn texts(&self) -> OpenTexts {
-        let mut open = OpenTexts::default();
-        self.all.values().for_each(|one| open.insert(&one.path, Arc::clone(&one.text)));
-        open
+    pub(super) fn texts(&self) -> &OpenTexts {
+        &self.texts
     }
 }
 
@@ -156,7 +180,7 @@ mod tests {
             prop_assert_eq!(&text, &expected);
             // The workspace answers for that text, and not for an older one.
             let mut workspace = Workspace::default();
-            workspace.set_open(all.texts());
+            workspace.set_open(all.texts().clone());
             let around = workspace.around(&all.get(uri).unwrap().path);
             prop_assert_eq!(&*around.file().unwrap().text, &expected);
         }

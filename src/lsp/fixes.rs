@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::io::Write;
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use lsp_types::{
     CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionParams, Diagnostic, Position, Range, TextEdit, Uri,
@@ -25,7 +26,7 @@ impl<W: Write> Server<W> {
         let (path, version) = (document.path.clone(), document.version);
         // What was found in an older text does not fit any more.
         let shown = self.shown.get(&path).filter(|shown| shown.is_of(version));
-        let all: Vec<Reported> = shown.map(|shown| shown.all.clone()).unwrap_or_default();
+        let all = shown.map(|shown| Arc::clone(&shown.all)).unwrap_or_default();
         let touched = all.iter().filter(|one| overlap(one.shown.range, params.range));
         let mut actions = Vec::new();
         if is_wanted(params, &CodeActionKind::QUICKFIX) {
@@ -83,7 +84,7 @@ impl<W: Write> Server<W> {
     pub(super) fn reported_at(&self, uri: &Uri, at: Position) -> impl Iterator<Item = String> {
         let shown = self.documents.get(uri.as_str()).and_then(|document| {
             let shown = self.shown.get(&document.path)?;
-            shown.is_of(document.version).then_some(&shown.all)
+            shown.is_of(document.version).then_some(shown.all.as_slice())
         });
         shown
             .into_iter()

@@ -10,6 +10,7 @@ mod convert;
 mod diagnostics;
 mod documents;
 mod fixes;
+mod fleets;
 mod position;
 mod registries;
 mod requests;
@@ -25,9 +26,7 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc;
 use std::thread;
 
-use saoms_tools::editor::Workspace;
-
-use check::Checker;
+use check::{CheckOptions, Checker};
 use registries::Registries;
 use server::{Event, Server};
 
@@ -39,13 +38,9 @@ pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
     let (jobs, asked) = mpsc::channel();
     let registries = Arc::new(Registries::new(arguments.plugins.clone()));
     let newest = Arc::new(AtomicU64::new(0));
-    let checker = Checker {
-        registries: Arc::clone(&registries),
-        assume_classes: arguments.assume_classes,
-        allow_outside: arguments.allow_outside,
-        newest: Arc::clone(&newest),
-        workspace: Workspace::default(),
-    };
+    let LspArguments { assume_classes, allow_outside, .. } = *arguments;
+    let options = CheckOptions { assume_classes, allow_outside };
+    let checker = Checker::new(Arc::clone(&registries), options, Arc::clone(&newest));
     let done = events.clone();
     thread::spawn(move || checker.run(&asked, |outcome| drop(done.send(Event::Checked(outcome)))));
     thread::spawn(move || {

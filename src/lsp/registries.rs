@@ -14,7 +14,7 @@ use saoms_lang::registry::Registry;
 use crate::arguments::PluginArguments;
 use crate::plugins::search;
 
-/// The registries by file and by the libraries that it names. Both threads of the server ask for them.
+/// The registries by the places where plugins are searched. Both threads of the server ask for them.
 #[derive(Debug)]
 pub(super) struct Registries {
     arguments: PluginArguments,
@@ -23,10 +23,13 @@ pub(super) struct Registries {
 
 #[derive(Debug, Default)]
 struct ClassCache {
-    by_file: HashMap<(PathBuf, Vec<PathBuf>), (Libraries, Arc<Registry>)>,
+    by_places: HashMap<Places, (Libraries, Arc<Registry>)>,
     reported: HashSet<String>,
     problems: Vec<PluginFault>,
 }
+
+/// The files and folders that the user names, the folders that are searched, and the libraries that a composite names.
+type Places = [Vec<PathBuf>; 3];
 
 /// The libraries that were there, each with what shows a change.
 type Libraries = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
@@ -56,9 +59,9 @@ impl Registries {
                 note(&path, &mut libraries);
             });
         }
-        let key = (file.to_owned(), named);
+        let key = [search.named.clone(), search.folders.clone(), named];
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((before, registry)) = known.by_file.get(&key)
+        if let Some((before, registry)) = known.by_places.get(&key)
             && *before == libraries
         {
             return Arc::clone(registry);
@@ -75,12 +78,12 @@ impl Registries {
                 known.problems.push(problem);
             }
         }
-        for path in &key.1 {
+        for path in &key[2] {
             // What is wrong with it, and whether it is known already, the checker says.
             let _ = Plugin::open(path).map(|plugin| plugin.register(&mut registry));
         }
         let registry = Arc::new(registry);
-        known.by_file.insert(key, (libraries, Arc::clone(&registry)));
+        known.by_places.insert(key, (libraries, Arc::clone(&registry)));
         registry
     }
 

@@ -239,8 +239,7 @@ impl<W: Write> Server<W> {
 
     /// The URI of a file: that of the editor where it is open.
     pub(super) fn uri_of(&self, path: &Path) -> String {
-        let open = self.documents.iter().find(|(_, one)| one.path == path);
-        open.map_or_else(|| uri::uri(path), |(uri, _)| uri.to_owned())
+        self.documents.uri(path).map_or_else(|| uri::uri(path), str::to_owned)
     }
 }
 

@@ -83,7 +83,7 @@ pub(super) struct Server<W> {
 pub(super) struct PublishedDiagnostics {
     uri: String,
     version: Option<i32>,
-    pub(super) all: Vec<Reported>,
+    pub(super) all: Arc<Vec<Reported>>,
 }
 
 impl PublishedDiagnostics {
@@ -225,13 +225,11 @@ impl<W: Write> Server<W> {
         if looks_anew {
             self.workspace.refresh();
         }
-        let open = self.documents.texts();
+        let open = self.documents.texts().clone();
         self.workspace.set_open(open.clone());
         let generation = self.newest.fetch_add(1, Ordering::Relaxed) + 1;
-        let mut paths: Vec<PathBuf> = self.documents.iter().map(|(_, one)| one.path.clone()).collect();
-        paths.sort_unstable();
         // Where the thread is gone, the session is about to end.
-        let _ = self.jobs.send(Job { generation, open, paths, looks_anew });
+        let _ = self.jobs.send(Job { generation, open, looks_anew });
     }
 
     /// Shows what a check found, and takes back what is not there any more.
@@ -255,7 +253,8 @@ impl<W: Write> Server<W> {
             if let Some(before) = before.as_ref().filter(|before| before.uri != uri) {
                 self.show(&before.uri, None, &[])?;
             }
-            let is_same = before.is_some_and(|one| one.uri == uri && one.version == version && one.all == all);
+            let is_equal = |known: &Arc<Vec<Reported>>| Arc::ptr_eq(known, &all) || *known == all;
+            let is_same = before.is_some_and(|one| one.uri == uri && one.version == version && is_equal(&one.all));
             if !is_same {
                 self.show(&uri, version, &all)?;
             }
@@ -317,6 +316,6 @@ where
 
 fn cancels(later: &Event, id: &RequestId) -> bool {
     let Event::Incoming(Incoming::Message(Message::Notification(notification))) = later else { return false };
-    let wanted = serde_json::to_value(id).unwrap_or_default();
-    notification.method == notice::Cancel::METHOD && notification.params.get("id") == Some(&wanted)
+    let is_meant = |one: &Value| serde_json::to_value(id).is_ok_and(|wanted| *one == wanted);
+    notification.method == notice::Cancel::METHOD && notification.params.get("id").is_some_and(is_meant)
 }

@@ -1,15 +1,15 @@
 //! Texts that editors hold and have not saved, and the files that are read beside them.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Texts that count in place of what their files hold on disk.
+/// Texts that count in place of what their files hold on disk. Clones share what they hold until one of them changes.
 #[derive(Clone, Debug, Default)]
 pub struct OpenTexts {
-    texts: HashMap<PathBuf, Arc<String>>,
+    texts: Arc<BTreeMap<PathBuf, Arc<String>>>,
     /// The files that were read from disk, of all clones together.
     read: Arc<Mutex<BTreeSet<PathBuf>>>,
     /// The files and folders that may be read, of all clones together; `None` where all may.
@@ -19,13 +19,23 @@ pub struct OpenTexts {
 impl OpenTexts {
     /// Gives the file at `path`, which need not exist, another text.
     pub fn insert(&mut self, path: &Path, text: impl Into<Arc<String>>) {
-        self.texts.insert(identity(path), text.into());
+        Arc::make_mut(&mut self.texts).insert(identity(path), text.into());
+    }
+
+    /// Lets the file at `path`, one of [`OpenTexts::paths`], have its own text again.
+    pub fn remove(&mut self, path: &Path) {
+        Arc::make_mut(&mut self.texts).remove(path);
     }
 
     /// The text for the file at `path`, however the path is written.
     pub fn get(&self, path: &Path) -> Option<&Arc<String>> {
-        // As a rule there are none, and then the file system need not be asked.
-        if self.texts.is_empty() { None } else { self.texts.get(&identity(path)) }
+        // As a rule there are none, or the path is the usual one, and then the file system need not be asked.
+        if self.texts.is_empty() { None } else { self.texts.get(path).or_else(|| self.texts.get(&identity(path))) }
+    }
+
+    /// The files that have such a text, each by one path, see [`identity`].
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.texts.keys().map(PathBuf::as_path)
     }
 
     /// The same, with nothing to be read but what is [`permit`](Self::permit)ted, or with all files.
@@ -62,8 +72,11 @@ impl OpenTexts {
 
     /// The files in this folder that have such a text.
     pub fn inside<'a>(&'a self, folder: &Path) -> impl Iterator<Item = &'a Path> + use<'a> {
-        let folder = (!self.texts.is_empty()).then(|| identity(folder));
-        self.texts.keys().map(PathBuf::as_path).filter(move |path| path.parent() == folder.as_deref())
+        let folder = if self.texts.is_empty() { PathBuf::new() } else { identity(folder) };
+        // In the order of paths those of a folder and below follow it.
+        let below = self.texts.range(folder.clone()..).map(|(path, _)| path.as_path());
+        let inside = |path: &Path, folder: &Path| path.parent() == Some(folder);
+        below.map_while(move |path| path.starts_with(&folder).then(|| inside(path, &folder).then_some(path))).flatten()
     }
 }
 

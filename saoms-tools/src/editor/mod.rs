@@ -34,7 +34,7 @@ pub use navigate::{DefinitionTarget, definition, references};
 pub use rename::{prepare as prepare_rename, rename};
 pub use scene::file::File;
 pub use scene::symbol::FileRange;
-pub use scene::workspace::{Surroundings, Workspace};
+pub use scene::workspace::{Shape, Surroundings, Workspace};
 pub use scene::{Scene, SceneFleet};
 pub use selection::{linked_tags, selections};
 pub use symbols::{DocumentSymbol, SymbolKind, WorkspaceSymbol, document_symbols, workspace_symbols};

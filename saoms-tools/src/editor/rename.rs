@@ -1,11 +1,12 @@
 //! Another name for a component, or for another part of a composite, everywhere.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use saoms_lang::expression::is_name;
 
 use super::scene::Scene;
 use super::scene::expressions::INDEX;
 use super::scene::occurrences::Found;
-use super::scene::outline::End;
 use super::scene::symbol::{FileRange, Occurrence, Symbol, at, group, is_replica, places};
 
 /// The name at a byte that can be changed.
@@ -58,7 +59,7 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
     if old != name {
         taken(scene, &found.symbol, name)?;
         named_among_others(scene, &found.symbol, &old)?;
-        all.iter().try_for_each(|one| shared(scene, one))?;
+        shared(scene, &all)?;
     }
     all.iter()
         .map(|one| {
@@ -173,21 +174,27 @@ fn named_among_others(scene: &Scene, symbol: &Symbol, old: &str) -> Result<(), S
 
 /// Refuses where a place names something else as well: what a composite targets stands around it, and it may be used in
 /// several.
-fn shared(scene: &Scene, one: &Occurrence) -> Result<(), String> {
-    let outline = &scene.files[one.at.file].outline;
-    let is_here =
-        |end: &End| end.is_outer && end.component.at.start <= one.at.start && one.at.end <= end.component.at.end;
-    if !outline.ends.iter().any(is_here) {
-        return Ok(());
-    }
-    let others = Found::of(scene, one.at.file, Some(one.at.start));
-    match others.iter().find(|other| other.at == one.at && other.symbol != one.symbol) {
-        Some(Occurrence { symbol: Symbol::Component { file, name }, .. }) => {
-            let shown = scene.files[*file].path.file_name().unwrap_or_default().to_string_lossy();
-            Err(format!("`{}` is also the component `{name}` in `{shown}`", text(scene, &one.at)))
+fn shared(scene: &Scene, all: &[Occurrence]) -> Result<(), String> {
+    let files: BTreeSet<usize> = all.iter().map(|one| one.at.file).collect();
+    for file in files {
+        let ends = scene.files[file].outline.ends.iter();
+        let outer: BTreeSet<FileRange> =
+            ends.filter(|end| end.is_outer).map(|end| FileRange::new(file, &end.component.at)).collect();
+        let here = all.iter().filter(|one| outer.contains(&one.at));
+        let here: BTreeMap<&FileRange, &Symbol> = here.map(|one| (&one.at, &one.symbol)).collect();
+        if here.is_empty() {
+            continue;
         }
-        _ => Ok(()),
+        for other in Found::of(scene, file, None) {
+            if let Symbol::Component { file, name } = &other.symbol
+                && here.get(&other.at).is_some_and(|meant| **meant != other.symbol)
+            {
+                let shown = scene.files[*file].path.file_name().unwrap_or_default().to_string_lossy();
+                return Err(format!("`{}` is also the component `{name}` in `{shown}`", text(scene, &other.at)));
+            }
+        }
     }
+    Ok(())
 }
 
 /// The name of a replica, or that of all, under another pattern. Under one with other expressions it is unknown.

@@ -5,15 +5,18 @@ use std::ops::Range;
 use super::scene::file::File;
 use super::syntax::{Cursor, Places, bytes, is_opaque, trimmed, value_of, words};
 
+/// The most elements around a byte that are selected one after another: an answer of the protocol nests as deeply.
+const MOST_ELEMENTS: usize = 20;
+
 /// The ranges around a byte, the smallest first: a word, a value, an attribute, a tag, what an element holds, the
-/// element, and so on.
+/// element, and so on; the last is the whole text.
 pub fn selections(file: &File, at: usize) -> Vec<Range<usize>> {
     let text = file.text.as_str();
     let opaque = file.document.token_at(at as u32).filter(|(kind, _)| is_opaque(*kind));
     let mut all: Vec<Range<usize>> = opaque.into_iter().map(|(_, span)| bytes(span)).collect();
     all.push(0..text.len());
-    let mut here = file.document.innermost(at as u32);
-    while let Some(element) = here {
+    let around = std::iter::successors(file.document.innermost(at as u32), |element| element.parent());
+    for element in around.take(MOST_ELEMENTS) {
         all.extend([element.whole(), element.tag(), bytes(element.name_span())]);
         all.extend(element.end_tag_span().map(bytes));
         if element.has_whole_start_tag() && !element.is_empty() {
@@ -27,7 +30,6 @@ pub fn selections(file: &File, at: usize) -> Vec<Range<usize>> {
                 all.push(value);
             }
         }
-        here = element.parent();
     }
     all.retain(|range| range.start <= at && at <= range.end && !range.is_empty());
     all.sort_by_key(|range| (range.len(), range.start));

@@ -107,10 +107,11 @@ fn component(file: &File, component: &Component) -> DocumentSymbol {
     let named = |names: &[Named], kind, what: &str| -> Vec<DocumentSymbol> {
         names.iter().map(|name| symbol(file, name, kind, what, Vec::new())).collect()
     };
-    let mut parts = named(&component.properties, SymbolKind::Property, "");
-    for one in &mut parts {
-        one.detail = value(file, &component.properties, &one.name).unwrap_or_default();
-    }
+    let property = |one: &Named| {
+        let value = value(file, one).unwrap_or_default();
+        symbol(file, one, SymbolKind::Property, &value, Vec::new())
+    };
+    let mut parts: Vec<DocumentSymbol> = component.properties.iter().map(property).collect();
     parts.extend(named(&component.services, SymbolKind::Service, "service"));
     parts.extend(named(&component.references, SymbolKind::Reference, "reference"));
     let loops: Vec<Named> = component.loops.iter().map(|one| one.name.clone()).collect();
@@ -124,9 +125,8 @@ fn component(file: &File, component: &Component) -> DocumentSymbol {
 }
 
 /// The value of a property, short.
-fn value(file: &File, properties: &[Named], name: &str) -> Option<String> {
-    let one = properties.iter().find(|one| one.text == name)?;
-    let element = file.element(one.element);
+fn value(file: &File, property: &Named) -> Option<String> {
+    let element = file.element(property.element);
     let given = element.value("value").or_else(|| element.text_place());
     let source = element.value("source");
     let value = &file.text[given.or(source)?];

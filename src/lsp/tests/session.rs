@@ -1,5 +1,6 @@
 //! A session without threads: all that happens is there from the start, in order.
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
@@ -7,12 +8,11 @@ use std::sync::mpsc;
 
 use lsp_server::{Message, Notification, Request};
 use saoms_lang::source::OpenTexts;
-use saoms_tools::editor::Workspace;
 use serde_json::{Value, json};
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
-use crate::lsp::check::{Checker, Job, Outcome};
+use crate::lsp::check::{CheckOptions, Checker, Job, Outcome};
 use crate::lsp::registries::Registries;
 use crate::lsp::rpc::Incoming;
 use crate::lsp::server::{Event, Server};
@@ -50,13 +50,13 @@ fn fixes(id: i32) -> Event {
 fn checked(generation: u64, text: &str) -> Event {
     let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new(), copies: false }));
     let newest = Arc::new(AtomicU64::new(generation));
-    let mut checker =
-        Checker { registries, assume_classes: false, allow_outside: false, newest, workspace: Workspace::default() };
+    let mut checker = Checker::new(registries, CheckOptions::default(), newest);
     let mut open = OpenTexts::default();
     let path = Path::new("/nowhere/fleet.composite");
     open.insert(path, text.to_owned());
-    let outcome: Outcome =
-        checker.check(Job { generation, open, paths: vec![path.to_owned()], looks_anew: true }).unwrap();
+    let outcomes = RefCell::new(Vec::new());
+    checker.check(&Job { generation, open, looks_anew: true }, |outcome| outcomes.borrow_mut().push(outcome));
+    let outcome = outcomes.into_inner().pop().unwrap();
     Event::Checked(outcome)
 }
 

@@ -103,7 +103,10 @@ impl Editor {
     }
 
     pub(crate) fn open(&mut self, name: &str, text: &str) {
-        let uri = self.uri(name);
+        self.open_uri(&self.uri(name), text);
+    }
+
+    pub(crate) fn open_uri(&mut self, uri: &str, text: &str) {
         let document = json!({ "uri": uri, "languageId": "saoms", "version": 1, "text": text });
         self.tell("textDocument/didOpen", json!({ "textDocument": document }));
     }
@@ -126,6 +129,18 @@ impl Editor {
                 if is_expected(&last) {
                     return;
                 }
+            }
+        }
+    }
+
+    /// The next diagnostics that are shown of a document.
+    pub(crate) fn diagnostics_of_uri(&self, uri: &str) -> Vec<Value> {
+        loop {
+            let shown = &self.receive()["params"];
+            if shown["uri"] == uri
+                && let Some(all) = shown["diagnostics"].as_array()
+            {
+                return all.clone();
             }
         }
     }

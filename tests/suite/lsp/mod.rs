@@ -3,6 +3,7 @@
 mod beside;
 mod disk;
 mod editor;
+mod hostile;
 mod imported;
 mod random;
 

@@ -1,5 +1,6 @@
 //! Texts in properties whose language a crate of components knows.
 
+use std::collections::{HashSet, VecDeque};
 use std::ops::Range;
 
 use saoms_api::extension::{self, PropertyLanguage, PropertyText};
@@ -11,12 +12,82 @@ use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Component;
 use crate::editor::syntax::Places;
 
+/// A language, and the file of the composite whose components a text in it is about.
+pub(super) type Language = (&'static PropertyLanguage, usize);
+
+/// The most properties of composites that a text is followed through.
+const MOST: usize = 1000;
+
 /// The language of the text in a property of a component of a file.
-pub(super) fn of_property(scene: &Scene, file: usize, property: ElementId) -> Option<&'static PropertyLanguage> {
+pub(super) fn of_property(scene: &Scene, file: usize, property: ElementId) -> Option<Language> {
+    match taken_by(scene, file, property)? {
+        Taker::Class(language) => Some((language, file)),
+        Taker::Composite(inner, name) => of_parameter(scene, inner, name),
+    }
+}
+
+/// The language of the values of a property of a component, as columns of its table hold them.
+pub(super) fn of_column<'s>(
+    scene: &'s Scene,
+    (file, component): (usize, &Component),
+    name: &'s str,
+) -> Option<Language> {
+    match taker(scene, file, component, name)? {
+        Taker::Class(language) => Some((language, file)),
+        Taker::Composite(inner, name) => of_parameter(scene, inner, name),
+    }
+}
+
+/// The language of the text in a property of the composite that a file is part of: that of the first property of a
+/// class that takes the whole text, also through composites inside.
+pub(super) fn of_parameter<'s>(scene: &'s Scene, file: usize, name: &'s str) -> Option<Language> {
+    let mut waiting = VecDeque::from([(scene.declaring(file, name)?, name)]);
+    let mut seen: HashSet<(usize, &str)> = waiting.iter().copied().collect();
+    while let Some((file, name)) = waiting.pop_front() {
+        for &place in scene.unit_of(file) {
+            let of = &scene.files[place];
+            for source in of.outline.sources.iter().filter(|source| source.text == name) {
+                // A path leads to a part of the value.
+                let written = of.element(source.element).value("source");
+                if written.is_none_or(|at| at.start + 1 != source.at.start || at.end != source.at.end) {
+                    continue;
+                }
+                match taken_by(scene, place, source.element) {
+                    Some(Taker::Class(language)) => return Some((language, place)),
+                    Some(Taker::Composite(inner, name)) => {
+                        let next = (scene.declaring(inner, name)?, name);
+                        if seen.len() < MOST && seen.insert(next) {
+                            waiting.push_back(next);
+                        }
+                    }
+                    None => {}
+                }
+            }
+        }
+    }
+    None
+}
+
+/// The taker of the text of a component's property.
+enum Taker<'s> {
+    Class(&'static PropertyLanguage),
+    /// The property of a composite inside: its file, and its name.
+    Composite(usize, &'s str),
+}
+
+fn taken_by(scene: &Scene, file: usize, property: ElementId) -> Option<Taker<'_>> {
     let of = &scene.files[file];
     let name = &of.text[of.element(property).value("name")?];
-    let component = scene.component_in(file, property)?;
-    PropertyLanguage::linked().find(|language| language.property == name && is_a(scene, component, language.class))
+    taker(scene, file, scene.component_in(file, property)?, name)
+}
+
+fn taker<'s>(scene: &Scene, file: usize, component: &Component, name: &'s str) -> Option<Taker<'s>> {
+    if let Some(inner) = scene.inner(file, component) {
+        return Some(Taker::Composite(inner, name));
+    }
+    let mut all = PropertyLanguage::linked();
+    let found = all.find(|language| language.property == name && is_a(scene, component, language.class));
+    found.map(Taker::Class)
 }
 
 fn is_a(scene: &Scene, component: &Component, class: &str) -> bool {
@@ -24,12 +95,10 @@ fn is_a(scene: &Scene, component: &Component, class: &str) -> bool {
     declaration.is_some_and(|one| one.name == class || one.extends.iter().any(|other| other == class))
 }
 
-/// The completions of a language at a byte of the scene's file; `range` is the text of the property, which belongs to a
-/// composite.
+/// The completions of a language at a byte of the scene's file; `range` is the text of the property.
 pub(super) fn complete(
-    language: &PropertyLanguage,
+    (language, composite): Language,
     scene: &Scene,
-    composite: usize,
     range: Range<usize>,
     at: usize,
 ) -> Vec<Proposal> {

@@ -74,17 +74,25 @@ fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
     if let Some(of) = table::owner(scene) {
         return table::complete(scene, of, at);
     }
-    let mut owners = scene.owners().into_iter();
-    let found = owners.find_map(|file| {
-        let components = &scene.files[file].outline.components;
-        components.iter().find_map(|one| {
+    let whole = 0..scene.file().text.len();
+    let mut owners = scene.owners().iter();
+    let found = owners.find_map(|&file| {
+        let of = &scene.files[file];
+        let of_components = of.outline.components.iter().find_map(|one| {
             let property = one.files.iter().find(|name| scene.is_first(file, name))?;
-            let whole = 0..scene.file().text.len();
             if let Some(inside) = one.is_replicated.then(|| template(scene, file, one, &whole, at)).flatten() {
                 return Some(inside);
             }
             let language = language::of_property(scene, file, property.element)?;
-            Some(language::complete(language, scene, file, whole, at))
+            Some(language::complete(language, scene, whole.clone(), at))
+        });
+        of_components.or_else(|| {
+            let mut properties = of.outline.properties.iter().filter(|one| {
+                let mut named = of.outline.beside_of(one.element);
+                named.any(|name| scene.is_first(file, name))
+            });
+            let language = properties.find_map(|one| language::of_parameter(scene, file, &one.text))?;
+            Some(language::complete(language, scene, whole.clone(), at))
         })
     });
     found.unwrap_or_default()

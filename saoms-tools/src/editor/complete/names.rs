@@ -1,6 +1,6 @@
 //! Names: of classes, properties, services, loops, composites.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
 use super::ProposalKind;
@@ -59,10 +59,10 @@ pub(super) fn classes(scene: &Scene, range: &Range<usize>) -> Vec<Proposal> {
 pub(super) fn properties(scene: &Scene, element: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
     let Some(parent) = file.element(element).parent().map(Element::id) else { return Vec::new() };
-    let given: Vec<&str> = given(scene, parent, element);
+    let given = given(scene, parent, element);
     let mut all: Vec<Proposal> = declared(scene, parent)
         .into_iter()
-        .filter(|(one, _)| !given.contains(&one.name.as_str()))
+        .filter(|(one, _)| !given.contains(one.name.as_str()))
         .map(|(one, preset)| {
             Proposal::new(&one.name, ProposalKind::Property, range)
                 .detail(describe::facts(one, preset))
@@ -72,8 +72,8 @@ pub(super) fn properties(scene: &Scene, element: ElementId, range: &Range<usize>
         .collect();
     if let Some(component) = scene.component_around(parent) {
         for inner in scene.inside(0, component) {
-            let declared = &scene.files[inner].outline.properties;
-            let open = declared.iter().filter(|one| !given.contains(&one.text.as_str()));
+            let declared = &scene.files[*inner].outline.properties;
+            let open = declared.iter().filter(|one| !given.contains(one.text.as_str()));
             all.extend(open.map(|one| Proposal::new(&one.text, ProposalKind::Property, range)));
         }
     }
@@ -84,11 +84,11 @@ pub(super) fn properties(scene: &Scene, element: ElementId, range: &Range<usize>
 pub(super) fn missing_properties(scene: &Scene, component: ElementId) -> Vec<(&PropertyDeclaration, Option<&str>)> {
     let given = given(scene, component, component);
     let all = declared(scene, component).into_iter();
-    all.filter(|(one, preset)| preset.is_none() && !given.contains(&one.name.as_str())).collect()
+    all.filter(|(one, preset)| preset.is_none() && !given.contains(one.name.as_str())).collect()
 }
 
 /// The names of the properties in an element, but for that of one of them.
-fn given(scene: &Scene, parent: ElementId, except: ElementId) -> Vec<&str> {
+fn given(scene: &Scene, parent: ElementId, except: ElementId) -> HashSet<&str> {
     let file = scene.file();
     let others = file.element(parent).children().filter(|child| child.id() != except);
     let named = others.filter(|child| child.local_name() == "property");
@@ -152,9 +152,10 @@ pub(super) fn loop_classes(scene: &Scene, element: ElementId, range: &Range<usiz
 pub(super) fn parts(scene: &Scene, element: ElementId, side: Side, range: &Range<usize>) -> Vec<Proposal> {
     let Some(component) = scene.component_around(element) else { return Vec::new() };
     let named = if side == Side::Service { &component.services } else { &component.references };
-    let is_said = |name: &str| named.iter().any(|one| one.text == name && one.element != element);
+    let others = named.iter().filter(|one| one.element != element);
+    let said: HashSet<&str> = others.map(|one| one.text.as_str()).collect();
     let all = scene.contracts((0, component), side).unwrap_or_default();
-    contracts(all.into_iter().filter(|one| !is_said(one.name)), range)
+    contracts(all.into_iter().filter(|one| !said.contains(one.name)), range)
 }
 
 /// Services or references, each with its interface and how many targets it takes.

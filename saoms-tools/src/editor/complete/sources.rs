@@ -9,7 +9,7 @@ use super::ProposalKind;
 
 use super::{Proposal, names};
 use crate::editor::scene::Scene;
-use crate::editor::scene::outline::Named;
+use crate::editor::scene::outline::{Component, Named};
 use crate::editor::syntax::{Places, is_declaration, local};
 
 /// The number of elements of values that are searched.
@@ -159,13 +159,14 @@ fn values(scene: &Scene, name: &str) -> Vec<Part> {
     let unit = scene.unit_of(0);
     let mut all = Vec::new();
     for &file in unit {
-        let declared = scene.files[file].outline.properties.iter().filter(|one| one.text == name);
-        all.extend(declared.flat_map(|one| values_of(scene, file, one)));
+        all.extend(scene.property(file, name).into_iter().flat_map(|one| values_of(scene, file, one)));
     }
     // The components that the composite implements may give it one.
+    let outer = scene.including(0);
     for &file in scene.users(0) {
         let components = scene.files[file].outline.components.iter();
-        let givers = components.filter(|one| scene.inside(file, one).contains(&0)).take(MOST_GIVERS);
+        let is_giver = |one: &&Component| scene.inner(file, one).is_some_and(|one| outer.contains(&one));
+        let givers = components.filter(is_giver).take(MOST_GIVERS);
         let given = givers.flat_map(|one| one.properties.iter().filter(|one| one.text == name));
         all.extend(given.flat_map(|one| values_of(scene, file, one)));
     }

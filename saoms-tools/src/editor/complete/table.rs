@@ -1,12 +1,13 @@
 //! Tables of what differs among replicas.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::ProposalKind;
 use saoms_lang::expression::{ExpressionValue, render};
 use saoms_lang::model::SAOMS_NAMESPACE;
 
-use super::{Proposal, names, value, values};
+use super::{Proposal, language, names, value, values};
 use crate::editor::describe;
 use crate::editor::scene::Scene;
 use crate::editor::scene::expressions::INDEX;
@@ -35,19 +36,22 @@ pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec
         }
         (0, _) => columns(scene, of, &head, column, &range),
         (_, 0) => {
-            let known: Vec<&str> = lines[1..].iter().map(|line| text[line[0].inside.clone()].trim()).collect();
+            let known: HashSet<&str> = lines[1..].iter().map(|line| text[line[0].inside.clone()].trim()).collect();
             let typed = text[range.clone()].trim();
             let all = replicas(scene, of, head[0] == "name").into_iter();
-            let free = all.filter(|one| one == typed || !known.contains(&one.as_str()));
+            let free = all.filter(|one| one == typed || !known.contains(one.as_str()));
             free.zip(0..).map(|(one, rank)| value(one, &range).rank(rank)).collect()
         }
         (_, column) => {
             let Some(name) = head.get(column) else { return Vec::new() };
+            if let Some(language) = language::of_column(scene, of, name) {
+                return language::complete(language, scene, range, at);
+            }
             let declared = names::declared_in(scene, of.0, of.1.name.element);
             match declared.into_iter().find(|(one, _)| one.name == *name) {
                 Some((one, preset)) => values::explained(one, preset, &text[range.start..at], &range),
                 None => {
-                    let inner = scene.inside(of.0, of.1).first().copied();
+                    let inner = scene.inner(of.0, of.1);
                     inner.map_or_else(Vec::new, |inner| values::as_used(scene, inner, name, &range, at))
                 }
             }
@@ -78,7 +82,7 @@ pub(crate) fn hover(scene: &Scene, at: usize) -> Option<(String, Range<usize>)> 
 
 /// The component whose table the first file is.
 pub(super) fn owner(scene: &Scene) -> Option<(usize, &Component)> {
-    scene.owners().into_iter().find_map(|file| {
+    scene.owners().iter().find_map(|&file| {
         let mut components = scene.files[file].outline.components.iter();
         let is_one = |one: &&Component| one.table.as_ref().is_some_and(|name| scene.is_first(file, name));
         Some((file, components.find(is_one)?))
@@ -93,13 +97,15 @@ fn columns(
     column: usize,
     range: &Range<usize>,
 ) -> Vec<Proposal> {
-    let is_free = |name: &str| !head.iter().zip(0..).any(|(known, at)| *known == name && at != column);
+    let others = head.iter().zip(0..).filter(|(_, at)| *at != column);
+    let others: HashSet<&str> = others.map(|(known, _)| *known).collect();
+    let is_free = |name: &str| !others.contains(name);
     let one = |name: &str| Proposal::new(name, ProposalKind::Property, range);
     let declared = names::declared_in(scene, of.0, of.1.name.element).into_iter();
     let declared = declared.filter(|(property, _)| is_free(&property.name)).map(|(property, preset)| {
         one(&property.name).detail(describe::facts(property, preset)).doc(describe::property(property, preset))
     });
-    let inner = scene.inside(of.0, of.1).into_iter().flat_map(|file| &scene.files[file].outline.properties);
+    let inner = scene.inside(of.0, of.1).iter().flat_map(|file| &scene.files[*file].outline.properties);
     let inner = inner.filter(|property| is_free(&property.text)).map(|property| one(&property.text));
     declared.chain(inner).collect()
 }

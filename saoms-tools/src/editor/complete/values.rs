@@ -25,12 +25,12 @@ pub(super) fn complete(scene: &Scene, property: ElementId, range: Range<usize>, 
         return topics::complete(scene, property, range, at);
     }
     if let Some(language) = language::of_property(scene, 0, property) {
-        return language::complete(language, scene, 0, range, at);
+        return language::complete(language, scene, range, at);
     }
     let declared = names::declared(scene, parent);
     let Some((one, preset)) = declared.into_iter().find(|(one, _)| one.name == name) else {
         let component = scene.component_around(parent);
-        let inner = component.and_then(|one| scene.inside(0, one).first().copied());
+        let inner = component.and_then(|one| scene.inner(0, one));
         return inner.map_or_else(Vec::new, |inner| as_used(scene, inner, name, &range, at));
     };
     let mut all = explained(one, preset, &file.text[range.start..at], &range);
@@ -57,9 +57,11 @@ pub(super) fn explained(
 /// The values that a property of the composite can have.
 pub(super) fn of_parameter(scene: &Scene, property: ElementId, range: Range<usize>, at: usize) -> Vec<Proposal> {
     let file = scene.file();
-    match file.element(property).value("name") {
-        Some(name) => as_used(scene, 0, &file.text[name], &range, at),
-        None => Vec::new(),
+    let Some(name) = file.element(property).value("name") else { return Vec::new() };
+    let name = &file.text[name];
+    match language::of_parameter(scene, 0, name) {
+        Some(language) => language::complete(language, scene, range, at),
+        None => as_used(scene, 0, name, &range, at),
     }
 }
 
@@ -68,7 +70,7 @@ pub(super) fn of_parameter(scene: &Scene, property: ElementId, range: Range<usiz
 pub(super) fn as_used(scene: &Scene, file: usize, name: &str, range: &Range<usize>, at: usize) -> Vec<Proposal> {
     let Symbol::Parameter { file, name } = scene.parameter(file, name) else { return Vec::new() };
     let of = &scene.files[file];
-    let declared = of.outline.properties.iter().find(|one| one.text == name);
+    let declared = scene.property(file, &name);
     let r#type = declared.and_then(|one| of.element(one.element).value("type"));
     if r#type.is_some_and(|at| local(&of.text[at]) == "boolean") {
         return names::words(&["true", "false"], range);

@@ -22,28 +22,55 @@ pub(crate) struct Contract<'s> {
 
 impl Scene {
     /// The services or the references of a component of a file; `None` where any can be there.
-    pub(crate) fn contracts(&self, of: (usize, &Component), side: Side) -> Option<Vec<Contract<'_>>> {
-        self.contracts_in(of, side, DEEPEST)
-    }
-
-    fn contracts_in(
+    pub(crate) fn contracts(
         &self,
-        (file, component): (usize, &Component),
+        of @ (file, component): (usize, &Component),
         side: Side,
-        depth: usize,
     ) -> Option<Vec<Contract<'_>>> {
         match component.implementation.as_ref()? {
-            Implementation::Class(_) => self.of_class((file, component), side),
+            Implementation::Class(_) => self.of_class(of, side),
             Implementation::Composite(name) => {
                 let inner = self.composite(file, name)?;
-                let all = self.with_included(inner).into_iter().flat_map(|inner| {
-                    let outline = &self.files[inner].outline;
-                    let names = if side == Side::Service { &outline.services } else { &outline.references };
-                    names.iter().map(move |name| self.promoted(inner, name, side, depth))
+                let all = self.with_included(inner).iter().flat_map(|inner| {
+                    let names = self.files[*inner].outline.promoted(side).iter();
+                    names.map(move |name| self.promoted(*inner, name, side, DEEPEST))
                 });
                 Some(all.collect())
             }
         }
+    }
+
+    /// One of them: that of a name, or else the only one. Of a composite inside no others are followed.
+    fn contract_in(
+        &self,
+        of @ (file, component): (usize, &Component),
+        side: Side,
+        name: Option<&str>,
+        depth: usize,
+    ) -> Option<Contract<'_>> {
+        let inner = match component.implementation.as_ref()? {
+            Implementation::Class(_) => {
+                let all = self.of_class(of, side)?;
+                return match name {
+                    Some(name) => all.into_iter().find(|one| one.name == name),
+                    None => only(all),
+                };
+            }
+            Implementation::Composite(name) => self.composite(file, name)?,
+        };
+        let mut files = self.with_included(inner).iter().copied();
+        let (file, named) = match name {
+            Some(name) => files.find_map(|file| {
+                let place = self.files[file].names().promoted(side, name)?;
+                Some((file, &self.files[file].outline.promoted(side)[place]))
+            })?,
+            None => {
+                let named = |file: usize| self.files[file].outline.promoted(side).iter().map(move |one| (file, one));
+                let mut all = files.flat_map(named);
+                all.next().filter(|_| all.next().is_none())?
+            }
+        };
+        Some(self.promoted(file, named, side, depth))
     }
 
     fn of_class(&self, of: (usize, &Component), side: Side) -> Option<Vec<Contract<'_>>> {
@@ -84,12 +111,8 @@ impl Scene {
         let found = depth.checked_sub(1).and_then(|depth| {
             let end = self.files[file].outline.ends_of(name.element).find(|end| end.side == side)?;
             let (of, component) = self.named(file, &end.component.text);
-            let of = self.component(of, &component)?;
-            let all = self.contracts_in(of, side, depth)?;
-            match &end.part {
-                Some(part) => all.into_iter().find(|one| one.name == part.text),
-                None => only(all),
-            }
+            let part = end.part.as_ref().map(|part| part.text.as_str());
+            self.contract_in(self.component(of, &component)?, side, part, depth)
         });
         Contract {
             name: &name.text,
@@ -101,7 +124,7 @@ impl Scene {
 
     /// The service or reference of this name of a component.
     pub(crate) fn contract(&self, of: (usize, &Component), side: Side, name: &str) -> Option<Contract<'_>> {
-        self.contracts(of, side)?.into_iter().find(|one| one.name == name)
+        self.contract_in(of, side, Some(name), DEEPEST)
     }
 }
 

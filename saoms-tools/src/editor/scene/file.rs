@@ -1,12 +1,13 @@
 //! One composite as editors see it.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use saoms_lang::load::vocabulary::{CONTRIBUTION, Kind};
 use saoms_lang::source::{ColumnUnit, LineIndex};
 use saoms_lang::syntax::{Document, Element, ElementId};
 
+use super::names::Names;
 use super::outline::Outline;
 use crate::editor::syntax::{Cursor, kinds, parse};
 
@@ -24,6 +25,8 @@ pub struct File {
     /// The kinds of the elements of the tree.
     kinds: Vec<Option<&'static Kind>>,
     pub(crate) outline: Outline,
+    /// The places of names in the outline, as far as they were needed.
+    names: OnceLock<Names>,
     /// True for a file beside composites, which holds values.
     pub is_beside: bool,
 }
@@ -34,14 +37,32 @@ impl File {
         let document = parse(&text);
         let kinds = kinds(&document);
         let outline = Outline::of(&document, &kinds);
-        Self { path, lines: LineIndex::new(&text, ColumnUnit::Utf16), document, kinds, outline, text, is_beside: false }
+        Self {
+            path,
+            lines: LineIndex::new(&text, ColumnUnit::Utf16),
+            document,
+            kinds,
+            outline,
+            names: OnceLock::new(),
+            text,
+            is_beside: false,
+        }
     }
 
     /// A file beside composites, which holds values.
     pub fn beside(path: PathBuf, text: Arc<String>) -> Self {
         let document = parse(&Arc::default());
         let (kinds, outline) = (Vec::new(), Outline::default());
-        Self { path, lines: LineIndex::new(&text, ColumnUnit::Utf16), document, kinds, outline, text, is_beside: true }
+        Self {
+            path,
+            lines: LineIndex::new(&text, ColumnUnit::Utf16),
+            document,
+            kinds,
+            outline,
+            names: OnceLock::new(),
+            text,
+            is_beside: true,
+        }
     }
 
     /// True if it describes a contribution.
@@ -52,6 +73,11 @@ impl File {
     /// The names of the libraries of plugins that the composite names.
     pub fn libraries(&self) -> &[String] {
         &self.outline.libraries
+    }
+
+    /// The places of names in the outline.
+    pub(crate) fn names(&self) -> &Names {
+        self.names.get_or_init(|| Names::of(&self.outline))
     }
 
     pub(crate) fn element(&self, id: ElementId) -> Element<'_> {

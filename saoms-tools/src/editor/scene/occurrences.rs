@@ -105,8 +105,8 @@ impl<'s> Found<'s> {
             None => {}
         }
         // What is said about a part of a composite inside is said about what that declares.
-        let inside = scene.inside(file, component);
-        if let Some(&inner) = inside.first() {
+        let inner = scene.inner(file, component);
+        if let Some(inner) = inner {
             for name in &component.properties {
                 self.add(name, false, || Some(scene.parameter(inner, &name.text)));
             }
@@ -129,7 +129,7 @@ impl<'s> Found<'s> {
             }
         }
         if self.touched.is_none() {
-            self.beside(component, inside.first().copied());
+            self.beside(component, inner);
             return;
         }
         for [_, new] in scene.renamed(file, component) {

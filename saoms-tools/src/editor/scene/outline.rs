@@ -117,10 +117,36 @@ impl Outline {
             let parent = element.parent().and_then(|parent| kinds[parent.id().0 as usize]);
             outline.add(Reader(element), kind, parent);
         }
+        let mut end = 0;
         for place in 0..outline.components.len() {
-            outline.templates(document, place);
+            let component = &outline.components[place];
+            let span = document.element(component.name.element).span();
+            // One that stands in another one is damage, and was looked at with that.
+            if component.is_replicated && span.start >= end {
+                outline.templates(document, place);
+                end = span.end;
+            }
         }
         outline
+    }
+
+    /// The services or the references of the composite.
+    pub(crate) fn promoted(&self, side: Side) -> &[Named] {
+        if side == Side::Service { &self.services } else { &self.references }
+    }
+
+    /// Every `$name` in the source of an element.
+    pub(crate) fn sources_of(&self, element: ElementId) -> impl Iterator<Item = &Named> {
+        // They are in the order of the elements.
+        let first = self.sources.partition_point(|source| source.element < element);
+        self.sources[first..].iter().take_while(move |source| source.element == element)
+    }
+
+    /// The files that an element takes values from.
+    pub(crate) fn beside_of(&self, element: ElementId) -> impl Iterator<Item = &Named> {
+        // They are in the order of the elements.
+        let first = self.beside.partition_point(|name| name.element < element);
+        self.beside[first..].iter().take_while(move |name| name.element == element)
     }
 
     /// The ends that an element has.
@@ -132,8 +158,7 @@ impl Outline {
 
     /// The names in `${...}` of a component that is replicated.
     fn templates(&mut self, document: &Document, place: usize) {
-        let Component { name, is_replicated: true, .. } = &self.components[place] else { return };
-        let element = document.element(name.element);
+        let element = document.element(self.components[place].name.element);
         for at in texts(element).into_iter().flat_map(|range| names_in_template(document.text(), range)) {
             self.add_use(Reader(element).at(at), Some(place));
         }
@@ -319,7 +344,10 @@ fn end(whole: Named, side: Side) -> End {
 /// The bytes of the names behind `$` in an XPath, expressions of replicas that are parts of them included.
 fn variables(text: &str) -> Vec<Range<usize>> {
     let expressions = inside(text);
-    let is_inside = |at: usize| expressions.iter().any(|one| at + 2 >= one.start && at <= one.end);
+    let is_inside = |at: usize| {
+        let behind = expressions.partition_point(|one| one.end < at);
+        expressions.get(behind).is_some_and(|one| at + 2 >= one.start)
+    };
     let (mut all, mut quote, mut from): (Vec<Range<usize>>, Option<char>, usize) = (Vec::new(), None, 0);
     for (at, letter) in text.char_indices() {
         if at < from || is_inside(at) {

@@ -1,10 +1,14 @@
 //! Symbols: the meaning of a name in a composite, and every place with the same meaning.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::Scene;
 use super::occurrences::Found;
 use super::outline::Side;
+
+/// The most digits of the number of a replica, zeros in front included.
+const MOST_DIGITS: usize = 64;
 
 /// A range of bytes of a file of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -65,7 +69,7 @@ pub(crate) struct Occurrence {
 pub(crate) fn at(scene: &Scene, at: usize) -> Option<Occurrence> {
     if scene.file().is_beside {
         // What its names mean, composites say.
-        let all = scene.owners().into_iter().flat_map(|file| Found::of(scene, file, None));
+        let all = scene.owners().iter().flat_map(|file| Found::of(scene, *file, None));
         return all.into_iter().find(|one| one.at.file == 0 && one.at.start <= at && at <= one.at.end);
     }
     Found::of(scene, 0, Some(at)).into_iter().next()
@@ -92,30 +96,23 @@ impl Scene {
         if let Some((of, _)) = self.component(file, name) {
             return (of, name.to_owned());
         }
-        let mut all = self.patterns(file).map(|(of, one)| (of, &one.name.text));
-        let of_replicas = all.find(|(_, pattern)| is_replica(pattern, name));
-        of_replicas.map_or_else(|| (file, name.to_owned()), |(of, pattern)| (of, pattern.clone()))
+        let of_replicas = self.pattern(file, name);
+        of_replicas.map_or_else(|| (file, name.to_owned()), |(of, one)| (of, one.name.text.clone()))
     }
 
     /// The property of a composite that a file is part of.
     pub(crate) fn parameter(&self, file: usize, name: &str) -> Symbol {
-        let has = |of: &&usize| self.files[**of].outline.properties.iter().any(|one| one.text == name);
-        let file = self.unit_of(file).iter().find(has).copied().unwrap_or(file);
+        let file = self.declaring(file, name).unwrap_or(file);
         Symbol::Parameter { file, name: name.to_owned() }
     }
 
     /// The symbol of a part of a component: for a composite inside, the part that it promotes.
     pub(crate) fn part(&self, file: usize, component: &str, side: Side, name: &str) -> Symbol {
         let inside = self.component(file, component).map(|(of, known)| self.inside(of, known));
-        let inside = inside.filter(|inside| !inside.is_empty());
-        let Some(inside) = inside else {
+        let Some(inside) = inside.filter(|inside| !inside.is_empty()) else {
             return Symbol::Part { file, component: component.to_owned(), side, name: name.to_owned() };
         };
-        let has = |of: &&usize| {
-            let outline = &self.files[**of].outline;
-            let names = if side == Side::Service { &outline.services } else { &outline.references };
-            names.iter().any(|one| one.text == name)
-        };
+        let has = |of: &&usize| self.files[**of].names().promoted(side, name).is_some();
         let file = inside.iter().find(has).copied().unwrap_or(inside[0]);
         Symbol::Promoted { file, side, name: name.to_owned() }
     }
@@ -142,7 +139,7 @@ pub(crate) fn group(pattern: &str) -> Option<String> {
 }
 
 /// The texts around the expressions of a name.
-fn pieces(pattern: &str) -> Vec<&str> {
+pub(super) fn pieces(pattern: &str) -> Vec<&str> {
     let (mut all, mut rest) = (Vec::new(), pattern);
     while let Some((before, (_, after))) =
         rest.split_once("${").and_then(|(before, inside)| Some((before, inside.split_once('}')?)))
@@ -156,8 +153,16 @@ fn pieces(pattern: &str) -> Vec<&str> {
 
 /// True if a name is a number before each of these pieces, and nothing else.
 fn has_numbers(name: &str, pieces: &[&str]) -> bool {
-    let Some((first, rest)) = pieces.split_first() else { return name.is_empty() };
-    let digits = name.bytes().take_while(u8::is_ascii_digit).count();
-    // A piece may begin with digits, too.
-    (1..=digits).any(|end| name[end..].strip_prefix(first).is_some_and(|name| has_numbers(name, rest)))
+    // The bytes behind which the pieces so far can end: one may begin with digits, too.
+    let mut ends = BTreeSet::from([0]);
+    for piece in pieces {
+        let numbers = ends.iter().flat_map(|&from| {
+            let digits = name[from..].bytes().take_while(u8::is_ascii_digit).take(MOST_DIGITS).count();
+            from + 1..=from + digits
+        });
+        let numbers: BTreeSet<usize> = numbers.collect();
+        let behind = numbers.into_iter().filter(|end| name[*end..].starts_with(piece)).map(|end| end + piece.len());
+        ends = behind.collect();
+    }
+    ends.contains(&name.len())
 }

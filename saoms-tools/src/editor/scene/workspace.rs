@@ -1,7 +1,8 @@
 //! The files of composites: those that are open as the editor has them, others as they are on disk.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
@@ -11,9 +12,14 @@ use saoms_lang::load::MAX_SIZE;
 use saoms_lang::source::{OpenTexts, identity};
 
 use super::file::File;
+use super::outline::{Implementation, Named};
+use crate::editor::syntax::Places;
 
 /// The time for which the names in a folder are kept if the editor does not report files that came or went.
 const FRESH: Duration = Duration::from_secs(5);
+
+/// The bytes of files that are not open and are read because of one that is.
+const MOST_BYTES: usize = 64_000_000;
 
 /// The extension of files that hold values alone.
 const VALUES: [&str; 2] = ["csv", "txt"];
@@ -24,6 +30,8 @@ pub struct Workspace {
     open: OpenTexts,
     files: HashMap<PathBuf, (Option<Stamp>, Arc<File>)>,
     listings: HashMap<PathBuf, (Instant, Listing)>,
+    /// The files that paths as composites write them lead to, and when the first of them was found.
+    identities: Option<(Instant, HashMap<PathBuf, PathBuf>)>,
 }
 
 /// The composites around a folder, what describes their contribution, and what that imports.
@@ -43,6 +51,8 @@ pub struct Surroundings {
     pub(crate) own: usize,
     /// The number of them in it or imported; the rest import from it.
     pub(crate) known: usize,
+    /// The files that paths as composites write them lead to.
+    pub(crate) identities: HashMap<PathBuf, PathBuf>,
 }
 
 impl Surroundings {
@@ -55,6 +65,37 @@ impl Surroundings {
 /// The stamp of a file that shows a change on disk: time and size.
 type Stamp = (Option<SystemTime>, u64);
 
+/// The shape of a file: what the fleets around it follow from, as numbers that change with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shape {
+    /// Of what others find the file by, and of what a contribution says of its files.
+    pub names: u64,
+    /// Of what the file names: composites, and files with values.
+    pub uses: u64,
+}
+
+impl Shape {
+    fn of(file: &File) -> Self {
+        if file.is_beside {
+            return Self::default();
+        }
+        let (outline, text) = (&file.outline, &file.text);
+        let (mut names, mut uses) = (DefaultHasher::new(), DefaultHasher::new());
+        // Why a composite without a name is none, is said where it is missed.
+        let head = if outline.name.is_some() { file.document.root().tag() } else { 0..text.len() };
+        text[head].hash(&mut names);
+        let texts = |all: &[Named]| all.iter().map(|one| one.text.clone()).collect::<Vec<String>>();
+        (&outline.exports, texts(&outline.deployables)).hash(&mut names);
+        (texts(&outline.includes), texts(&outline.beside)).hash(&mut uses);
+        for component in &outline.components {
+            if let Some(Implementation::Composite(name)) = &component.implementation {
+                name.text.hash(&mut uses);
+            }
+        }
+        Self { names: names.finish(), uses: uses.finish() }
+    }
+}
+
 impl Workspace {
     /// Takes other texts as those that are open.
     pub fn set_open(&mut self, open: OpenTexts) {
@@ -64,6 +105,7 @@ impl Workspace {
     /// Looks at the disk anew.
     pub fn refresh(&mut self) {
         self.listings.clear();
+        self.identities = None;
     }
 
     /// A file; `None` where it cannot be read.
@@ -102,24 +144,28 @@ impl Workspace {
     pub fn around(&mut self, path: &Path) -> Surroundings {
         let mut folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let mut others = self.composites_in(&folder, path);
-        let holds_values = |others: &[Arc<File>]| written(others).iter().any(|one| identity(one) == path);
         let is_table = path.extension().is_some_and(|ending| VALUES.iter().any(|known| ending == *known));
-        let mut is_beside = holds_values(&others);
+        let mut identities = self.identities_of(&others);
+        let mut is_beside = identities.values().any(|one| one == path);
         if !is_beside && is_table {
             is_beside = true;
             // The composite may be in another folder: one that was looked at before is found.
-            let known = self.files.values().map(|(_, file)| file);
-            let owner = known.filter(|file| holds_values(std::slice::from_ref(file))).map(|file| &file.path).min();
-            if let Some(owner) = owner.and_then(|owner| owner.parent()).map(Path::to_owned) {
-                others = self.composites_in(&owner, path);
-                folder = owner;
+            let known: Vec<Arc<File>> = self.files.values().map(|(_, file)| Arc::clone(file)).collect();
+            let owners = known.iter().filter(|file| !file.outline.beside.is_empty());
+            let owner = owners.filter(|file| self.identities_of(&[Arc::clone(file)]).values().any(|one| one == path));
+            if let Some(owner) = owner.map(|file| &file.path).min().and_then(|owner| owner.parent()) {
+                folder = owner.to_owned();
+                others = self.composites_in(&folder, path);
+                identities = self.identities_of(&others);
             }
         }
-        let mut all: Vec<Arc<File>> = self.file(path, is_beside).into_iter().chain(others).collect();
+        let file = self.file(path, is_beside);
+        identities.extend(self.identities_of(file.as_slice()));
+        let mut all: Vec<Arc<File>> = file.into_iter().chain(others).collect();
         let mut known: HashSet<PathBuf> = all.iter().map(|file| file.path.clone()).collect();
-        for path in written(&all).iter().map(|path| identity(path)) {
+        for path in identities.values().collect::<BTreeSet<_>>() {
             if known.insert(path.clone()) {
-                all.extend(self.file(&path, true));
+                all.extend(self.file(path, true));
             }
         }
         let own = all.len();
@@ -131,25 +177,71 @@ impl Workspace {
         };
         let known = add(imported, &mut all);
         add(importing, &mut all);
-        Surroundings { files: all, own, known }
+        Surroundings { files: all, own, known, identities }
+    }
+
+    /// What files that have the same others around them have in common: the description of their contribution, or else
+    /// their folder.
+    pub fn group(&mut self, path: &Path) -> PathBuf {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        self.listing(folder).description.unwrap_or_else(|| folder.to_owned())
+    }
+
+    /// The shape of a file.
+    pub fn shape(&mut self, path: &Path) -> Shape {
+        let is_table = path.extension().is_some_and(|ending| VALUES.iter().any(|known| ending == *known));
+        match self.file(path, is_table) {
+            Some(file) => Shape::of(&file),
+            None => Shape::default(),
+        }
+    }
+
+    /// The files that composites take values from, by the paths that they write.
+    fn identities_of(&mut self, composites: &[Arc<File>]) -> HashMap<PathBuf, PathBuf> {
+        let known = self.identities.take().filter(|(then, _)| then.elapsed() < FRESH);
+        let (_, known) = self.identities.insert(known.unwrap_or_else(|| (Instant::now(), HashMap::new())));
+        let written = composites.iter().flat_map(|file| {
+            let folder = file.path.parent().unwrap_or(Path::new(""));
+            file.outline.beside.iter().map(move |name| folder.join(&name.text))
+        });
+        let found = written.map(|path| {
+            let found = known.entry(path.clone()).or_insert_with(|| identity(&path)).clone();
+            (path, found)
+        });
+        found.collect()
     }
 
     /// All composites in these folders, and those around the files that are open.
     pub fn all(&mut self, folders: &[PathBuf], open: &[PathBuf]) -> Vec<Arc<File>> {
-        let beside = open.iter().filter_map(|path| path.parent()).map(Path::to_owned);
-        let folders: BTreeSet<PathBuf> = folders.iter().map(|path| identity(path)).chain(beside).collect();
-        let mut all: Vec<Arc<File>> =
-            folders.iter().flat_map(|folder| self.composites_in(folder, Path::new(""))).collect();
-        all.sort_by(|one, other| one.path.cmp(&other.path));
-        all.dedup_by(|one, other| one.path == other.path);
-        all
+        let folders: BTreeSet<PathBuf> = folders.iter().map(|path| identity(path)).collect();
+        let mut all: BTreeMap<PathBuf, Arc<File>> = BTreeMap::new();
+        for folder in folders {
+            all.extend(self.composites_in(&folder, Path::new("")).into_iter().map(|file| (file.path.clone(), file)));
+        }
+        for path in open {
+            let folder = path.parent().filter(|_| !all.contains_key(path)).map(Path::to_owned);
+            let beside = folder.map(|folder| self.composites_in(&folder, Path::new(""))).unwrap_or_default();
+            all.extend(beside.into_iter().map(|file| (file.path.clone(), file)));
+        }
+        all.into_values().collect()
     }
 
-    /// The composites that one in a folder can name, and what describes its contribution, but for one file.
+    /// The composites that one in a folder can name, and what describes its contribution, but for one file. Of a folder
+    /// with more in it than an editor can hold at hand, those that are open, and the first others.
     fn composites_in(&mut self, folder: &Path, but: &Path) -> Vec<Arc<File>> {
         let listed = self.listing(folder);
         let others = listed.composites.iter().chain(&listed.description).filter(|other| *other != but);
-        others.filter_map(|one| self.file(one, false)).collect()
+        let mut left = MOST_BYTES;
+        let file = |one: &PathBuf| {
+            let is_open = self.open.get(one).is_some();
+            if left == 0 && !is_open {
+                return None;
+            }
+            let file = self.file(one, false)?;
+            left = left.saturating_sub(if is_open { 0 } else { file.text.len() });
+            Some(file)
+        };
+        others.filter_map(file).collect()
     }
 
     fn listing(&mut self, folder: &Path) -> Listing {
@@ -168,13 +260,4 @@ impl Workspace {
         self.listings.insert(folder.to_owned(), (Instant::now(), found.clone()));
         found
     }
-}
-
-/// The files that composites take values from, by the paths that they write.
-fn written(composites: &[Arc<File>]) -> BTreeSet<PathBuf> {
-    let all = composites.iter().flat_map(|file| {
-        let folder = file.path.parent().unwrap_or(Path::new(""));
-        file.outline.beside.iter().map(move |name| folder.join(&name.text))
-    });
-    all.collect()
 }

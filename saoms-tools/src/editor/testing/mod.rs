@@ -6,6 +6,7 @@
 mod composite;
 mod laws;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
@@ -57,7 +58,10 @@ pub(crate) fn scene_at(path: &Path, text: &str) -> Scene {
 }
 
 fn made(files: Vec<Arc<File>>) -> Scene {
-    Scene::new(Surroundings { own: files.len(), known: files.len(), files }, Arc::clone(&REGISTRY))
+    Scene::new(
+        Surroundings { own: files.len(), known: files.len(), files, identities: HashMap::new() },
+        Arc::clone(&REGISTRY),
+    )
 }
 
 /// Asks everything at a byte of a text beside other files. What is answered is in the texts.

@@ -85,6 +85,58 @@ fn scenarios_complete_word_by_word() {
 }
 
 #[test]
+fn a_scenario_completes_wherever_its_text_is_written() {
+    let environment = |given: &str| {
+        format!(
+            "<component name=\"Robot1\"><implementation.rust class=\"saoms.Robot\"/></component><component name=\"E\">\
+             <implementation.rust class=\"saoms.Environment\"/><property name=\"scenario\" {given}/></component>"
+        )
+    };
+    let words = ["luggage", "landing", "takeoff", "breakdown", "end"];
+    let begins = |found: Vec<String>| assert_eq!(found[..5], words);
+    let robots = |found: Vec<String>| assert_eq!(found, ["Robot1"]);
+    // In the property that the environment takes it from, in each way of writing a value.
+    let own = |property: &str| proposed(&composite(&format!("{property}{}", environment("source=\"$x\""))));
+    begins(own("<property name=\"x\">at 1s |</property>"));
+    begins(own("<property name=\"x\"><value>at 1s |</value></property>"));
+    begins(own("<property name=\"x\" value=\"at 1s |\"/>"));
+    robots(own("<property name=\"x\">at 1s breakdown |</property>"));
+    // A part of a value is no scenario.
+    let part =
+        proposed(&composite(&format!("<property name=\"x\">at 1s |</property>{}", environment("source=\"$x/y\""))));
+    assert!(!part.contains(&words[0].to_owned()), "{part:?}");
+    // In the file that the property names.
+    let outer = composite(&format!("<property name=\"x\" file=\"s.txt\"/>{}", environment("source=\"$x\"")));
+    begins(inside("s.txt", "at 1s |", &[("fleet.composite", &outer)]));
+    // In what a component gives the composite that has the environment, through a composite between.
+    let inner = |name: &str, content: &str| composite(content).replace("\"fleet\"", &format!("\"{name}\""));
+    let deepest = inner("deepest", &format!("<property name=\"x\"/>{}", environment("source=\"$x\"")));
+    let middle = inner(
+        "middle",
+        "<property name=\"y\"/><component name=\"D\"><implementation.composite name=\"deepest\"/><property name=\"x\" source=\"$y\"/></component>",
+    );
+    let given = |how: &str| {
+        composite(&format!(
+            "<component name=\"M\"><implementation.composite name=\"middle\"/><property name=\"y\"{how}</component>"
+        ))
+    };
+    let others = [("deepest.composite", deepest.as_str()), ("middle.composite", middle.as_str())];
+    begins(proposed_among(&given(">at 1s |</property>"), &others));
+    robots(proposed_among(&given(" value=\"at 1s breakdown |\"/>"), &others));
+    let outer = given(" file=\"s.txt\"/>");
+    let mut all = others.to_vec();
+    all.push(("fleet.composite", &outer));
+    begins(inside("s.txt", "at 1s |", &all));
+    // In a file that includes the composite with the environment, and in a cell of a table.
+    let including = composite("<include name=\"deepest\"/><property name=\"x\">at 1s |</property>");
+    let included = deepest.replace("<property name=\"x\"/>", "");
+    begins(proposed_among(&including, &[("deepest.composite", &included)]));
+    let table =
+        composite(&environment("").replace("name=\"E\"", "name=\"E${index}\" s:count=\"2\" s:overrides=\"t.csv\""));
+    begins(inside("t.csv", "index,scenario\n1,\"at 1s |\"", &[("fleet.composite", &table)]));
+}
+
+#[test]
 fn descriptions_of_contributions_complete() {
     let other = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"other\" targetNamespace=\"urn:example:harbour\"/>";
     let fleet = composite("");
