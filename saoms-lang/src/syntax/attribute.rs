@@ -15,19 +15,25 @@ pub(super) struct RawAttribute {
     /// Without the quotes; empty, behind the name, where there is none.
     pub(super) value: Span,
     pub(super) namespace: u32,
-    pub(super) flags: u8,
+    pub(super) ending: Ending,
+    /// The meaning of the value, or of the name, is unknown.
+    pub(super) is_unsure: bool,
+    /// Another attribute of the name stands before it.
+    pub(super) is_duplicate: bool,
+    /// The name is none, or its prefix is bound to no namespace.
+    pub(super) is_misnamed: bool,
 }
 
-/// There is no value.
-pub(super) const NO_VALUE: u8 = 1;
-/// The value has no closing quote.
-pub(super) const OPEN: u8 = 2;
-/// Nobody knows what the value, or the name, means.
-pub(super) const UNSURE: u8 = 4;
-/// Another attribute of the name stands before it.
-pub(super) const DUPLICATE: u8 = 8;
-/// The name is none, or its prefix is bound to no namespace.
-pub(super) const BAD_NAME: u8 = 16;
+/// The end of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ending {
+    /// It has both quotes.
+    Closed,
+    /// It has no closing quote.
+    Open,
+    /// There is no value.
+    Missing,
+}
 
 impl RawAttribute {
     pub(super) fn name_span(&self) -> Span {
@@ -36,7 +42,22 @@ impl RawAttribute {
 
     /// Behind the closing quote.
     pub(super) fn end(&self) -> u32 {
-        self.value.end + u32::from(self.flags & (NO_VALUE | OPEN) == 0)
+        self.value.end + u32::from(self.is_closed())
+    }
+
+    pub(super) fn is_closed(&self) -> bool {
+        self.ending == Ending::Closed
+    }
+
+    /// True if the name is one, stands here for the first time, and has a value.
+    pub(super) fn has_sure_name(&self) -> bool {
+        self.ending != Ending::Missing && !self.is_misnamed && !self.is_duplicate
+    }
+
+    /// True if name and value are known, whatever faults there are.
+    #[inline]
+    pub(super) fn is_sure(&self) -> bool {
+        self.has_sure_name() && !self.is_unsure
     }
 }
 
@@ -97,23 +118,23 @@ impl<'a> Attribute<'a> {
 
     /// True if there is a `=` behind the name.
     pub fn has_value(self) -> bool {
-        self.raw.flags & NO_VALUE == 0
+        self.raw.ending != Ending::Missing
     }
 
     /// True if the value has both quotes.
     pub fn is_closed(self) -> bool {
-        self.raw.flags & (NO_VALUE | OPEN) == 0
+        self.raw.is_closed()
     }
 
     /// True if the name is one, stands here for the first time, and has a value, which may be doubtful.
     pub(crate) fn has_sure_name(self) -> bool {
-        self.raw.flags & (NO_VALUE | BAD_NAME | DUPLICATE) == 0
+        self.raw.has_sure_name()
     }
 
     /// True if name and value are known, whatever faults there are.
     #[inline]
     pub(super) fn is_sure(self) -> bool {
-        self.raw.flags & (NO_VALUE | UNSURE | DUPLICATE | BAD_NAME) == 0
+        self.raw.is_sure()
     }
 
     /// The place of the name.

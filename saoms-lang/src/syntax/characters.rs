@@ -1,7 +1,6 @@
 //! Names, and characters that XML forbids.
 
-use super::attribute::UNSURE;
-use super::document::{DAMAGED_TAG, TokenKind, UNSURE_TEXT};
+use super::document::TokenKind;
 use super::lexer::Lexer;
 use super::value::is_char;
 use crate::diagnostic::codes;
@@ -29,14 +28,14 @@ fn mark(lexer: &mut Lexer<'_>, at: u32) {
     let place = lexer.tokens.partition_point(|token| token.start <= at).saturating_sub(1);
     let token = &mut lexer.tokens[place];
     match token.kind {
-        TokenKind::Text | TokenKind::Section => token.flags |= UNSURE_TEXT,
+        TokenKind::Text | TokenKind::Section => token.is_damaged = true,
         TokenKind::StartTag | TokenKind::EmptyTag => {
-            token.flags |= DAMAGED_TAG;
+            token.is_damaged = true;
             let next = lexer.attributes.partition_point(|one| one.start <= at);
             if let Some(one) = next.checked_sub(1).map(|place| &mut lexer.attributes[place])
                 && one.end() > at
             {
-                one.flags |= UNSURE;
+                one.is_unsure = true;
             }
         }
         _ => {}

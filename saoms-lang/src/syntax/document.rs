@@ -56,24 +56,19 @@ pub enum TokenKind {
 pub(super) struct Token {
     pub(super) start: u32,
     pub(super) kind: TokenKind,
-    /// Of a start tag, the flags of its element.
-    pub(super) flags: u8,
+    /// Of a start tag: attributes may be missing, or may be meant otherwise. Of others: the meaning is unknown.
+    pub(super) is_damaged: bool,
+    /// Of a start tag: it has no `>`.
+    pub(super) is_broken_off: bool,
+    /// Of a start tag: the prefix of its name is bound to no namespace, or its name is none.
+    pub(super) is_unnamed: bool,
 }
 
-/// Text other than white space is directly inside.
-pub(super) const HAS_TEXT: u8 = 1;
-/// The end tag was found, or none is needed.
-pub(super) const CLOSED: u8 = 2;
-/// Attributes may be missing, or may be meant otherwise.
-pub(super) const DAMAGED_TAG: u8 = 4;
-/// Elements or texts directly inside may be missing, or may belong elsewhere.
-pub(super) const DAMAGED_CONTENT: u8 = 8;
-/// Nobody knows what the text means: that of a token, or that directly inside an element.
-pub(super) const UNSURE_TEXT: u8 = 16;
-/// The start tag has no `>`.
-pub(super) const BROKEN_OFF: u8 = 32;
-/// The prefix of the element's name is bound to no namespace, or its name is none.
-pub(super) const UNNAMED: u8 = 64;
+impl Token {
+    pub(super) fn new(start: u32, kind: TokenKind) -> Self {
+        Self { start, kind, is_damaged: false, is_broken_off: false, is_unnamed: false }
+    }
+}
 
 /// An element, as it is stored.
 #[derive(Clone, Copy, Debug)]
@@ -90,6 +85,14 @@ pub(super) struct Node {
     pub(super) name: u32,
     pub(super) name_len: u32,
     pub(super) namespace: u32,
+    /// Text other than white space is directly inside.
+    pub(super) has_text: bool,
+    /// The end tag was found, or none is needed.
+    pub(super) is_closed: bool,
+    /// Elements or texts directly inside may be missing, or may belong elsewhere.
+    pub(super) is_content_damaged: bool,
+    /// The meaning of the text directly inside is unknown.
+    pub(super) is_text_unsure: bool,
 }
 
 impl Node {

@@ -1,10 +1,7 @@
 //! Views of elements.
 
 use super::Attribute;
-use super::document::{
-    BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, Declaration, Document, ElementId, NO_NAMESPACE, NONE, Node,
-    Token, TokenKind, UNNAMED, UNSURE_TEXT, XMLNS,
-};
+use super::document::{Declaration, Document, ElementId, NO_NAMESPACE, NONE, Node, Token, TokenKind, XMLNS};
 use super::value;
 use crate::source::{Location, Span};
 
@@ -24,11 +21,6 @@ impl<'a> Element<'a> {
     #[inline]
     fn start_tag(self) -> Token {
         self.document.tokens[self.node().token as usize]
-    }
-
-    #[inline]
-    pub(super) fn has(self, flags: u8) -> bool {
-        self.start_tag().flags & flags != 0
     }
 
     fn with_id(self, id: u32) -> Self {
@@ -116,34 +108,34 @@ impl<'a> Element<'a> {
     /// True if its end tag was found, or none is needed.
     #[inline]
     pub fn is_closed(self) -> bool {
-        self.has(CLOSED)
+        self.node().is_closed
     }
 
     /// True if the start tag ends with `>`.
     pub fn has_whole_start_tag(self) -> bool {
-        !self.has(BROKEN_OFF)
+        !self.start_tag().is_broken_off
     }
 
     /// True if attributes, or what is directly inside, may be missing because of a fault of the text, or may be meant
     /// otherwise. That something is missing here says nothing.
     #[inline]
     pub fn is_damaged(self) -> bool {
-        self.has(DAMAGED_TAG | DAMAGED_CONTENT | UNSURE_TEXT)
+        self.has_damaged_tag() || self.has_damaged_content()
     }
 
     /// True if attributes may be missing, or may be meant otherwise.
     pub fn has_damaged_tag(self) -> bool {
-        self.has(DAMAGED_TAG)
+        self.start_tag().is_damaged
     }
 
     /// True if elements directly inside may be missing, or may belong elsewhere.
     pub fn has_damaged_content(self) -> bool {
-        self.has(DAMAGED_CONTENT | UNSURE_TEXT)
+        self.node().is_content_damaged || self.node().is_text_unsure
     }
 
     /// True if the name says nothing: it is none, or its prefix is bound to no namespace.
     pub fn is_unnamed(self) -> bool {
-        self.has(UNNAMED)
+        self.start_tag().is_unnamed
     }
 
     /// The element it is in.

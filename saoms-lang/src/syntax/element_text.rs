@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::Element;
-use super::document::{HAS_TEXT, Node, TokenKind, UNSURE_TEXT};
+use super::document::{Node, TokenKind};
 use super::element::{part_span, slice};
 use super::value::{self, Place};
 use crate::source::{Located, Span, Text};
@@ -12,7 +12,7 @@ impl<'a> Element<'a> {
     /// True if text other than white space is directly inside.
     #[inline]
     pub fn has_text(self) -> bool {
-        self.has(HAS_TEXT)
+        self.node().has_text
     }
 
     /// The tokens directly inside that are no tags.
@@ -88,7 +88,7 @@ impl<'a> Element<'a> {
     /// unknown.
     #[inline]
     pub fn trimmed_text(self) -> Option<Text> {
-        if !self.has_text() || self.has(UNSURE_TEXT) {
+        if !self.has_text() || self.node().is_text_unsure {
             return None;
         }
         let location = self.text_span()?.in_file(self.document.file);

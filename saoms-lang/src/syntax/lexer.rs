@@ -5,7 +5,7 @@ use quick_xml::events::Event;
 
 use super::attribute::RawAttribute;
 use super::characters::name_length;
-use super::document::{DAMAGED_TAG, NONE, Node, Token, TokenKind, UNNAMED, UNSURE_TEXT};
+use super::document::{NONE, Node, Token, TokenKind};
 use super::fault::{Faults, Input};
 use super::{prolog, value};
 use crate::diagnostic::codes;
@@ -41,7 +41,7 @@ impl<'a> Lexer<'a> {
         let bytes = self.input.bytes();
         let mut at = 0;
         if self.input.text.starts_with('\u{feff}') {
-            self.push(0, TokenKind::Mark, 0);
+            self.push(0, TokenKind::Mark);
             at = 3;
         }
         while let Some(&first) = bytes.get(at as usize) {
@@ -54,19 +54,24 @@ impl<'a> Lexer<'a> {
         }
         if self.elements.is_empty() {
             // Every tree has a root.
-            self.push_element(at, TokenKind::EmptyTag, DAMAGED_TAG | UNNAMED, Span::empty(at));
+            let tag = Token { is_damaged: true, is_unnamed: true, ..Token::new(at, TokenKind::EmptyTag) };
+            self.push_element(tag, Span::empty(at));
         }
-        self.push(at, TokenKind::End, 0);
+        self.push(at, TokenKind::End);
     }
 
-    pub(super) fn push(&mut self, start: u32, kind: TokenKind, flags: u8) {
-        self.tokens.push(Token { start, kind, flags });
+    pub(super) fn push(&mut self, start: u32, kind: TokenKind) {
+        self.tokens.push(Token::new(start, kind));
+    }
+
+    pub(super) fn push_damaged(&mut self, start: u32, kind: TokenKind) {
+        self.tokens.push(Token { is_damaged: true, ..Token::new(start, kind) });
     }
 
     /// Adds a start tag without its attributes, which follow, and its element.
-    pub(super) fn push_element(&mut self, start: u32, kind: TokenKind, flags: u8, name: Span) {
+    pub(super) fn push_element(&mut self, tag: Token, name: Span) {
         let token = self.tokens.len() as u32;
-        self.push(start, kind, flags);
+        self.tokens.push(tag);
         self.elements.push(Node {
             token,
             end: token,
@@ -76,6 +81,10 @@ impl<'a> Lexer<'a> {
             name: name.start,
             name_len: name.len(),
             namespace: 0,
+            has_text: false,
+            is_closed: false,
+            is_content_damaged: false,
+            is_text_unsure: false,
         });
     }
 
@@ -83,7 +92,7 @@ impl<'a> Lexer<'a> {
     fn end_tag(&mut self, start: u32) -> u32 {
         let input = self.input;
         let (name, close) = end_name(input, start);
-        self.push(start, TokenKind::EndTag, 0);
+        self.push(start, TokenKind::EndTag);
         let is_nameless = name.start > start + 2 || name.is_empty();
         match input.byte(close) {
             None => {
@@ -124,21 +133,21 @@ impl<'a> Lexer<'a> {
         let event = reader.read_event();
         let end = start + reader.buffer_position() as u32;
         match event {
-            Ok(Event::CData(_)) => self.push(start, TokenKind::Section, 0),
+            Ok(Event::CData(_)) => self.push(start, TokenKind::Section),
             Ok(Event::Comment(_)) => {
-                self.push(start, TokenKind::Comment, 0);
+                self.push(start, TokenKind::Comment);
                 if let Some(one) = prolog::comment(input, start, end) {
                     self.faults.add(|| one);
                 }
             }
             Ok(Event::PI(_) | Event::Decl(_)) => {
-                self.push(start, TokenKind::Instruction, 0);
+                self.push(start, TokenKind::Instruction);
                 if let Some(one) = prolog::instruction(input, start, end) {
                     self.faults.add(|| one);
                 }
             }
             Ok(Event::DocType(_)) => {
-                self.push(start, TokenKind::Doctype, 0);
+                self.push(start, TokenKind::Doctype);
                 self.faults.add(|| prolog::doctype(input, start, start + 9));
             }
             _ => {
@@ -158,16 +167,16 @@ impl<'a> Lexer<'a> {
         }
         match kind {
             Some(kind @ (TokenKind::Comment | TokenKind::Section | TokenKind::Instruction)) => {
-                self.push(start, kind, UNSURE_TEXT);
+                self.push_damaged(start, kind);
                 self.is_cut_short = true;
                 input.len()
             }
             Some(kind) => {
-                self.push(start, kind, UNSURE_TEXT);
+                self.push_damaged(start, kind);
                 input.find(b'>', start).map_or(input.len(), |close| close + 1)
             }
             None => {
-                self.push(start, TokenKind::Error, UNSURE_TEXT);
+                self.push_damaged(start, TokenKind::Error);
                 let rest = &input.bytes()[start as usize + 2..];
                 match memchr::memchr2(b'<', b'>', rest) {
                     Some(length) if rest[length] == b'>' => start + 2 + length as u32 + 1,
@@ -182,16 +191,16 @@ impl<'a> Lexer<'a> {
         let input = self.input;
         let end = input.find(b'<', start).unwrap_or(input.len());
         if value::trim(input.slice(start, end)).is_empty() {
-            self.push(start, TokenKind::Space, 0);
+            self.push(start, TokenKind::Space);
             return end;
         }
-        let mut flags = 0;
+        let mut text = Token::new(start, TokenKind::Text);
         let mut at = start;
         while let Some(length) = memchr::memchr2(b'&', b']', &input.bytes()[at as usize..end as usize]) {
             at += length as u32;
             if input.byte(at) == Some(b'&') {
                 let (behind, is_sure) = self.reference(at);
-                flags |= if is_sure { 0 } else { UNSURE_TEXT };
+                text.is_damaged |= !is_sure;
                 at = behind;
                 continue;
             }
@@ -204,7 +213,7 @@ impl<'a> Lexer<'a> {
             }
             at += 1;
         }
-        self.push(start, TokenKind::Text, flags);
+        self.tokens.push(text);
         end
     }
 }

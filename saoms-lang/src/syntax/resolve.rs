@@ -4,8 +4,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use super::attribute::{BAD_NAME, DUPLICATE, NO_VALUE, RawAttribute, UNSURE};
-use super::document::{DAMAGED_TAG, Declaration, ElementId, NO_NAMESPACE, UNNAMED, XMLNS};
+use super::document::{Declaration, ElementId, NO_NAMESPACE, XMLNS};
 use super::element::split;
 use super::fault::Input;
 use super::lexer::Lexer;
@@ -83,11 +82,12 @@ impl<'a> Resolver<'a> {
         let namespace = match split(self.input.piece(node.name_span())).0 {
             None => self.namespace(""),
             // It is no name, which is reported.
-            Some(_) if lexer.tokens[token].flags & UNNAMED != 0 => Some(NO_NAMESPACE),
+            Some(_) if lexer.tokens[token].is_unnamed => Some(NO_NAMESPACE),
             Some(prefix) => self.prefix(lexer, prefix, node.name),
         };
         if namespace.is_none() {
-            lexer.tokens[token].flags |= UNNAMED | DAMAGED_TAG;
+            let tag = &mut lexer.tokens[token];
+            (tag.is_unnamed, tag.is_damaged) = (true, true);
         }
         lexer.elements[element].namespace = namespace.unwrap_or(NO_NAMESPACE);
         self.attributes(lexer, token, attributes);
@@ -109,21 +109,20 @@ impl<'a> Resolver<'a> {
 
     /// Takes a declaration, if the attribute is one.
     fn declare(&mut self, lexer: &mut Lexer<'a>, element: usize, at: usize) {
-        let RawAttribute { start, name_len, value, flags, .. } = lexer.attributes[at];
-        let name = self.input.slice(start, start + name_len);
+        let one = lexer.attributes[at];
+        let name = self.input.piece(one.name_span());
         let Some(prefix) = name.strip_prefix("xmlns").filter(|rest| rest.is_empty() || rest.starts_with(':')) else {
             return;
         };
         lexer.attributes[at].namespace = XMLNS;
-        if flags & (NO_VALUE | UNSURE | DUPLICATE | BAD_NAME) != 0 {
+        if !one.is_sure() {
             return;
         }
         let prefix = prefix.strip_prefix(':').unwrap_or_default();
-        let uri = value::meant(self.input.piece(value), Place::Attribute);
+        let uri = value::meant(self.input.piece(one.value), Place::Attribute);
         if let Some(message) = refusal(prefix, &uri) {
-            let end = lexer.attributes[at].end();
-            lexer.faults.add(|| self.input.fault(&codes::XML_PREFIX, start, end, message));
-            lexer.attributes[at].flags |= BAD_NAME;
+            lexer.faults.add(|| self.input.fault(&codes::XML_PREFIX, one.start, one.end(), message));
+            lexer.attributes[at].is_misnamed = true;
             // That it is bound to nothing here is clear.
             self.reported.insert(prefix);
             return;
@@ -143,15 +142,14 @@ impl<'a> Resolver<'a> {
             if one.namespace == XMLNS {
                 continue;
             }
-            let is_named = one.flags & BAD_NAME == 0;
-            let Some(found) = is_named.then(|| self.prefix(lexer, prefix, one.start)).flatten() else {
-                lexer.attributes[at].flags |= BAD_NAME;
-                lexer.tokens[token].flags |= DAMAGED_TAG;
+            let Some(found) = (!one.is_misnamed).then(|| self.prefix(lexer, prefix, one.start)).flatten() else {
+                lexer.attributes[at].is_misnamed = true;
+                lexer.tokens[token].is_damaged = true;
                 continue;
             };
             lexer.attributes[at].namespace = found;
             // Two of the same name are found already.
-            if one.flags & DUPLICATE == 0
+            if !one.is_duplicate
                 && let Some(before) = seen.insert((found, local), at)
             {
                 self.duplicate(lexer, token, before, at);
@@ -163,8 +161,8 @@ impl<'a> Resolver<'a> {
     fn duplicate(&self, lexer: &mut Lexer<'a>, token: usize, first: usize, second: usize) {
         let (one, other) = (&lexer.attributes[first], &lexer.attributes[second]);
         lexer.faults.add(|| slips::duplicate(self.input, one, other, &self.names[other.namespace as usize]));
-        lexer.attributes[second].flags |= DUPLICATE;
-        lexer.tokens[token].flags |= DAMAGED_TAG;
+        lexer.attributes[second].is_duplicate = true;
+        lexer.tokens[token].is_damaged = true;
     }
 
     /// The namespace that a prefix is bound to here.

@@ -11,9 +11,7 @@ use std::collections::HashMap;
 
 use tags::{Named, is_holder, local};
 
-use super::document::{
-    BROKEN_OFF, CLOSED, DAMAGED_CONTENT, DAMAGED_TAG, HAS_TEXT, NONE, Node, Token, TokenKind, UNSURE_TEXT,
-};
+use super::document::{NONE, Node, Token, TokenKind};
 use super::element::part_span;
 use super::fault::Input;
 use super::lexer::{Lexer, end_name};
@@ -73,7 +71,7 @@ impl<'a> Nest<'_, 'a> {
                 let is_inside = !open.is_empty();
                 let name = elements.next().map(|node| self.name(node));
                 open.extend(name.filter(|_| token.kind == TokenKind::StartTag));
-                token.flags & BROKEN_OFF == 0 && (is_root || is_inside)
+                !token.is_broken_off && (is_root || is_inside)
             }
             TokenKind::EndTag => open.pop() == Some(self.end_name(token.start)),
             _ => true,
@@ -126,9 +124,8 @@ impl<'a> Nest<'_, 'a> {
         Named { name: self.name(node), at: node.name_span(), start_tag: self.span(node.token) }
     }
 
-    fn flag(&mut self, element: u32, flags: u8) {
-        let token = self.node(element).token as usize;
-        self.lexer.tokens[token].flags |= flags;
+    fn node_mut(&mut self, element: u32) -> &mut Node {
+        &mut self.lexer.elements[element as usize]
     }
 
     fn run(&mut self) {
@@ -151,7 +148,7 @@ impl<'a> Nest<'_, 'a> {
     fn start_tag(&mut self, at: u32, next: usize) {
         let mut node = self.lexer.elements[next];
         let named = self.named(&node);
-        let Token { kind, flags, .. } = self.token(at);
+        let Token { kind, is_broken_off, .. } = self.token(at);
         let is_empty = kind == TokenKind::EmptyTag;
         let behind = self.lexer.elements.get(next + 1).map(|one| one.attributes);
         let has_none = node.attributes == behind.unwrap_or(self.lexer.attributes.len() as u32);
@@ -172,14 +169,15 @@ impl<'a> Nest<'_, 'a> {
         node.after = element + 1;
         self.lexer.elements[element as usize] = node;
         self.count += 1;
-        if flags & BROKEN_OFF != 0 {
+        if is_broken_off {
             // Most elements that are being typed stand alone; those that hold others have end tags.
             if lacks_end && !is_holder(local(named.name)) {
-                self.lexer.elements[element as usize].end = at + 1;
+                self.node_mut(element).end = at + 1;
                 return;
             }
         } else if is_empty {
-            return self.flag(element, CLOSED);
+            self.node_mut(element).is_closed = true;
+            return;
         }
         self.open_element(element);
     }
@@ -210,7 +208,7 @@ impl<'a> Nest<'_, 'a> {
 
     fn ignore(&mut self, at: u32, top: u32) {
         self.lexer.tokens[at as usize].kind = TokenKind::Error;
-        self.flag(top, DAMAGED_CONTENT);
+        self.node_mut(top).is_content_damaged = true;
     }
 
     /// Closes the element that was opened last, at the token `at`: its end tag, or what is no longer in it.
@@ -221,8 +219,10 @@ impl<'a> Nest<'_, 'a> {
         (node.end, node.after) = (at, count);
         let node = *node;
         let is_in_text = !has_end_tag && self.has_end_tag_in_text(at, &node);
-        let damage = if is_in_text { DAMAGED_CONTENT | UNSURE_TEXT } else { DAMAGED_CONTENT };
-        self.flag(element, if has_end_tag { CLOSED } else { damage });
+        let closed = self.node_mut(element);
+        closed.is_closed |= has_end_tag;
+        closed.is_content_damaged |= !has_end_tag;
+        closed.is_text_unsure |= is_in_text;
         self.recount(self.input.piece(node.name_span()), |count| count.open = count.open.saturating_sub(1));
     }
 
@@ -248,9 +248,10 @@ impl<'a> Nest<'_, 'a> {
         };
         let is_blank = token.kind == TokenKind::Section && value::trim(value::section(written)).is_empty();
         let is_markup = token.kind == TokenKind::Error && span.len() > 1;
-        let text = if is_blank || is_markup { 0 } else { HAS_TEXT };
-        let damage = if token.kind == TokenKind::Error { DAMAGED_CONTENT } else { 0 };
-        self.flag(top, text | damage | token.flags & UNSURE_TEXT);
+        let around = self.node_mut(top);
+        around.has_text |= !is_blank && !is_markup;
+        around.is_content_damaged |= token.kind == TokenKind::Error;
+        around.is_text_unsure |= token.is_damaged;
     }
 
     fn finish(&mut self) {
@@ -258,7 +259,7 @@ impl<'a> Nest<'_, 'a> {
         if let Some(&top) = self.open.last() {
             let node = *self.node(top);
             // A tag with an unknown end may have been meant as `/>`.
-            let is_doubtful = self.token(node.token).flags & DAMAGED_TAG != 0 && top + 1 == self.count;
+            let is_doubtful = self.token(node.token).is_damaged && top + 1 == self.count;
             if !is_doubtful && !self.lexer.is_cut_short && !self.has_second_root {
                 let Named { name, at, .. } = self.named(&node);
                 self.lexer.faults.add(|| {

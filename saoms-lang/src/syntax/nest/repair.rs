@@ -4,7 +4,7 @@ use super::Nest;
 use super::tags::{self, Named, holders, local};
 use crate::diagnostic::{nearest, quoted};
 use crate::limits::{OPEN_ELEMENTS_SEARCHED, SIBLINGS_SEARCHED};
-use crate::syntax::document::{BROKEN_OFF, CLOSED, DAMAGED_CONTENT, HAS_TEXT, Node, TokenKind};
+use crate::syntax::document::{Node, TokenKind};
 
 impl<'a> Nest<'_, 'a> {
     /// Closes elements that lack end tags, and that the next element, `named`, cannot stand in. Gives whether its start
@@ -35,7 +35,7 @@ impl<'a> Nest<'_, 'a> {
         }
         for one in above {
             let outer = self.named(self.node(one));
-            if self.token(self.node(one).token).flags & BROKEN_OFF == 0 {
+            if !self.token(self.node(one).token).is_broken_off {
                 self.lexer.faults.add(|| tags::not_closed(self.input, outer, named));
             }
             self.close(at, false);
@@ -60,10 +60,10 @@ impl<'a> Nest<'_, 'a> {
 
     /// Takes the end of an element back.
     fn reopen(&mut self, element: u32) {
-        let Node { token, end, .. } = *self.node(element);
-        let start = &mut self.lexer.tokens[token as usize];
-        start.kind = TokenKind::StartTag;
-        start.flags = start.flags & !CLOSED | DAMAGED_CONTENT;
+        let node = self.node_mut(element);
+        (node.is_closed, node.is_content_damaged) = (false, true);
+        let Node { token, end, .. } = *node;
+        self.lexer.tokens[token as usize].kind = TokenKind::StartTag;
         if end != token && self.token(end).kind == TokenKind::EndTag {
             self.lexer.tokens[end as usize].kind = TokenKind::Error;
         }
@@ -79,10 +79,9 @@ impl<'a> Nest<'_, 'a> {
         let fault = || tags::mismatch(input, &format!("</{found}>"), tag, open);
         let has_surplus_end = same.ends + 1 > same.open + same.starts;
         let is_for_outer = same.open > 0 && !(is_near && lacks_end && has_surplus_end);
-        let is_broken_off = self.token(self.node(top).token).flags & BROKEN_OFF != 0;
+        let is_broken_off = self.token(self.node(top).token).is_broken_off;
         if is_for_outer {
-            let Node { token, .. } = *self.node(top);
-            let is_bare = top + 1 == self.count && self.token(token).flags & HAS_TEXT == 0;
+            let is_bare = top + 1 == self.count && !self.node(top).has_text;
             if !is_broken_off {
                 self.lexer.faults.add(|| tags::closed_first(input, fault(), tag.start, open, is_bare));
             }
@@ -134,18 +133,19 @@ impl<'a> Nest<'_, 'a> {
     /// Lets an element that ends in its start tag end at a later end tag: what is between is inside of it.
     fn close_late(&mut self, element: u32, parent: u32, at: u32) {
         self.reopen(element);
-        self.flag(parent, DAMAGED_CONTENT);
+        self.node_mut(parent).is_content_damaged = true;
         for one in element + 1..self.count {
-            let node = &mut self.lexer.elements[one as usize];
+            let node = self.node_mut(one);
             if node.parent == parent {
                 node.parent = element;
             }
         }
         let token = self.node(element).token;
         let has_text = (token..at).any(|one| self.token(one).kind == TokenKind::Text);
-        self.flag(element, if has_text { CLOSED | HAS_TEXT } else { CLOSED });
         let count = self.count;
-        let node = &mut self.lexer.elements[element as usize];
+        let node = self.node_mut(element);
+        node.is_closed = true;
+        node.has_text |= has_text;
         (node.end, node.after) = (at, count);
     }
 }

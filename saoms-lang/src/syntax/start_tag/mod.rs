@@ -5,9 +5,9 @@ mod value;
 
 use quick_xml::parser::{ElementParser, Parser as _};
 
-use super::attribute::{BAD_NAME, NO_VALUE, RawAttribute, UNSURE};
+use super::attribute::{Ending, RawAttribute};
 use super::characters::name_length;
-use super::document::{BROKEN_OFF, DAMAGED_TAG, NO_NAMESPACE, TokenKind, UNNAMED, UNSURE_TEXT};
+use super::document::{NO_NAMESPACE, Token, TokenKind};
 use super::fault::Input;
 use super::lexer::Lexer;
 use super::slips;
@@ -31,14 +31,14 @@ struct Tag<'l, 'a> {
     /// The first quote behind the last place that was looked at for text, or the limit.
     quote: u32,
     measures: u32,
-    flags: u8,
+    token: Token,
 }
 
 impl Lexer<'_> {
     /// Reads the start tag, or what looks like one, whose `<` is at `start`; gives where it ends.
     pub(super) fn start_tag(&mut self, start: u32) -> u32 {
         let input = self.input;
-        let mut flags = 0;
+        let mut token = Token::new(start, TokenKind::StartTag);
         let mut from = start + 1;
         let length_at = |from: u32| name_length(&input.bytes()[from as usize..]) as u32;
         let mut end = from + length_at(from);
@@ -46,8 +46,8 @@ impl Lexer<'_> {
             self.faults.add(|| slips::nameless(input, start));
             let Some(behind) = name_behind_blank(input, start) else {
                 // Of two `<` one is too many, and no text.
-                let is_doubled = input.byte(start + 1) == Some(b'<');
-                self.push(start, TokenKind::Error, if is_doubled { UNSURE_TEXT } else { 0 });
+                let is_damaged = input.byte(start + 1) == Some(b'<');
+                self.tokens.push(Token { is_damaged, ..Token::new(start, TokenKind::Error) });
                 return start + 1;
             };
             from = behind;
@@ -57,24 +57,22 @@ impl Lexer<'_> {
         if let Some(fault) = slips::bad_name(input, from, end, "element") {
             // Behind a character that looks like a blank, an attribute begins.
             let odd = slips::odd_space(input.slice(from, end));
-            flags |= if odd.is_some() { 0 } else { DAMAGED_TAG | UNNAMED };
+            (token.is_damaged, token.is_unnamed) = (odd.is_none(), odd.is_none());
             if let Some((length, odd)) = odd.filter(|(length, _)| *length > 0) {
                 end = from + length as u32;
                 at = end + odd.len_utf8() as u32;
             }
             self.faults.add(|| fault);
         }
-        let token = self.tokens.len();
+        let place = self.tokens.len();
         let first = self.attributes.len();
         let name = Span::new(from, end);
-        self.push_element(start, TokenKind::StartTag, 0, name);
+        self.push_element(token, name);
         let (limit, close, quote, measures) = (0, None, 0, 0);
-        let mut tag = Tag { lexer: self, input, start, name, first, at, limit, close, quote, measures, flags };
+        let mut tag = Tag { lexer: self, input, start, name, first, at, limit, close, quote, measures, token };
         let is_empty = tag.read();
-        let (at, flags) = (tag.at, tag.flags);
-        let one = &mut self.tokens[token];
-        one.flags = flags;
-        one.kind = if is_empty { TokenKind::EmptyTag } else { TokenKind::StartTag };
+        let (at, token) = (tag.at, tag.token);
+        self.tokens[place] = if is_empty { Token { kind: TokenKind::EmptyTag, ..token } } else { token };
         at
     }
 }
@@ -127,7 +125,7 @@ impl Tag<'_, '_> {
                 Some(b'/') if input.byte(at + 1) == Some(b'>') => self.close = Some(at + 1),
                 Some(b'/') if input.skip_space(at + 1) >= self.limit => self.at = self.limit,
                 Some(_) if self.is_text(before, at) => {
-                    self.flags |= BROKEN_OFF;
+                    self.token.is_broken_off = true;
                     self.at = before;
                     self.fault(|| slips::text_in_tag(input, name, before));
                     return false;
@@ -169,7 +167,16 @@ impl Tag<'_, '_> {
         let input = self.input;
         let name_len = name_length(&input.bytes()[start as usize..]) as u32;
         let name_end = start + name_len;
-        let mut one = RawAttribute { start, name_len, value: Span::empty(name_end), namespace: NO_NAMESPACE, flags: 0 };
+        let mut one = RawAttribute {
+            start,
+            name_len,
+            value: Span::empty(name_end),
+            namespace: NO_NAMESPACE,
+            ending: Ending::Closed,
+            is_unsure: false,
+            is_duplicate: false,
+            is_misnamed: false,
+        };
         let equals = input.skip_space(name_end);
         let has_equals = input.byte(equals) == Some(b'=');
         let colon = if has_equals { None } else { slips::colon(input, start, name_end, equals) };
@@ -179,30 +186,30 @@ impl Tag<'_, '_> {
             one.name_len -= 1;
         } else if let Some(fault) = slips::bad_name(input, start, name_end, "attribute") {
             self.fault(|| fault);
-            one.flags |= BAD_NAME;
-            self.flags |= DAMAGED_TAG;
+            one.is_misnamed = true;
+            self.token.is_damaged = true;
         }
         let from = if has_equals { input.skip_space(equals + 1) } else { equals };
         let quote = input.byte(from).filter(|byte| matches!(byte, b'"' | b'\''));
         match quote {
             Some(quote) => {
-                if !has_equals && !is_colon && one.flags & BAD_NAME == 0 {
+                if !has_equals && !is_colon && !one.is_misnamed {
                     self.fault(|| slips::without_value(input, start, name_end, Some(equals)));
                 }
                 self.quoted_value(&mut one, from, quote);
             }
             None if !has_equals => {
-                one.flags |= NO_VALUE;
+                one.ending = Ending::Missing;
                 self.at = name_end;
-                self.flags |= DAMAGED_TAG;
+                self.token.is_damaged = true;
                 // Of a tag that breaks off with the text, that is the fault.
-                if one.flags & BAD_NAME == 0 && (equals as usize) < input.text.len() {
+                if !one.is_misnamed && (equals as usize) < input.text.len() {
                     self.fault(|| slips::without_value(input, start, name_end, None));
                 }
             }
             None => self.unquoted_value(&mut one, equals, from),
         }
-        self.flags |= if one.flags & UNSURE == 0 { 0 } else { DAMAGED_TAG };
+        self.token.is_damaged |= one.is_unsure;
         self.lexer.attributes.push(one);
     }
 }

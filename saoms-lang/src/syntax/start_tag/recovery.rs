@@ -3,9 +3,8 @@
 use super::{Tag, starts_attribute};
 use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
-use crate::syntax::attribute::{NO_VALUE, OPEN, RawAttribute};
+use crate::syntax::attribute::{Ending, RawAttribute};
 use crate::syntax::characters::name_length;
-use crate::syntax::document::{BROKEN_OFF, DAMAGED_TAG};
 use crate::syntax::slips;
 
 impl Tag<'_, '_> {
@@ -13,16 +12,16 @@ impl Tag<'_, '_> {
     pub(super) fn broken_off(&mut self) {
         let (input, name) = (self.input, self.name);
         self.at = self.limit;
-        self.flags |= BROKEN_OFF | DAMAGED_TAG;
+        (self.token.is_broken_off, self.token.is_damaged) = (true, true);
         let last = self.lexer.attributes[self.first..].last();
         let has_quote = |one: &RawAttribute| matches!(input.byte(one.value.start - 1), Some(b'"' | b'\''));
         let is_last = |one: &RawAttribute| input.skip_space(one.value.end) >= self.limit;
-        if last.is_some_and(|last| last.flags & OPEN != 0 && has_quote(last) && is_last(last)) {
+        if last.is_some_and(|last| last.ending == Ending::Open && has_quote(last) && is_last(last)) {
             // The value that is not closed is the fault.
             return;
         }
         let is_end = self.limit == input.len();
-        if last.is_some_and(|last| last.flags & NO_VALUE != 0 && is_last(last)) && !is_end {
+        if last.is_some_and(|last| last.ending == Ending::Missing && is_last(last)) && !is_end {
             return;
         }
         let shown = quoted(input.piece(name));
@@ -68,7 +67,7 @@ impl Tag<'_, '_> {
     fn mend_last(&mut self, at: u32) -> bool {
         let input = self.input;
         let Some(last) = self.lexer.attributes[self.first..].last().copied() else { return false };
-        if last.end() != at || last.flags & (NO_VALUE | OPEN) != 0 {
+        if last.end() != at || !last.is_closed() {
             return false;
         }
         let quote_at = last.value.start - 1;
@@ -91,7 +90,7 @@ impl Tag<'_, '_> {
     fn doubled_quote(&mut self, at: u32, quote: u8) -> bool {
         let input = self.input;
         let Some(last) = self.lexer.attributes[self.first..].last() else { return false };
-        let is_closed = last.end() == at && last.flags & (NO_VALUE | OPEN) == 0;
+        let is_closed = last.end() == at && last.is_closed();
         let is_end = matches!(input.byte(at + 1), Some(b' ' | b'\t' | b'\r' | b'\n' | b'/' | b'>'));
         if !is_closed || !is_end || input.byte(at - 1) != Some(quote) {
             return false;
@@ -106,7 +105,7 @@ impl Tag<'_, '_> {
     fn value_behind_quotes(&mut self, at: u32) -> bool {
         let input = self.input;
         let Some(last) = self.lexer.attributes[self.first..].last_mut() else { return false };
-        if last.end() != at || !last.value.is_empty() || last.flags & (NO_VALUE | OPEN) != 0 {
+        if last.end() != at || !last.value.is_empty() || !last.is_closed() {
             return false;
         }
         let Some(end) = slips::first_quote(input, at).filter(|end| input.byte(*end) == input.byte(at - 1)) else {
@@ -122,7 +121,7 @@ impl Tag<'_, '_> {
     fn end_last(&mut self, end: u32) {
         if let Some(last) = self.lexer.attributes.last_mut() {
             last.value.end = end;
-            last.flags |= OPEN;
+            last.ending = Ending::Open;
         }
     }
 
@@ -164,7 +163,7 @@ impl Tag<'_, '_> {
     /// Goes on at the next attribute that is surely one, or at the end of the tag.
     pub(super) fn resume(&mut self, from: u32) {
         let input = self.input;
-        self.flags |= DAMAGED_TAG;
+        self.token.is_damaged = true;
         // A `>` inside a value does not end the tag.
         let bound = self.close.filter(|close| *close >= from).unwrap_or(self.limit).max(from);
         let mut at = from;

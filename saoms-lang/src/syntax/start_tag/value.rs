@@ -3,7 +3,7 @@
 use super::{Tag, starts_attribute};
 use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
-use crate::syntax::attribute::{OPEN, RawAttribute, UNSURE};
+use crate::syntax::attribute::{Ending, RawAttribute};
 use crate::syntax::slips;
 
 impl Tag<'_, '_> {
@@ -25,14 +25,14 @@ impl Tag<'_, '_> {
             match bytes[at as usize] {
                 b'&' => {
                     let (behind, is_sure) = self.lexer.reference(at);
-                    one.flags |= if is_sure { 0 } else { UNSURE };
+                    one.is_unsure |= !is_sure;
                     at = behind;
                 }
                 b'<' => {
                     if let Some((curly, end)) = slips::closing_quote(input, quote_at, at) {
                         self.fault(|| curly);
                         one.value = Span::new(quote_at + 1, end.start);
-                        one.flags |= OPEN;
+                        one.ending = Ending::Open;
                         self.at = end.end;
                         return self.measure();
                     }
@@ -56,7 +56,8 @@ impl Tag<'_, '_> {
     fn open_value(&mut self, one: &mut RawAttribute, quote_at: u32) {
         let (end, next, is_sure) = slips::value_end(self.input, quote_at);
         one.value = Span::new(quote_at + 1, end);
-        one.flags |= if is_sure { OPEN } else { OPEN | UNSURE };
+        one.ending = Ending::Open;
+        one.is_unsure |= !is_sure;
         self.at = next;
         self.measure();
     }
@@ -65,7 +66,7 @@ impl Tag<'_, '_> {
     pub(super) fn unquoted_value(&mut self, one: &mut RawAttribute, equals: u32, at: u32) {
         let input = self.input;
         one.value = Span::empty(equals + 1);
-        one.flags |= OPEN;
+        one.ending = Ending::Open;
         self.at = at;
         if at == input.len() {
             return;
@@ -84,7 +85,7 @@ impl Tag<'_, '_> {
         }
         let (fault, length) = slips::unquoted(input, one, at);
         self.fault(|| fault);
-        one.flags |= UNSURE;
+        one.is_unsure = true;
         // `a= b="..."`: the value is missing.
         if length == 0 || at > equals + 1 && starts_attribute(input, at).is_some() {
             return;
@@ -93,7 +94,7 @@ impl Tag<'_, '_> {
         self.at = at + length;
         let rest = &input.text[self.at as usize..];
         if rest.starts_with([' ', '\t', '\r', '\n', '>']) || rest.starts_with("/>") {
-            one.flags &= !UNSURE;
+            one.is_unsure = false;
         } else {
             self.resume(self.at);
         }
