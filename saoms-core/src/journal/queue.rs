@@ -11,9 +11,10 @@ use super::{ComponentName, JournalEntry};
 
 /// Maximum number of records that wait for the reader.
 const CAPACITY: usize = 65_536;
-/// Number of waiting records at which the reader is woken; below it, the reader polls.
+/// Number of waiting records at which the reader takes them at once.
 const HURRY: usize = CAPACITY / 4;
-/// Polling interval of the reader.
+/// Time for which the reader lets records gather. A writer wakes it at most once in this time: for the first record of
+/// an empty queue.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// A queue of records for the thread that calls the observers of the journal. In real time, adding a record never
@@ -39,9 +40,22 @@ struct Waiting {
     /// Records of messages from outside.
     outside: Vec<JournalEntry>,
     lost: u64,
+    /// True if the reader waits for the first of these.
+    reader_sleeps: bool,
     writers_sleep: bool,
     /// End of the run.
     closed: Option<Time>,
+}
+
+impl Waiting {
+    /// True if there is nothing for the reader; names alone are nothing.
+    fn is_empty(&self) -> bool {
+        self.batch.len() == 0
+            && self.joined.is_empty()
+            && self.outside.is_empty()
+            && self.lost == 0
+            && self.closed.is_none()
+    }
 }
 
 /// State of the reading thread.
@@ -69,12 +83,23 @@ impl RecordQueue {
 
     /// Adds a component, which gets the next number. `later` is true if it joins a running fleet.
     pub(crate) fn join(&self, component: ComponentName, later: bool) {
-        self.lock().joined.push((component, later));
+        let mut waiting = self.lock();
+        waiting.joined.push((component, later));
+        self.wake_reader(&mut waiting);
     }
 
     /// Adds a record of a message from outside.
     pub(crate) fn put_outside(&self, entry: JournalEntry) {
-        self.lock().outside.push(entry);
+        let mut waiting = self.lock();
+        waiting.outside.push(entry);
+        self.wake_reader(&mut waiting);
+    }
+
+    /// Wakes the reader if it waits for the first record.
+    fn wake_reader(&self, waiting: &mut Waiting) {
+        if std::mem::take(&mut waiting.reader_sleeps) {
+            self.filled.notify_one();
+        }
     }
 
     /// Copies the new records of a component.
@@ -94,6 +119,7 @@ impl RecordQueue {
         if before < HURRY && waiting.batch.len() >= HURRY {
             self.filled.notify_one();
         }
+        self.wake_reader(&mut waiting);
     }
 
     /// True if writers that wait for room (in virtual time) have to wait.
@@ -124,6 +150,10 @@ impl RecordQueue {
         let Reader { batch, components } = &mut *reader;
         batch.clear();
         let mut waiting = self.lock();
+        while waiting.is_empty() {
+            waiting.reader_sleeps = true;
+            waiting = self.filled.wait(waiting).unwrap_or_else(PoisonError::into_inner);
+        }
         if waiting.batch.len() < HURRY && waiting.closed.is_none() {
             waiting = self.filled.wait_timeout(waiting, PAUSE).unwrap_or_else(PoisonError::into_inner).0;
         }

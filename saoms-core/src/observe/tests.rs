@@ -149,6 +149,31 @@ fn an_observer_that_takes_no_records_is_told_once_and_all_that_is_missing_is_cou
 }
 
 #[test]
+fn nothing_is_delivered_while_there_are_no_records() {
+    let queue = Arc::new(RecordQueue::new(false));
+    queue.join(ComponentName { name: "A".to_owned(), id: None }, false);
+    let reader = Arc::clone(&queue);
+    let delivered = thread::spawn(move || {
+        let (mut entries, mut joined, mut delivered) = (Vec::new(), Vec::new(), Vec::new());
+        loop {
+            let (_, end) = reader.next(&mut entries, &mut joined);
+            delivered.push(entries.len());
+            if end.is_some() {
+                return delivered;
+            }
+        }
+    });
+    // Long enough for a reader that looks from time to time.
+    thread::sleep(Duration::from_millis(350));
+    queue.put(0, &recorder(5));
+    thread::sleep(Duration::from_millis(350));
+    queue.close(Time::START);
+    // The component, its records, and the end.
+    let delivered = delivered.join().unwrap();
+    assert!(delivered.len() <= 3 && delivered.iter().sum::<usize>() == 5, "{delivered:?}");
+}
+
+#[test]
 fn in_real_time_records_that_find_no_room_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("journal");
