@@ -130,7 +130,7 @@ impl Fleet {
     #[expect(clippy::panic, reason = "a test whose fleet has errors has failed")]
     pub fn expanded(&self) -> String {
         let found = self.compiled();
-        found.expanded().unwrap_or_else(|| panic!("{}", found.text()))
+        saoms_tools::expand::expanded(&found).unwrap_or_else(|| panic!("{}", found.text()))
     }
 
     /// Diagnostics as they are shown to people, each with an excerpt of the text.

@@ -1,6 +1,9 @@
-//! Tools for composites beside a check and a run: pictures, one layout, XML schemas, answers for editors.
+//! Tools for composites beside a check and a run: pictures, one layout, the composite with all resolved, XML schemas,
+//! answers for editors.
 
 pub mod editor;
+mod element;
+pub mod expand;
 pub mod format;
 pub mod graph;
 pub mod xsd;

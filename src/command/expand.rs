@@ -6,6 +6,7 @@ use clap::Args;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::source::FileId;
 use saoms_lang::syntax;
+use saoms_tools::expand::expanded;
 use saoms_tools::format::{Formatted, WIDTH};
 
 use crate::Exit;
@@ -34,7 +35,7 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
     };
     let shown = DiagnosticReport::from(&compilation);
     eprint(&shown.human(Severity::Error));
-    let Some(text) = compilation.expanded() else {
+    let Some(text) = expanded(&compilation) else {
         eprint(&format!("\n{}: nothing to expand\n", counted(shown.count(Severity::Error), "error")));
         return Exit::WrongInput;
     };

@@ -2,7 +2,6 @@
 //!
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
-mod expanded;
 mod task;
 pub(crate) mod topic_rename;
 mod traffic;
@@ -12,7 +11,6 @@ use std::sync::Arc;
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-pub use expanded::expanded;
 pub(crate) use task::OF_RESTART;
 pub use task::{Loss, Overrun, Restart, TaskProperties};
 pub use topic_rename::TopicRenames;

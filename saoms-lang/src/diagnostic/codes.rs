@@ -211,7 +211,7 @@ pub fn is_judgement(code: &Code) -> bool {
 
 /// True if `saoms expand` leaves a fault of this code in what it writes, as it does with those of every rule of a crate
 /// of components.
-pub(crate) fn outlives_expansion(code: &Code) -> bool {
+pub fn outlives_expansion(code: &Code) -> bool {
     natures(code.id).is_none_or(|natures| natures.contains(&Nature::OutlivesExpansion))
 }
 

@@ -1,6 +1,10 @@
 //! Texts of users inside messages.
 
+use saoms_api::host::escaped;
+
+use super::Diagnostic;
 use crate::limits::QUOTED_CHARACTERS;
+use crate::source::Location;
 
 /// A text of the user between backticks: shortened when long, invisible characters escaped.
 ///
@@ -27,4 +31,12 @@ pub fn quoted(text: &str) -> String {
 /// The description of a suggestion that replaces a name.
 pub(crate) fn replacing(name: &str, meant: &str) -> String {
     format!("replace {} with {}", quoted(name), quoted(meant))
+}
+
+impl Diagnostic {
+    /// Adds the suggestion to write another name in place of the one at a place, with what XML asks for in it.
+    #[must_use]
+    pub(crate) fn replace(self, written: &str, at: Location, meant: &str) -> Self {
+        self.suggest(replacing(written, meant), at, escaped(meant))
+    }
 }

@@ -1,7 +1,7 @@
 //! The outcome of a compilation.
 
 use super::PluginFault;
-use crate::assembly::{Assembly, expanded};
+use crate::assembly::Assembly;
 use crate::diagnostic::{Diagnostic, Human, Severity};
 use crate::model::{Composite, Contribution};
 use crate::registry::Registry;
@@ -43,13 +43,5 @@ impl<T> Compilation<T> {
     /// The diagnostics as people read them, without colours.
     pub fn text(&self) -> String {
         Human::of(self.reported(), &self.sources, false).to_string()
-    }
-}
-
-impl Compilation<Assembly> {
-    /// The text of the one composite that is left when includes, inner composites, sources and wires are resolved;
-    /// `None` where there is an error.
-    pub fn expanded(&self) -> Option<String> {
-        Some(expanded(self.output.as_ref()?, self.first()?, &self.diagnostics))
     }
 }

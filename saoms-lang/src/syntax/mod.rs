@@ -24,7 +24,6 @@ mod start_tag;
 #[cfg(test)]
 mod tests;
 mod value;
-mod writer;
 
 use std::sync::Arc;
 
@@ -34,7 +33,6 @@ pub use document::{Document, ElementId, TokenKind};
 pub use element::Element;
 pub use saoms_api::host::escaped;
 pub(crate) use value::SourceMap;
-pub use writer::NewElement;
 
 use fault::Input;
 use lexer::Lexer;

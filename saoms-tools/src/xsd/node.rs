@@ -1,6 +1,6 @@
 //! Elements of a schema.
 
-pub(super) use saoms_lang::syntax::NewElement;
+pub(super) use crate::element::NewElement;
 
 /// Documentation of elements of schemas.
 pub(super) trait Documented {

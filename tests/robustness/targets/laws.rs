@@ -5,6 +5,7 @@ use saoms_lang::diagnostic::{Diagnostic, Edit, codes};
 use saoms_lang::project::Compilation;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::FileId;
+use saoms_tools::expand::expanded;
 
 use super::input::{Input, Settings, kind, kinds};
 use super::{draw, parsed, show};
@@ -48,12 +49,12 @@ fn without<'k>(some: &'k [String], others: &[String]) -> Vec<&'k String> {
 
 /// The expansion of a fleet gives the same assembly as the fleet.
 fn written_out(input: &Input, fleet: &Compilation, assembly: &Assembly, registry: &Registry) {
-    let text = fleet.expanded().unwrap();
+    let text = expanded(fleet).unwrap();
     let alone = Input::Text(text.clone()).compiled(KNOWN, registry);
     assert!(alone.output.is_some(), "{}{input:#?}{text}", alone.text());
     let Some(other) = &alone.output else { return };
     assert_eq!(facts(assembly), facts(other), "{input:#?}{text}");
-    assert_eq!(Some(text), alone.expanded(), "{input:#?}");
+    assert_eq!(Some(text), expanded(&alone), "{input:#?}");
 }
 
 /// An assembly without the declarations of its classes.

@@ -1,18 +1,19 @@
 //! An assembly as a composite that comes to the same assembly.
 
-use std::collections::BTreeMap;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use saoms_api::host::PropertyValue;
+use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties, WireTarget};
+use saoms_lang::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
+use saoms_lang::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
+use saoms_lang::project::Compilation;
 use smol_str::SmolStr;
 
-use super::{Assembly, ComponentSpec, TaskProperties};
-use crate::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
-use crate::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
-use crate::syntax::NewElement;
+use crate::element::NewElement;
 
-/// Writes an assembly as one composite in which nothing is left to resolve: no includes, no inner composites, no
-/// sources of properties, every wire with its service. It has the name, the namespace and the version of SCA of `like`.
+/// The one composite that is left of a fleet when all is resolved: no includes, no inner composites, no sources of
+/// properties, every wire with its service. `None` where there is an error. It has the name, the namespace and the
+/// version of SCA of the first composite.
 ///
 /// Components have the order and the paths that they have in the assembly, so a fleet that runs from it does what it
 /// did before: where a path is more than a name, the attribute `path` in the namespace of SAOMS keeps it.
@@ -20,10 +21,10 @@ use crate::syntax::NewElement;
 /// A reference without a target that needs one is a warning in SCA 1.0 and an error in 1.1: an assembly with such a
 /// reference is written in 1.0.
 ///
-/// Severities that are lowered in the source composites are lowered in it as well, with the same reason: `found` are
-/// the diagnostics of the check that made the assembly. Of the wiring report, which that check may not have made, it
-/// keeps what `like` says of the fleet.
-pub fn expanded<'d>(assembly: &Assembly, like: &Composite, found: impl IntoIterator<Item = &'d Diagnostic>) -> String {
+/// Severities that are lowered in the source composites are lowered in it as well, with the same reason. Of the wiring
+/// report, which the compilation may not have made, it keeps what the first composite says of the fleet.
+pub fn expanded(compilation: &Compilation<Assembly>) -> Option<String> {
+    let (assembly, like) = (compilation.output.as_ref()?, compilation.first()?);
     let paths: Vec<&str> = assembly.components.iter().map(|component| component.path.as_str()).collect();
     let names = names(&paths);
     let lacks_target = |component: &ComponentSpec| {
@@ -36,17 +37,20 @@ pub fn expanded<'d>(assembly: &Assembly, like: &Composite, found: impl IntoItera
     };
     let components = assembly.components.iter().zip(&names).map(|(one, name)| {
         let references = one.references.iter().filter(|wire| !wire.targets.is_empty()).map(|wire| {
-            let uri = |target: &super::WireTarget| format!("{}/{}", names[target.component], target.service);
+            let uri = |target: &WireTarget| format!("{}/{}", names[target.component], target.service);
             let targets: Vec<String> = wire.targets.iter().map(uri).collect();
             NewElement::new("reference").with("name", wire.reference.as_str()).with("target", targets.join(" "))
         });
         component(one, name, references)
     });
-    let mut root = root(like).children(severities(like, found)).children(components).declare("", version.namespace());
+    let mut root = root(like)
+        .children(severities(like, &compilation.diagnostics))
+        .children(components)
+        .declare("", version.namespace());
     root.hoist();
     let mut text = String::new();
     root.write(0, &mut text);
-    text
+    Some(text)
 }
 
 /// The severities that the composite sets.

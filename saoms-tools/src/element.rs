@@ -1,16 +1,13 @@
-//! Elements and texts that are written.
+//! XML elements that are written: schemas and expanded composites.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use saoms_api::host::escaped;
 
-use crate::diagnostic::{Diagnostic, replacing};
-use crate::source::Location;
-
 /// An element to be written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NewElement {
+pub(crate) struct NewElement {
     name: Cow<'static, str>,
     attributes: Vec<(Cow<'static, str>, String)>,
     content: Vec<Content>,
@@ -25,18 +22,18 @@ enum Content {
 
 impl NewElement {
     /// One of this name, with nothing in it.
-    pub fn new(name: impl Into<Cow<'static, str>>) -> Self {
+    pub(crate) fn new(name: impl Into<Cow<'static, str>>) -> Self {
         Self { name: name.into(), attributes: Vec::new(), content: Vec::new() }
     }
 
     /// With an attribute.
-    pub fn with(mut self, name: impl Into<Cow<'static, str>>, value: impl Into<String>) -> Self {
+    pub(crate) fn with(mut self, name: impl Into<Cow<'static, str>>, value: impl Into<String>) -> Self {
         self.attributes.push((name.into(), value.into()));
         self
     }
 
     /// With an attribute where there is a value.
-    pub fn maybe(self, name: &'static str, value: Option<impl Into<String>>) -> Self {
+    pub(crate) fn maybe(self, name: &'static str, value: Option<impl Into<String>>) -> Self {
         match value {
             Some(value) => self.with(name, value),
             None => self,
@@ -44,19 +41,19 @@ impl NewElement {
     }
 
     /// With something inside.
-    pub fn child(mut self, child: NewElement) -> Self {
+    pub(crate) fn child(mut self, child: NewElement) -> Self {
         self.content.push(Content::Element(child));
         self
     }
 
     /// With all of these inside.
-    pub fn children(mut self, children: impl IntoIterator<Item = NewElement>) -> Self {
+    pub(crate) fn children(mut self, children: impl IntoIterator<Item = NewElement>) -> Self {
         self.content.extend(children.into_iter().map(Content::Element));
         self
     }
 
     /// With a text inside.
-    pub fn text(mut self, text: &str) -> Self {
+    pub(crate) fn text(mut self, text: &str) -> Self {
         // Between tags these can stand as they are, and are read best so.
         const PLAIN: [(&str, &str); 4] = [("&#10;", "\n"), ("&#9;", "\t"), ("&quot;", "\""), ("&apos;", "'")];
         let plain = PLAIN.iter().fold(escaped(text), |text, (escape, plain)| text.replace(escape, plain));
@@ -65,7 +62,7 @@ impl NewElement {
     }
 
     /// Declares the namespace of a prefix, unless it is declared already.
-    pub fn declare(mut self, prefix: &str, namespace: &str) -> Self {
+    pub(crate) fn declare(mut self, prefix: &str, namespace: &str) -> Self {
         let name = if prefix.is_empty() { "xmlns".to_owned() } else { format!("xmlns:{prefix}") };
         if !self.attributes.iter().any(|(known, _)| *known == name) {
             self.attributes.insert(0, (name.into(), namespace.to_owned()));
@@ -74,7 +71,7 @@ impl NewElement {
     }
 
     /// Declares prefixes as far outside as they mean the same.
-    pub fn hoist(&mut self) {
+    pub(crate) fn hoist(&mut self) {
         let Self { attributes, content, .. } = self;
         for child in content {
             let Content::Element(child) = child else { continue };
@@ -100,7 +97,7 @@ impl NewElement {
     }
 
     /// As a text, indented.
-    pub fn write(&self, depth: usize, out: &mut String) {
+    pub(crate) fn write(&self, depth: usize, out: &mut String) {
         let _ = write!(out, "{:1$}", "", 2 * depth);
         self.inline(depth, out);
         out.push('\n');
@@ -130,13 +127,5 @@ impl NewElement {
             let _ = write!(out, "{:1$}", "", 2 * depth);
         }
         let _ = write!(out, "</{}>", self.name);
-    }
-}
-
-impl Diagnostic {
-    /// Adds the suggestion to write another name in place of the one at a place, with what XML asks for in it.
-    #[must_use]
-    pub(crate) fn replace(self, written: &str, at: Location, meant: &str) -> Self {
-        self.suggest(replacing(written, meant), at, escaped(meant))
     }
 }
