@@ -39,9 +39,19 @@ impl Map {
     pub fn read(text: &str) -> Result<Map, Vec<TextFault>> {
         let (mut header, mut faults) = (Header::default(), Vec::new());
         let mut rows: Vec<&str> = Vec::new();
-        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+        // The last empty line behind a row: only at the end of a map it means nothing.
+        let mut empty: Option<&str> = None;
+        for line in text.lines().map(str::trim) {
             if faults.len() >= MOST_WRONG {
                 break;
+            }
+            if line.is_empty() {
+                empty = Some(line).filter(|_| !rows.is_empty());
+                continue;
+            }
+            if let Some(empty) = empty.take() {
+                let message = format!("found an empty line behind row {}, expected the next row", rows.len() - 1);
+                faults.push(TextFault::of(text, empty, message));
             }
             match header.take(line) {
                 _ if !rows.is_empty() => rows.push(line),

@@ -52,6 +52,13 @@ fn maps_are_read_with_and_without_a_header() {
 fn wrong_maps_say_where_and_why() {
     for (text, found) in [
         ("", &["`` found no rows, expected one line of `.` and `@` a row"][..]),
+        (
+            "..\n\n..\n \n\n..\n\n",
+            &[
+                "`` found an empty line behind row 0, expected the next row",
+                "`` found an empty line behind row 1, expected the next row",
+            ],
+        ),
         ("width 3\nmap", &["`width 3\nmap` found no rows, expected one line of `.` and `@` a row"]),
         (
             "..\n...\n ...\n....",
@@ -63,6 +70,7 @@ fn wrong_maps_say_where_and_why() {
         (
             "...\n.x.\n\n#..",
             &[
+                "`` found an empty line behind row 1, expected the next row",
                 "`x` found `x`, expected `.` for a free block or `@` for a blocked one",
                 "`#` found `#`, expected `.` for a free block or `@` for a blocked one",
             ],

@@ -8,7 +8,7 @@ use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::budget::Budget;
 use super::map::{LuggageLine, WorldMap, area, luggage, rows};
-use super::robots::{FleetRobot, may_be_others, robots};
+use super::robots::{FleetRobot, may_be_others, robots, unless_elsewhere};
 use crate::environment::{Spanned, Spot};
 use crate::grid::{Block, Map};
 
@@ -36,7 +36,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let chargers: Option<HashSet<u32>> = robots.iter().map(|robot| parts.part(robot.charger)).collect();
     let Some(chargers) = chargers else { return Vec::new() };
     let mut reached = Reached { area: &area, parts: &parts, chargers: &chargers, budget: Budget::default() };
-    luggage(fleet).iter().flat_map(|piece| check_piece(&mut reached, piece)).collect()
+    let findings = luggage(fleet).iter().flat_map(|piece| check_piece(&mut reached, piece)).collect();
+    unless_elsewhere(fleet, findings)
 }
 
 /// Parts of the map that robots reach.

@@ -5,6 +5,7 @@ use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 
 use super::budget::Budget;
 use super::map::{LuggageLine, WorldMap, area, luggage, rows};
+use super::robots::unless_elsewhere;
 use crate::environment::{Spanned, Spot};
 use crate::messages::AREA;
 use crate::world::World;
@@ -24,7 +25,7 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let area = area(fleet);
-    let says = |component: &ComponentView<'_>| component.has_broker || component.class.publishes.contains(&AREA.name());
+    let says = |component: &ComponentView<'_>| component.class.publishes.contains(&AREA.name());
     let is_said = fleet.misses::<World>() || fleet.components().iter().any(says);
     let (mut findings, mut budget) = (Vec::new(), Budget::default());
     for piece in luggage(fleet) {
@@ -34,7 +35,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                 None if spot.value == Spot::Anywhere && !is_said => {
                     let message = "`random` needs an area to draw from, and nothing in the fleet says one";
                     let help = "add a `saoms.World`, or write two corners such as `(1,0)..(10,10)`";
-                    findings.push(Finding::new(piece.place(spot), message).help(help));
+                    let finding = Finding::new(piece.place(spot), message).help(help);
+                    findings.extend(unless_elsewhere(fleet, vec![finding]));
                 }
                 None => {}
             }

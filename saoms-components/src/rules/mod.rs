@@ -4,6 +4,7 @@
 //! classes, or a message broker, may make up for the mistake, it warns or reports nothing.
 
 mod apart;
+mod broken_twice;
 mod budget;
 mod charger;
 mod divided;
@@ -20,6 +21,7 @@ mod sustain;
 mod unknown_robot;
 mod unserved;
 mod unused_world;
+mod worlds;
 
 saoms_api::fleet_rules!(
     luggage::RULE,
@@ -36,4 +38,6 @@ saoms_api::fleet_rules!(
     apart::RULE,
     shifts::RULE,
     map_size::RULE,
+    broken_twice::RULE,
+    worlds::RULE,
 );

@@ -3,8 +3,8 @@
 use std::ops::Deref;
 use std::rc::Rc;
 
-use saoms_api::Place;
-use saoms_api::rule::{Fact, FleetView};
+use saoms_api::rule::{Fact, FleetView, Severity};
+use saoms_api::{Finding, Place};
 
 use crate::grid::Block;
 use crate::messages::ROBOT_LIST;
@@ -26,15 +26,30 @@ pub(super) fn robots(fleet: &FleetView<'_>) -> Rc<Robots> {
     fleet.fact()
 }
 
-/// True if there are robots of other classes, or may be some in other programs.
+/// True if there are robots of other classes.
 pub(super) fn may_be_others(fleet: &FleetView<'_>) -> bool {
     robots(fleet).may_be_others
+}
+
+/// True if some messages go to a broker, which may have robots and masters of other programs as its users.
+pub(super) fn has_broker(fleet: &FleetView<'_>) -> bool {
+    robots(fleet).has_broker
+}
+
+/// The findings, as warnings where other programs may supply what is missing here.
+pub(super) fn unless_elsewhere(fleet: &FleetView<'_>, findings: Vec<Finding>) -> Vec<Finding> {
+    const HELP: &str = "nothing is wrong if another program that uses the broker (`url`) has what is missing here";
+    if findings.is_empty() || !has_broker(fleet) {
+        return findings;
+    }
+    findings.into_iter().map(|finding| finding.severity(Severity::Warning).help(HELP)).collect()
 }
 
 /// Facts about all robots, computed once.
 pub(super) struct Robots {
     known: Vec<FleetRobot>,
     may_be_others: bool,
+    has_broker: bool,
 }
 
 impl Deref for Robots {
@@ -57,8 +72,8 @@ impl Fact for Robots {
         }));
         Robots {
             known,
-            may_be_others: fleet.components().iter().any(|component| component.has_broker)
-                || publishes_beside_robots(fleet, ROBOT_LIST.name()),
+            may_be_others: publishes_beside_robots(fleet, ROBOT_LIST.name()),
+            has_broker: fleet.components().iter().any(|component| component.has_broker),
         }
     }
 }

@@ -1,20 +1,22 @@
-//! Rule: a breakdown names a robot that does not exist.
+//! Rule: a breakdown names a robot that does not exist, or does not hear of it.
 
-use std::cell::LazyCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
 use saoms_api::{Finding, Place};
 
 use super::budget::Budget;
-use super::robots::{FleetRobot, may_be_others, robots};
+use super::robots::{FleetRobot, has_broker, may_be_others, robots};
 use crate::environment::{Environment, EventSpec, RandomRange, Scenario};
+use crate::master::MasterEnvironment;
+use crate::messages::{ENVIRONMENT, FAULT};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5005",
         name: "unknown-robot",
-        meaning: "A scenario has an event of a robot that the fleet does not have.",
+        meaning: "A scenario has an event of a robot that the fleet does not have, or that does not hear of it.",
         severity: Severity::Error,
         rule: None,
     },
@@ -28,42 +30,74 @@ const NAME: usize = 50;
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
-    let severity = if may_be_others(fleet) { Severity::Warning } else { Severity::Error };
-    // Built on demand, since most fleets have no breakdowns.
-    let names = LazyCell::new(|| Names::of(fleet, &robots));
+    let severity = if may_be_others(fleet) || has_broker(fleet) { Severity::Warning } else { Severity::Error };
     let mut budget = Budget::default();
     let mut findings = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
+        // Built on demand, since most scenarios have no breakdowns.
+        let mut known: Option<Names<'_>> = None;
         for line in scenario.lines() {
             let EventSpec::Breakdown(robot) = &line.event else { continue };
+            if known.is_none() && !budget.admit(NAME * robots.len()) {
+                return findings;
+            }
+            let names = known.get_or_insert_with(|| Names::of(fleet, &robots, index));
             let text = &properties.scenario[line.text][robot.bytes.clone()];
-            let place = Place::property("scenario").part(line.text, robot.bytes.clone()).in_component(index);
-            let finding = check_name(&robots, &names, robot.value, text, place, &mut budget);
-            findings.extend(finding.map(|finding| finding.severity(severity)));
+            let written = Written { text, value: robot.value, place: line.text, bytes: robot.bytes.clone() };
+            let finding = check_name(fleet, names, &written, severity, &mut budget);
+            findings.extend(finding.map(|finding| finding.at(written.place(index))));
         }
     }
     findings
 }
 
-/// Names and numbers of robots.
+/// A robot as a scenario writes it.
+struct Written<'s> {
+    text: &'s str,
+    value: RandomRange<u32>,
+    /// Index of the text of the scenario.
+    place: usize,
+    bytes: Range<usize>,
+}
+
+impl Written<'_> {
+    fn place(&self, environment: usize) -> Place {
+        Place::property("scenario").part(self.place, self.bytes.clone()).in_component(environment)
+    }
+
+    /// True if it is one name, and no number.
+    fn is_name(&self) -> bool {
+        self.value.least == self.value.most && !self.text.starts_with(|sign: char| sign.is_ascii_digit())
+    }
+}
+
+/// Names and numbers of the robots that hear of the breakdowns of an environment.
 struct Names<'r> {
+    robots: Vec<&'r FleetRobot>,
     /// Number of the first robot with this ID or path.
     by_name: HashMap<&'r str, u32>,
     /// All numbers, sorted.
     numbers: Vec<u32>,
+    /// The other robots.
+    deaf: Vec<&'r FleetRobot>,
 }
 
 impl<'r> Names<'r> {
-    fn of(fleet: &FleetView<'r>, robots: &'r [FleetRobot]) -> Names<'r> {
+    fn of(fleet: &FleetView<'r>, all: &'r [FleetRobot], environment: usize) -> Names<'r> {
+        let topics = topics(fleet, environment);
+        let hears = |robot: &&FleetRobot| {
+            topics.is_empty() || topics.contains(fleet.components()[robot.index].topic(FAULT.name()))
+        };
+        let (robots, deaf): (Vec<&FleetRobot>, Vec<&FleetRobot>) = all.iter().partition(hears);
         let mut by_name = HashMap::with_capacity(robots.len());
-        for robot in robots {
+        for robot in &robots {
             by_name.entry(robot.properties.id.as_str()).or_insert(robot.number);
             by_name.entry(fleet.components()[robot.index].path).or_insert(robot.number);
         }
         let mut numbers: Vec<u32> = robots.iter().map(|robot| robot.number).collect();
         numbers.sort_unstable();
-        Names { by_name, numbers }
+        Names { robots, by_name, numbers, deaf }
     }
 
     /// Number of robots with numbers in this range.
@@ -71,39 +105,77 @@ impl<'r> Names<'r> {
         let up_to = |most: u32| self.numbers.partition_point(|number| *number <= most);
         up_to(most).saturating_sub(self.numbers.partition_point(|number| *number < least))
     }
+
+    fn ids(&self) -> impl Iterator<Item = &'r str> {
+        self.robots.iter().map(|robot| robot.properties.id.as_str())
+    }
+}
+
+/// Names of the topics on which masters pass the breakdowns of an environment on; none if nobody does, which another
+/// rule reports.
+fn topics<'r>(fleet: &FleetView<'r>, environment: usize) -> HashSet<&'r str> {
+    let components = fleet.components();
+    let events = components[environment].topic(ENVIRONMENT.name());
+    let masters: HashSet<usize> = fleet.indices::<MasterEnvironment>().collect();
+    let passes = components.iter().enumerate().filter(|(index, component)| match masters.contains(index) {
+        true => component.topic(ENVIRONMENT.name()) == events,
+        // Whom a component of another class listens to is not known.
+        false => component.class.publishes.contains(&FAULT.name()),
+    });
+    passes.map(|(_, component)| component.topic(FAULT.name())).collect()
 }
 
 fn check_name(
-    robots: &[FleetRobot],
+    fleet: &FleetView<'_>,
     names: &Names<'_>,
-    RandomRange { least, most }: RandomRange<u32>,
-    text: &str,
-    place: Place,
+    written: &Written<'_>,
+    severity: Severity,
     budget: &mut Budget,
 ) -> Option<Finding> {
-    if let Some(number) = names.by_name.get(text).filter(|number| **number != least) {
+    let (text, RandomRange { least, most }) = (written.text, written.value);
+    let finding = |message: String| Finding::new(Place::default(), message).severity(severity);
+    if let Some(number) = names.by_name.get(text) {
+        if *number == least {
+            return None;
+        }
         let message = format!("`{text}` stands for robot {least}, and the robot of this name has the number {number}");
-        return Some(Finding::new(place, message).instead(number.to_string()));
+        return Some(finding(message).instead(number.to_string()));
     }
     let known = names.between(least, most);
     if known as u64 > u64::from(most - least) {
-        return None;
+        if !written.is_name() {
+            return None;
+        }
+        let robot = names.robots.iter().find(|robot| robot.number == least)?;
+        let id = robot.properties.id.as_str();
+        // Zeros before the number do not matter.
+        let stem = |name: &'_ str| name.trim_end_matches(|sign: char| sign.is_ascii_digit()).to_owned();
+        if stem(text) == stem(id) || stem(text) == stem(fleet.components()[robot.index].path) {
+            return None;
+        }
+        let message = format!("no robot is called `{text}`: it stands for robot {least}, which is `{id}`");
+        return Some(finding(message).severity(Severity::Warning).instead(id));
+    }
+    if let Some(robot) = names.deaf.iter().find(|robot| least == most && robot.number == least) {
+        let topic = fleet.components()[robot.index].topic(FAULT.name());
+        let message = format!("robot {least} does not hear of this: it hears of breakdowns on the topic `{topic}`");
+        let help = "give the event to the environment whose master passes it on to this robot";
+        let place = Place::component(robot.index);
+        return Some(finding(message).label(place, "the robot").help(help));
     }
     let message = match (least == most, known) {
         (true, _) => format!("the fleet has no robot {least}"),
         (false, 0) => format!("the fleet has no robot from {least} to {most}"),
         (false, _) => format!("of the robots from {least} to {most} the fleet has only {known}"),
     };
-    let ids = robots.iter().map(|robot| robot.properties.id.as_str());
-    let finding = Finding::new(place, message);
     let is_name = !text.starts_with(|sign: char| sign.is_ascii_digit());
-    let near = (is_name && budget.admit(NAME * robots.len())).then(|| nearest(text, ids.clone())).flatten();
+    let near = (is_name && budget.admit(NAME * names.robots.len())).then(|| nearest(text, names.ids())).flatten();
     Some(match near {
-        Some(near) => finding.instead(near),
-        None if robots.is_empty() => finding.help("add it to the composite, or leave the event out"),
+        Some(near) => finding(message).instead(near),
+        None if names.robots.is_empty() => finding(message).help("add it to the composite, or leave the event out"),
         None => {
-            let all: Vec<String> = ids.take(30).map(|id| format!("`{id}`")).collect();
-            finding.help(format!("its robots are {}", all.join(", ")))
+            let all: Vec<String> = names.ids().take(30).map(|id| format!("`{id}`")).collect();
+            finding(message).help(format!("its robots are {}", all.join(", ")))
         }
     })
 }

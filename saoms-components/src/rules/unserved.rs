@@ -5,7 +5,7 @@ use std::ops::Range;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::robots::{FleetRobot, may_be_others, publishes_beside_robots, robots};
+use super::robots::{FleetRobot, may_be_others, publishes_beside_robots, robots, unless_elsewhere};
 use crate::environment::{Environment, EventSpec, Scenario};
 use crate::master::MasterRobot;
 use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
@@ -38,7 +38,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
         Some(Finding::new(place, message).help(help))
     });
-    judged.collect()
+    unless_elsewhere(fleet, judged.collect())
 }
 
 /// Index of the text and byte range of the word at which a scenario first has a kind of event.

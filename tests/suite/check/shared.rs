@@ -94,6 +94,62 @@ fn sides_beside_a_map_are_its_own() {
     );
 }
 
+#[test]
+fn a_breakdown_is_of_a_robot_that_hears_of_it() {
+    let breakdown: &[(&str, &str)] = &[("scenario", "at 1s breakdown Robot1; at 2s breakdown Robot2")];
+    let environment = ("Environment", "saoms.Environment", breakdown, false);
+    let with = |renamed: &[(&str, &str)], more: &[Component<'_>]| {
+        let found =
+            found(&[&[WORLD, environment, MASTER, ROBOT, ("Robot2", "saoms.Robot", renamed, true)], more].concat());
+        found.into_iter().filter(|line| line.contains("S5005")).collect::<Vec<String>>()
+    };
+    let far = [("topicRename", "FAULTTOPIC,far")];
+    assert!(with(&[], &[]).is_empty());
+    let told = "error S5005 robot 2 does not hear of this: it hears of breakdowns on the topic `far`";
+    assert_eq!(with(&far, &[]), [told]);
+    let second = |renamed: &'static [(&'static str, &'static str)]| -> Component<'_> {
+        ("Master2", "saoms.MasterEnvironment", renamed, false)
+    };
+    assert_eq!(with(&far, &[second(&[("topicRename", "FAULTTOPIC,far::ETOPIC,far2")])]), [told]);
+    assert!(with(&far, &[second(&[("topicRename", "FAULTTOPIC,far")])]).is_empty());
+}
+
+#[test]
+fn a_broken_robot_is_not_broken_again() {
+    let with = |scenario| {
+        let environment = [("scenario", scenario)];
+        found(&[WORLD, ("Environment", "saoms.Environment", &environment, false), MASTER, ROBOT])
+    };
+    assert!(with("at 1s breakdown Robot1; at 2s breakdown 1..1; at 3s end").len() == 1);
+    let twice = "warning S5015 robot 1 breaks down twice: the second time nothing happens";
+    assert_eq!(with("at 1s breakdown Robot1; at 2s breakdown 1"), [twice]);
+    let again = "warning S5015 robot 1 breaks down again and again: after the first time nothing happens";
+    assert_eq!(with("from 1s every 2s breakdown 1"), [again]);
+}
+
+#[test]
+fn what_another_program_may_supply_is_a_warning() {
+    let with = |url: &[(&str, &str)], scenario, map| {
+        let scenario = [("scenario", scenario)];
+        let map = [("map", map)];
+        found(&[
+            ("World", "saoms.World", &map, false),
+            ("Environment", "saoms.Environment", &scenario, false),
+            MASTER,
+            ("Robot1", "saoms.Robot", url, true),
+        ])
+    };
+    let divided = "...@..\n...@..";
+    let (luggage, broken) = ("at 1s luggage (0,0) to (4,1)", "at 1s luggage (0,0) to (1,1); at 1s breakdown Robot7");
+    for (scenario, code) in [(luggage, "S5007"), (broken, "S5005")] {
+        let url = [("url", "localhost:61616")];
+        let (alone, served) = (with(&[], scenario, divided), with(&url, scenario, divided));
+        assert_eq!(alone.len(), 1, "{alone:?}");
+        assert!(alone[0].starts_with(&format!("error {code}")), "{alone:?}");
+        assert_eq!(served, [alone[0].replace("error", "warning")]);
+    }
+}
+
 /// The findings about shifts with these properties, wired to these components.
 fn shifts(all: &[(&str, &str, &str)], waits: bool) -> Vec<String> {
     let mut text = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" \

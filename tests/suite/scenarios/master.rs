@@ -10,7 +10,7 @@ fn master(properties: &str, scenario: &str, robots: &[&str]) -> String {
 
 fn run(properties: &str, scenario: &str, robots: &[&str]) -> Run {
     // The last event keeps the run going.
-    Run::with(&fleet("classic", properties, &format!("{scenario}; at 90s landing 0"), robots), 60)
+    Run::with(&fleet("classic", properties, &format!("{scenario}; at 90s end"), robots), 60)
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use super::line::drawn;
-use super::random::Spot;
+use super::random::{RandomRange, Spot};
 use super::tokenizer::{DOTS, Tokenizer};
 use super::{EventSpec, Spanned};
 use crate::grid::Block;
@@ -26,8 +26,8 @@ pub(super) fn read(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
             }
             EventSpec::Luggage { from, to }
         }
-        "landing" => EventSpec::Landing(drawn(words, pieces)?),
-        "takeoff" => EventSpec::Takeoff(drawn(words, pieces)?),
+        "landing" => EventSpec::Landing(drawn(words, pieces).and_then(|drawn| some(words, drawn))?),
+        "takeoff" => EventSpec::Takeoff(drawn(words, pieces).and_then(|drawn| some(words, drawn))?),
         "end" => EventSpec::End,
         _ => {
             let first = words.peek().unwrap_or_default();
@@ -66,6 +66,15 @@ fn pieces(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
     const EXPECTED: &str = "how many pieces of luggage are expected, such as `4`";
     let word = words.next(EXPECTED)?;
     word.parse().map_err(|_| words.wrong(word, EXPECTED))
+}
+
+/// Refuses an airplane for which no robot is woken.
+fn some(words: &Tokenizer<'_>, drawn: RandomRange<u32>) -> Result<RandomRange<u32>, TextFault> {
+    let last = words.last();
+    match drawn.most {
+        0 => Err(words.fault(last, format!("found `{last}`, expected at least 1 piece: for none no robot is woken"))),
+        _ => Ok(drawn),
+    }
 }
 
 /// The number of a robot, written as a number or as a name that ends with it.

@@ -13,7 +13,7 @@ use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::map::{WorldMap, area, luggage};
-use super::robots::{FleetRobot, may_be_others, robots};
+use super::robots::{FleetRobot, may_be_others, robots, unless_elsewhere};
 use crate::grid::Block;
 use crate::robot::safe::is_within;
 use crate::robot::{Battery, Policy};
@@ -61,7 +61,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     if findings.is_empty() {
         findings.extend(overloaded(&area, &ranges, &luggage, &mut ways));
     }
-    findings
+    unless_elsewhere(fleet, findings)
 }
 
 /// Range and speed of a robot.

@@ -1,0 +1,58 @@
+//! Rule: a robot breaks down that is broken already.
+
+use std::collections::{HashMap, HashSet};
+
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
+
+use super::robots::robots;
+use crate::environment::{Environment, EventSpec, Scenario};
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5015",
+        name: "broken-twice",
+        meaning: "A scenario breaks one robot twice: what is broken stays broken.",
+        severity: Severity::Warning,
+        rule: None,
+    },
+    judges_parts: true,
+    prevents_start: false,
+    check,
+};
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    // A robot that another component schedules anew is repaired by that.
+    let scheduled = fleet.components().iter().flat_map(|one| one.wires.iter().map(|(_, target)| *target));
+    let scheduled: HashSet<usize> = scheduled.collect();
+    let robots = robots(fleet);
+    let repaired = robots.iter().filter(|robot| scheduled.contains(&robot.index)).map(|robot| robot.number);
+    let repaired: HashSet<u32> = repaired.collect();
+    let mut findings = Vec::new();
+    for (index, properties) in fleet.all::<Environment>() {
+        let (scenario, _) = Scenario::read_partly(&properties.scenario);
+        let mut first: HashMap<u32, Place> = HashMap::new();
+        for line in scenario.lines() {
+            let EventSpec::Breakdown(robot) = &line.event else { continue };
+            let number = robot.value.least;
+            // Of several robots one is drawn.
+            if number != robot.value.most || repaired.contains(&number) {
+                continue;
+            }
+            let place = Place::property("scenario").part(line.text, robot.bytes.clone()).in_component(index);
+            let help = "a broken robot is not repaired: leave this event out, or break another robot";
+            if let Some(other) = first.get(&number) {
+                let message = format!("robot {number} breaks down twice: the second time nothing happens");
+                findings.push(Finding::new(place, message).label(other.clone(), "the other time").help(help));
+                continue;
+            }
+            if line.times != Some(1) {
+                let message =
+                    format!("robot {number} breaks down again and again: after the first time nothing happens");
+                findings.push(Finding::new(place.clone(), message).help(help));
+            }
+            first.insert(number, place);
+        }
+    }
+    findings
+}

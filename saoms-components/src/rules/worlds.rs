@@ -1,0 +1,62 @@
+//! Rule: the robots of two worlds hear of the same luggage.
+
+use std::collections::{BTreeSet, HashMap};
+
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
+
+use super::map::luggage;
+use super::robots::{by_world, robots};
+use crate::messages::ENVIRONMENT;
+
+pub(super) static RULE: FleetRule = FleetRule {
+    code: Code {
+        id: "S5016",
+        name: "worlds-mixed",
+        meaning: "Two worlds with robots have one environment: each world waits for all luggage, and a robot of the other \
+            one brings it there.",
+        severity: Severity::Warning,
+        rule: None,
+    },
+    judges_parts: true,
+    prevents_start: false,
+    check,
+};
+
+fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let components = fleet.components();
+    let topic = |index: usize| components[index].topic(ENVIRONMENT.name());
+    let robots = robots(fleet);
+    let worlds: BTreeSet<usize> = by_world(&robots).into_iter().map(|(world, _)| world).collect();
+    if worlds.len() < 2 {
+        return Vec::new();
+    }
+    let mut first_luggage: HashMap<&str, Place> = HashMap::new();
+    for line in luggage(fleet) {
+        first_luggage.entry(topic(line.index)).or_insert_with(|| line.whole());
+    }
+    let mut first: HashMap<&str, usize> = HashMap::new();
+    let mut findings = Vec::new();
+    for world in worlds {
+        let events = topic(world);
+        let Some(line) = first_luggage.get(events) else { continue };
+        let Some(&other) = first.get(events) else {
+            first.insert(events, world);
+            continue;
+        };
+        let message = format!(
+            "`{}` and `{}` both wait for all luggage of one environment: what is brought in one never arrives in the \
+             other",
+            components[other].path, components[world].path
+        );
+        findings.push(
+            Finding::new(Place::component(world), message)
+                .label(Place::component(other), "the first world")
+                .label(line.clone(), "luggage of both")
+                .help(
+                    "wire all robots to one world, or give each world an environment, a master and topics of its own",
+                ),
+        );
+    }
+    findings
+}
