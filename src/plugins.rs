@@ -3,6 +3,7 @@
 use std::env;
 use std::path::PathBuf;
 
+use saoms_api::host::one_line;
 use saoms_core::plugin::Search;
 use saoms_lang::project::{ClassPath, Classes, PluginFault};
 use saoms_lang::registry::Registry;
@@ -64,7 +65,7 @@ pub(crate) fn registry(arguments: &PluginArguments) -> Result<Registry, Exit> {
 /// One of them cannot be used.
 pub(crate) fn usable(problems: &[PluginFault]) -> Result<(), Exit> {
     for PluginFault { is_error, text } in problems {
-        eprint(&format!("{}: {text}\n", if *is_error { "error" } else { "warning" }));
+        eprint(&format!("{}: {}\n", if *is_error { "error" } else { "warning" }, one_line(text)));
     }
     if problems.iter().any(|one| one.is_error) { Err(Exit::WrongInput) } else { Ok(()) }
 }

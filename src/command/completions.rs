@@ -4,7 +4,7 @@ use clap::{Args, Command};
 use clap_complete::Shell;
 
 use crate::Exit;
-use crate::output::print;
+use crate::output::print_as_is;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -24,6 +24,6 @@ pub(crate) struct CompletionsArguments {
 pub(crate) fn completions(arguments: &CompletionsArguments, mut command: Command) -> Exit {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "saoms", &mut script);
-    print(&String::from_utf8_lossy(&script));
+    print_as_is(&String::from_utf8_lossy(&script));
     Exit::Done
 }

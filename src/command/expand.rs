@@ -12,7 +12,7 @@ use saoms_tools::format::{Formatted, WIDTH};
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{DiagnosticReport, compiled};
-use crate::output::{counted, eprint, print};
+use crate::output::{counted, eprint, eprint_coloured, print_as_is};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -34,7 +34,7 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
         Err(exit) => return exit,
     };
     let shown = DiagnosticReport::from(&compilation);
-    eprint(&shown.human(Severity::Error));
+    eprint_coloured(&shown.human(Severity::Error));
     let Some(text) = expanded(&compilation) else {
         eprint(&format!("\n{}: nothing to expand\n", counted(shown.count(Severity::Error), "error")));
         return Exit::WrongInput;
@@ -42,8 +42,8 @@ pub(crate) fn expand(arguments: &ExpandArguments) -> Exit {
     let text = Arc::new(text);
     // In the layout of `saoms fmt`, so that what it writes needs no formatting.
     match syntax::parse(FileId(0), &text).well_formed() {
-        Ok(document) => print(&Formatted { document: &document, width: WIDTH }),
-        Err(_) => print(&text),
+        Ok(document) => print_as_is(&Formatted { document: &document, width: WIDTH }),
+        Err(_) => print_as_is(&text),
     }
     Exit::Done
 }

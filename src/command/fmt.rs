@@ -6,12 +6,13 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use saoms_api::host::one_line;
 use saoms_lang::project::{INPUT, composite_files, document};
 use saoms_tools::format::Formatted;
 
 use crate::Exit;
 use crate::arguments::parse_size;
-use crate::output::{Place, eprint, print, replace};
+use crate::output::{Place, eprint, eprint_coloured, print, print_as_is, replace};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -45,7 +46,7 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     let (mut is_wrong, mut has_failed) = (false, false);
     let (mut files, refused) = composite_files(&arguments.files);
     if let Some(refused) = refused {
-        eprint(&refused.text(io::stderr().is_terminal()));
+        eprint_coloured(&refused.text(io::stderr().is_terminal()));
         is_wrong = true;
     }
     let mut seen = HashSet::with_capacity(files.len());
@@ -54,7 +55,7 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
         match one(path, arguments) {
             Outcome::Formatted => {}
             Outcome::Unformatted => {
-                print(&format!("{}\n", path.display()));
+                print(&format!("{}\n", one_line(&path.display().to_string())));
                 has_failed = true;
             }
             Outcome::NotWritten(error) => {
@@ -62,7 +63,7 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
                 has_failed = true;
             }
             Outcome::Wrong(diagnostics) => {
-                eprint(&diagnostics);
+                eprint_coloured(&diagnostics);
                 is_wrong = true;
             }
         }
@@ -99,7 +100,7 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
     }
     let written = match (is_input, is_same) {
         (true, _) => {
-            print(&formatted);
+            print_as_is(&formatted);
             Ok(())
         }
         (false, true) => Ok(()),

@@ -11,7 +11,7 @@ use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{compiled, files_read};
-use crate::output::{Asked, Outputs, eprint};
+use crate::output::{Asked, Outputs, eprint, eprint_coloured};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -83,7 +83,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         Some(census) if !contribution.composites().is_empty() && of_options.is_empty() => census,
         _ => {
             let shown = if of_options.is_empty() { found } else { of_options };
-            eprint(&Human::of(shown, sources, io::stderr().is_terminal()));
+            eprint_coloured(&Human::of(shown, sources, io::stderr().is_terminal()));
             return Exit::WrongInput;
         }
     };

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
+use saoms_api::host::Visible;
 use serde::Serialize;
 
 /// Standard output without a buffer; `None` where the system has no descriptor left.
@@ -40,9 +41,14 @@ pub(crate) fn limit_patience(patience: Duration) {
     PATIENCE.store(i32::try_from(patience.as_millis()).unwrap_or(i32::MAX), Ordering::SeqCst);
 }
 
-/// Writes a value to standard output, piece by piece.
+/// Writes a text for people to standard output, piece by piece: what in it would steer a terminal is escaped.
 pub(crate) fn print(shown: &(impl Display + ?Sized)) {
-    printed(|output| write!(output, "{shown}"));
+    printed(|output| write!(output, "{}", Visible(shown)));
+}
+
+/// Writes a text for programs to standard output as it is, piece by piece.
+pub(crate) fn print_as_is(text: &(impl Display + ?Sized)) {
+    printed(|output| write!(output, "{text}"));
 }
 
 /// Writes data to standard output as JSON, piece by piece.
@@ -119,8 +125,13 @@ fn wait(descriptor: &impl AsRawFd, events: i16, milliseconds: i32) -> io::Result
     }
 }
 
-/// Writes a value to standard error, piece by piece.
+/// Writes a text for people to standard error, piece by piece: what in it would steer a terminal is escaped.
 pub(crate) fn eprint(shown: &(impl Display + ?Sized)) {
+    eprint_coloured(&Visible(shown));
+}
+
+/// Writes diagnostics to standard error, piece by piece. They escape what others wrote, and have colours.
+pub(crate) fn eprint_coloured(shown: &(impl Display + ?Sized)) {
     let mut output = BufWriter::new(io::stderr().lock());
     // Nobody is left to be told.
     let _ = write!(output, "{shown}").and_then(|()| output.flush());

@@ -4,6 +4,7 @@
 pub mod cdr;
 pub mod contain;
 pub mod declaration;
+mod visible;
 mod xml;
 
 use std::fmt;
@@ -25,6 +26,7 @@ pub use crate::topic::{TopicDeclaration, TopicKind};
 pub use saoms_derive::WriteProperties;
 /// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
 pub use smol_str::SmolStr;
+pub use visible::{Visible, is_invisible, one_line, shorten};
 pub use xml::escaped;
 
 use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};

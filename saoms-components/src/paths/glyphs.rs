@@ -1,9 +1,7 @@
 //! The signs of a picture, each in a square of a given size around a point.
 
-use saoms_api::host::escaped;
-
 use super::palette::Look;
-use super::svg::{Svg, number};
+use super::svg::{Svg, number, shown};
 
 /// An incident of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -123,7 +121,7 @@ pub(super) fn tag(svg: &mut Svg, x: f64, y: f64, text: &str, look: &Look, hollow
     let (width, fill, ink) =
         (tag_width(text), if hollow { "#fff" } else { look.colour }, if hollow { "#000" } else { look.on_colour });
     let class = if hollow { "end" } else { "start" };
-    svg.open("g", format_args!(r#"class="tag {class}" data-robot="{}""#, escaped(text)));
+    svg.open("g", format_args!(r#"class="tag {class}" data-robot="{}""#, shown(text)));
     svg.leaf(
         "rect",
         format_args!(

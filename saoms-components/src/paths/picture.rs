@@ -1,7 +1,5 @@
 //! The whole picture: the area with everything in it, and the legend beside or below it.
 
-use saoms_api::host::escaped;
-
 use super::density::{self, Shades};
 use super::frame::{AXIS, Area, Frame};
 use super::glyphs;
@@ -13,7 +11,7 @@ use super::meaning;
 use super::palette::{LOOKS, look};
 use super::path::{Leg, Path, Robot};
 use super::recording::Recording;
-use super::svg::{Svg, number};
+use super::svg::{Svg, number, shown};
 
 /// The edge of the paper.
 const MARGIN: f64 = 24.0;
@@ -119,7 +117,7 @@ fn draw_lines(svg: &mut Svg, lines: &Lines<'_>, robots: &[Moved<'_>]) -> Vec<Tag
     let mut ends: Vec<Ends> = Vec::new();
     svg.open("g", format_args!(r#"class="robots""#));
     for (place, (_, robot, path)) in robots.iter().enumerate() {
-        svg.open("g", format_args!(r#"class="robot" data-robot="{}""#, escaped(&robot.name)));
+        svg.open("g", format_args!(r#"class="robot" data-robot="{}""#, shown(&robot.name)));
         svg.element("title", format_args!(""), &format!("{}: {}", robot.name, meaning::deeds(robot, path)));
         ends.push(lines.draw(svg, place, path));
         svg.close();

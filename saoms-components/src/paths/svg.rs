@@ -2,10 +2,10 @@
 
 use std::fmt::{self, Write};
 
-use saoms_api::host::escaped;
+use saoms_api::host::{escaped, one_line};
 
 /// An SVG document that is being written. Attributes are given as they stand in the file: a text that comes from
-/// outside goes through [`escaped`].
+/// outside goes through [`shown`].
 #[derive(Default)]
 pub(super) struct Svg {
     text: String,
@@ -37,7 +37,7 @@ impl Svg {
     /// An element that holds nothing but this text, which is escaped here.
     pub(super) fn element(&mut self, name: &str, attributes: fmt::Arguments<'_>, text: &str) {
         self.begin(name, attributes);
-        let _ = writeln!(self.text, ">{}</{name}>", escaped(text));
+        let _ = writeln!(self.text, ">{}</{name}>", shown(text));
     }
 
     /// The whole document, of this size, with a title for those who do not see it.
@@ -45,7 +45,7 @@ impl Svg {
         while !self.open.is_empty() {
             self.close();
         }
-        let (width, height, title) = (number(width), number(height), escaped(title));
+        let (width, height, title) = (number(width), number(height), shown(title));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
              role=\"img\">\n <title>{title}</title>\n{}</svg>\n",
@@ -87,6 +87,11 @@ impl fmt::Display for Number {
     }
 }
 
+/// A text from outside, which may be a name of anybody.
+pub(super) fn shown(text: &str) -> String {
+    escaped(&one_line(text))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,13 +99,13 @@ mod tests {
     #[test]
     fn a_document_is_well_formed_whatever_its_texts() {
         let mut svg = Svg::default();
-        svg.open("g", format_args!(r#"id="{}""#, escaped("\"1\"\u{1}")));
+        svg.open("g", format_args!(r#"id="{}""#, shown("\"1\"\u{1}")));
         svg.leaf("path", format_args!(r#"d="M{} {}""#, number(-0.01), number(1.25)));
         svg.element("text", format_args!(""), "x < y");
         assert_eq!(
             svg.finish(10.04, 20.0, "A & <B>"),
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"10\" height=\"20\" viewBox=\"0 0 10 20\" role=\"img\">\n \
-             <title>A &amp; &lt;B&gt;</title>\n <g id=\"&quot;1&quot;\u{fffd}\">\n  <path d=\"M0 1.3\"/>\n  \
+             <title>A &amp; &lt;B&gt;</title>\n <g id=\"&quot;1&quot;\\u{{1}}\">\n  <path d=\"M0 1.3\"/>\n  \
              <text>x &lt; y</text>\n </g>\n</svg>\n"
         );
     }

@@ -87,7 +87,7 @@ impl Diagnostics {
         if !self.skip(code, severity, location) {
             self.count(code, severity, location.file).kept += 1;
             *self.kept.entry(location.file).or_insert(0) += 1;
-            self.items.push(diagnostic);
+            self.items.push(diagnostic.shortened());
         }
     }
 

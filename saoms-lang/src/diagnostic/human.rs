@@ -4,6 +4,8 @@ use std::fmt;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
+use saoms_api::host::one_line;
+
 use super::grouping::grouped;
 use super::window::{Mark, Window, windows};
 use super::{Diagnostic, Severity};
@@ -66,16 +68,16 @@ fn render(one: &Diagnostic, others: Option<&str>, sources: &Sources, renderer: &
         Severity::Note => Level::NOTE,
     };
     let id = one.rule.map_or_else(|| one.code.id.to_owned(), |rule| format!("{}, {rule}", one.code.id));
-    let mut group = Group::with_title(level.primary_title(&one.message).id(id));
+    let mut group = Group::with_title(level.primary_title(one_line(&one.message)).id(id));
     let windows = pictures(one, sources);
     for (file, window) in &windows {
         group = picture(group, *file, window, sources);
     }
     for suggestion in &one.suggestions {
-        group = group.element(Level::HELP.message(&suggestion.description));
+        group = group.element(Level::HELP.message(one_line(&suggestion.description)));
     }
     for help in &one.help {
-        group = group.element(Level::HELP.message(help));
+        group = group.element(Level::HELP.message(one_line(help)));
     }
     if let Some(others) = others {
         group = group.element(Level::NOTE.message(others));
@@ -99,14 +101,14 @@ fn pictures<'a>(one: &'a Diagnostic, sources: &Sources) -> Vec<(FileId, Window<'
 }
 
 fn picture<'a>(group: Group<'a>, file: FileId, window: &'a Window<'a>, sources: &'a Sources) -> Group<'a> {
-    let path = sources.get(file).path();
+    let path = one_line(sources.get(file).path());
     if sources.get(file).text().is_empty() {
         return group.element(Origin::path(path));
     }
     let snippet = Snippet::source(&window.text).line_start(window.first_line as usize);
     let snippet = snippet.annotations(window.marks.iter().map(|(range, mark)| {
         let kind = if mark.is_primary { AnnotationKind::Primary } else { AnnotationKind::Context };
-        kind.span(range.clone()).label((!mark.text.is_empty()).then_some(mark.text))
+        kind.span(range.clone()).label((!mark.text.is_empty()).then(|| one_line(mark.text)))
     }));
     match window.moved {
         None => group.element(snippet.path(path)),

@@ -28,6 +28,7 @@ pub use level::{SetBy, SeverityLevel};
 pub(crate) use meant_boolean::meant_boolean;
 pub use quoted::quoted;
 pub(crate) use quoted::replacing;
+use saoms_api::host::shorten;
 pub use saoms_api::host::{nearest_equal, nearest_few};
 pub use saoms_api::rule::{Severity, nearest};
 pub use sarif::{Sarif, sarif};
@@ -106,6 +107,14 @@ impl Diagnostic {
     /// True if it is kept for the record alone: it is not shown, and not counted.
     pub fn is_allowed(&self) -> bool {
         self.set.as_ref().is_some_and(|set| set.level == SeverityLevel::Allow)
+    }
+
+    /// The same without values longer than a line in its texts.
+    fn shortened(mut self) -> Self {
+        let labels = self.labels.iter_mut().map(|label| &mut label.text).chain(&mut self.at);
+        let suggested = self.suggestions.iter_mut().map(|one| &mut one.description);
+        labels.chain(suggested).chain(&mut self.help).chain([&mut self.message]).for_each(shorten);
+        self
     }
 
     /// Sets what the picture says at the place.

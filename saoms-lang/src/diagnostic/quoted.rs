@@ -1,6 +1,6 @@
 //! Texts of users inside messages.
 
-use saoms_api::host::escaped;
+use saoms_api::host::{escaped, one_line};
 
 use super::Diagnostic;
 use crate::limits::QUOTED_CHARACTERS;
@@ -12,20 +12,8 @@ use crate::source::Location;
 /// assert_eq!(saoms_lang::diagnostic::quoted("a\tb"), "`a\\tb`");
 /// ```
 pub fn quoted(text: &str) -> String {
-    let mut out = String::from("`");
-    for (count, character) in text.chars().enumerate() {
-        if count == QUOTED_CHARACTERS {
-            out.push('…');
-            break;
-        }
-        if character.is_control() || matches!(character, '\u{feff}' | '\u{fffe}' | '\u{ffff}') {
-            out.extend(character.escape_default());
-        } else {
-            out.push(character);
-        }
-    }
-    out.push('`');
-    out
+    let end = text.char_indices().nth(QUOTED_CHARACTERS).map_or(text.len(), |(end, _)| end);
+    format!("`{}{}`", one_line(&text[..end]), if end < text.len() { "…" } else { "" })
 }
 
 /// The description of a suggestion that replaces a name.

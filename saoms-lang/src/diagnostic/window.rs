@@ -4,6 +4,8 @@
 
 use std::ops::Range;
 
+use saoms_api::host::Visible;
+
 use crate::source::{LineColumn, SourceFile, Span};
 
 /// Marks at most this many lines apart share a picture.
@@ -81,12 +83,12 @@ fn window<'a>(file: &SourceFile, group: Vec<Placed<'a>>) -> Window<'a> {
             let from = boundary(file, mark.span.start, str::floor_char_boundary).clamp(shown.start, shown.end);
             let to = boundary(file, mark.span.end, str::ceil_char_boundary).clamp(shown.start, shown.end);
             if mark.span.start <= end && mark.span.end >= start {
-                let at = |byte: u32| text.len() + (byte - shown.start) as usize;
+                let at = |byte: u32| text.len() + visible(file, Span::new(shown.start, byte)).len();
                 range.start = range.start.min(at(from));
                 range.end = range.end.max(at(to));
             }
         }
-        text.push_str(&file.text()[shown.start as usize..shown.end as usize]);
+        text.push_str(&visible(file, shown));
         if line < last_line {
             text.push('\n');
         }
@@ -96,6 +98,11 @@ fn window<'a>(file: &SourceFile, group: Vec<Placed<'a>>) -> Window<'a> {
         range.end = range.end.clamp(range.start, text.len());
     }
     Window { text, first_line, moved, marks }
+}
+
+/// A part of a line, with what would steer a terminal escaped.
+fn visible(file: &SourceFile, part: Span) -> String {
+    Visible(&file.text()[part.start as usize..part.end as usize]).to_string()
 }
 
 /// The character boundary next to a place that may be within a character, or behind the text.

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use saoms_api::host::one_line;
+
 use super::diagram::{Diagram, DiagramComponent, DiagramEnd, LinkKind, Port, State};
 use super::picture::{Picture, Sink};
 use super::text::left_out;
@@ -129,10 +131,9 @@ fn record(component: &DiagramComponent) -> String {
 /// A text in a field of a record.
 fn field(text: &str) -> String {
     let mut out = String::new();
-    for one in text.chars() {
+    for one in one_line(text).chars() {
         match one {
             '"' | '\\' | '{' | '}' | '|' | '<' | '>' => out.extend(['\\', one]),
-            _ if one.is_control() => out.push(' '),
             _ => out.push(one),
         }
     }
@@ -140,6 +141,6 @@ fn field(text: &str) -> String {
 }
 
 fn quoted(text: &str) -> String {
-    let text: String = text.chars().map(|one| if one.is_control() { ' ' } else { one }).collect();
+    let text = one_line(text);
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use saoms_api::host::one_line;
+
 use super::diagram::{Diagram, DiagramEnd, LinkKind, State};
 use super::picture::{Picture, Sink};
 use super::text::left_out;
@@ -109,9 +111,8 @@ fn quoted(text: &str) -> String {
 /// A text inside quotes: what Mermaid or HTML would take for something else by its number.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for one in text.chars() {
+    for one in one_line(text).chars() {
         match one {
-            _ if one.is_control() => out.push(' '),
             '"' | '#' | '&' | '<' | '>' | '`' | ';' | '|' | '\\' => {
                 let _ = write!(out, "#{};", u32::from(one));
             }

@@ -114,7 +114,7 @@ impl Out<'_, '_> {
         let name = Point { x: x + 16, y: y + 23 + layout.name };
         let _ = write!(self.text, "<g>");
         let about = [Some(diagram.name.as_str()), diagram.namespace.as_deref()];
-        self.title(Some(&about.into_iter().flatten().collect::<Vec<_>>().join("\n")));
+        self.title(&about.into_iter().flatten().collect::<Vec<_>>());
         self.label("name", name, &heading(&diagram.name), NAME_SIZE + 2, "start");
         self.text.push_str("</g>\n");
         self.chips(&layout.chips, &diagram.properties, Point { x: 0, y: 0 });
@@ -128,19 +128,20 @@ impl Out<'_, '_> {
             State::Missing => "missing",
         };
         self.text.push_str("<g>");
-        let mut about = component.label();
+        let label = component.label();
+        let mut about = vec![label.as_str()];
         if !component.class.is_empty() {
-            about.push_str(&format!("\n{}", component.class));
+            about.push(&component.class);
         }
         match component.state {
             State::Known => {}
-            State::NotFound => about.push_str(match component.class.strip_prefix("composite ") {
-                Some(_) => "\nno such composite is found",
-                None => "\nno such class is registered",
+            State::NotFound => about.push(match component.class.strip_prefix("composite ") {
+                Some(_) => "no such composite is found",
+                None => "no such class is registered",
             }),
-            State::Missing => about.push_str("\nthe composite has no such component"),
+            State::Missing => about.push("the composite has no such component"),
         }
-        self.title(Some(&about));
+        self.title(&about);
         let body = Rect { y: rect.y + plan.body, height: rect.height - plan.body, ..*rect };
         self.rect(class, body, 8);
         let middle = |y| Point { x: rect.x + rect.width / 2, y: rect.y + y };
@@ -206,7 +207,7 @@ impl Out<'_, '_> {
     fn port_as(&mut self, class: &str, at: Point, port: &Port, shown: &str, label: Point, anchor: &str) {
         self.text.push_str("<g>");
         let about: Vec<&str> = [Some(port.name.as_str()), port.interface.as_deref()].into_iter().flatten().collect();
-        self.title(Some(&about.join("\n")));
+        self.title(&about);
         self.chevron(class, at);
         if !shown.is_empty() {
             self.label("", Point { y: label.y + 3, ..label }, shown, SMALL_SIZE, anchor);
@@ -234,8 +235,10 @@ impl Out<'_, '_> {
         for (chip, setting) in chips.iter().zip(settings) {
             let (x, y) = (origin.x + chip.x, origin.y + chip.y);
             self.text.push_str("<g>");
-            let value = setting.value.as_deref();
-            self.title(Some(&format!("{} = {}", setting.name, value.unwrap_or("..."))));
+            let text = format!("{} = {}", setting.name, setting.value.as_deref().unwrap_or("..."));
+            // A line of a value is not taken for the name of another property.
+            let text = text.replace('\n', "\n    ");
+            self.title(&text.split('\n').collect::<Vec<_>>());
             self.rect("property", Rect { x, y, width: chip.width, height: CHIP_HEIGHT }, 0);
             self.label("", Point { x: x + 4, y: y + 10 }, &chip.text, CHIP_SIZE, "start");
             self.text.push_str("</g>");
@@ -248,7 +251,7 @@ impl Out<'_, '_> {
         self.text.push_str("<g>");
         let shown = topic.names.iter().take(MOST_NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
         let more = if topic.names.len() > MOST_NAMES { ", ..." } else { "" };
-        self.title(Some(&format!("{shown}{more}\n{} topic of {}", topic.kind.name(), topic.message)));
+        self.title(&[&format!("{shown}{more}"), &format!("{} topic of {}", topic.kind.name(), topic.message)]);
         let _ =
             write!(self.text, "<path class=\"rail\" stroke=\"{color}\" d=\"M{},{middle}H{}\"/>", rail.from, rail.to);
         let _ = write!(
@@ -346,11 +349,9 @@ impl Out<'_, '_> {
         );
     }
 
-    fn title(&mut self, text: Option<&str>) {
-        if let Some(text) = text {
-            let lines: Vec<String> = text.lines().map(xml).collect();
-            let _ = write!(self.text, "<title>{}</title>", lines.join("\n"));
-        }
+    fn title(&mut self, lines: &[&str]) {
+        let lines: Vec<String> = lines.iter().map(|line| xml(line)).collect();
+        let _ = write!(self.text, "<title>{}</title>", lines.join("\n"));
     }
 
     fn label(&mut self, class: &str, at: Point, text: &str, size: i32, anchor: &str) {

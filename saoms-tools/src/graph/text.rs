@@ -1,6 +1,7 @@
 //! Widths of texts, and texts cut to a width.
 
 use super::diagram::Diagram;
+use saoms_api::host::one_line;
 use saoms_lang::syntax::escaped;
 
 /// Widths of the printable characters of ASCII in thousandths of the size, as the metrics of DejaVu Sans have them: of
@@ -34,7 +35,7 @@ fn thousandths(character: char) -> u16 {
 /// The start and the end of a text, of at most so many characters with an ellipsis between them when some are missing:
 /// long names differ at their ends.
 pub(super) fn short(text: &str, most: usize) -> String {
-    let text = plain(text);
+    let text = one_line(text).into_owned();
     let count = text.chars().count();
     if count <= most {
         return text;
@@ -46,7 +47,7 @@ pub(super) fn short(text: &str, most: usize) -> String {
 
 /// The end of a text of at most so many characters: what tells classes of one package apart.
 pub(super) fn end(text: &str, most: usize) -> String {
-    let text = plain(text);
+    let text = one_line(text).into_owned();
     let count = text.chars().count();
     if count <= most {
         return text;
@@ -64,12 +65,7 @@ pub(super) fn left_out(diagram: &Diagram) -> Option<String> {
     }
 }
 
-/// Control characters would break lines and documents.
-fn plain(text: &str) -> String {
-    text.chars().map(|one| if one.is_control() { ' ' } else { one }).collect()
-}
-
 /// A text inside an XML element or attribute.
 pub(super) fn xml(text: &str) -> String {
-    escaped(&plain(text))
+    escaped(&one_line(text))
 }

@@ -5,6 +5,7 @@ mod wiring;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
+use saoms_api::host::one_line;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::{Compilations, FleetOutput};
 use serde::Serialize;
@@ -13,7 +14,7 @@ use serde::ser::Serializer;
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{DiagnosticReport, project};
-use crate::output::{counted, eprint, print, print_json};
+use crate::output::{counted, eprint_coloured, print, print_json};
 use crate::plugins::{CommandClasses, usable};
 use wiring::Wiring;
 
@@ -72,10 +73,10 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
         CheckFormat::Json => print_json(&shown.json(wiring)),
         CheckFormat::Sarif => print_json(&shown.sarif(wiring.map(|wiring| Properties { wiring }))),
         CheckFormat::Human => {
-            eprint(&shown.human(Severity::Note));
+            eprint_coloured(&shown.human(Severity::Note));
             for (path, wiring) in &wired {
                 if *fleets > 1 {
-                    print(&format!("{}\n", path.display()));
+                    print(&format!("{}\n", one_line(&path.display().to_string())));
                 }
                 print(wiring);
             }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::time::Duration;
 
-use saoms_api::host::format_duration;
+use saoms_api::host::{format_duration, one_line};
 use saoms_lang::assembly::{Assembly, TopicEnd, Traffic, TrafficTopic};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
@@ -44,7 +44,7 @@ impl fmt::Display for Wiring<'_> {
             return out.write_str("no topics\n\n");
         }
         for topic in &traffic.topics {
-            write!(out, "{}  {} topic of {}", topic.name, topic.kind.name(), topic.message)?;
+            write!(out, "{}  {} topic of {}", one_line(&topic.name), topic.kind.name(), topic.message)?;
             if !topic.writers.is_empty() {
                 write!(out, ", {} messages/s at one an execution", rate(topic))?;
             }
@@ -67,8 +67,9 @@ impl fmt::Display for Group<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let every = self.period.map_or_else(String::new, |period| format!(" every {}", format_duration(period)));
         match self.paths[..] {
-            [only] => write!(out, "{only} ({}{every})", self.class),
+            [only] => write!(out, "{} ({}{every})", one_line(only), self.class),
             [first, .., last] => {
+                let (first, last) = (one_line(first), one_line(last));
                 write!(out, "{} of {}{every}: {first} to {last}", self.paths.len(), self.class)
             }
             [] => Ok(()),

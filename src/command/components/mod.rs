@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 use crate::Exit;
 use crate::arguments::{Format, PluginArguments};
-use crate::output::{eprint, print};
+use crate::output::{eprint, print, print_json};
 use crate::plugins::registry;
 
 const EXIT_CODES: &str = "\
@@ -68,7 +68,7 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
                 Some(_) => Vec::new(),
                 None => registry.rules().iter().map(rules::as_json).collect(),
             };
-            print(&format!("{:#}\n", json!({ "components": classes, "loops": loops, "rules": rules })));
+            print_json(&json!({ "components": classes, "loops": loops, "rules": rules }));
         }
         Format::Human if arguments.name.is_some() => {
             chosen.into_iter().for_each(|class| print(&described(class)));

@@ -1,8 +1,10 @@
 //! The observer that shows what happens in a fleet, and a summary at the end.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use saoms_api::Level;
+use saoms_api::host::one_line;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent, RunProgress};
 use saoms_core::report::RunReport;
 use saoms_lang::assembly::Assembly;
@@ -48,7 +50,7 @@ impl Console {
             print("Starting...\n");
         }
         let status = if verbosity == Verbosity::Plain { StatusLine::on_terminal() } else { None };
-        let names = assembly.components.iter().map(|component| component.path.chars().count());
+        let names = assembly.components.iter().map(|component| one_line(&component.path).chars().count());
         let width = names.max().unwrap_or(0).clamp(NAMES.0, NAMES.1);
         Console { verbosity, width, keeps_all: arguments.journal.is_some(), status }
     }
@@ -65,7 +67,7 @@ impl Observer for Console {
     fn event(&self, event: &RunEvent) {
         let level = event.what.level();
         match (self.verbosity, &event.what) {
-            (Verbosity::Classic, Occurrence::Console { text }) => print(&format!("{text}\n")),
+            (Verbosity::Classic, Occurrence::Console { text }) => print(&format!("{}\n", one_line(text))),
             (_, Occurrence::Console { .. }) => {}
             (Verbosity::Quiet, _) if level == Level::Error => eprint(&plain(event, self.width)),
             (Verbosity::Classic, _) if level <= Level::Warning => eprint(&plain(event, self.width)),
@@ -91,7 +93,7 @@ impl Observer for Console {
     fn progress(&self, progress: &RunProgress) {
         if let Some(status) = &self.status {
             let RunProgress { time, periods, summaries } = progress;
-            let summaries: String = summaries.iter().map(|summary| format!(" · {summary}")).collect();
+            let summaries: String = summaries.iter().map(|summary| format!(" · {}", one_line(summary))).collect();
             status.set(format!("{time} · {periods} executions{summaries}"));
         }
     }
@@ -113,6 +115,12 @@ fn plain(event: &RunEvent, width: usize) -> String {
         Level::Warning => "warning: ",
         Level::Info | Level::Debug => "",
     };
-    let who = event.component.as_deref().unwrap_or("fleet");
-    format!("{:>11}  {who:<width$} {mark}{}\n", event.time.to_string(), event.what)
+    let who = one_line(event.component.as_deref().unwrap_or("fleet"));
+    let what = event.what.to_string();
+    let what = match event.what {
+        // It shows the line of an event below.
+        Occurrence::Note { .. } => Cow::Borrowed(what.as_str()),
+        _ => one_line(&what),
+    };
+    format!("{:>11}  {who:<width$} {mark}{what}\n", event.time.to_string())
 }

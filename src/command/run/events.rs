@@ -6,6 +6,7 @@ use std::path::Path;
 use std::thread;
 
 use saoms_api::extension::{EventLanguage, EventReader, LineFault};
+use saoms_api::host::is_invisible;
 use saoms_api::{Level, Time};
 use saoms_core::schedule::{Handle, Hold, InjectedContent, Injection};
 
@@ -121,8 +122,8 @@ impl Events {
 
 /// A fault with an excerpt of its line.
 fn shown(line: &str, fault: &LineFault) -> String {
-    // What comes from outside must not steer the terminal.
-    let plain = |text: &str| text.replace(|sign: char| sign.is_control(), " ");
+    // What comes from outside must not steer the terminal, and stands above its mark.
+    let plain = |text: &str| text.replace(is_invisible, " ");
     let (start, end) = (fault.bytes.start.min(line.len()), fault.bytes.end.min(line.len()));
     let before = line.get(..start).map_or(0, |text| text.chars().count());
     let marked = line.get(start..end).map_or(1, |text| text.chars().count().max(1));

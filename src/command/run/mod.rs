@@ -27,7 +27,7 @@ use saoms_lang::project::INPUT;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
-use crate::output::{counted, eprint, eprint_json, print_json};
+use crate::output::{counted, eprint, eprint_coloured, eprint_json, print_json};
 use console::Console;
 use ending::{Signalled, end_without_reader};
 use events::Events;
@@ -224,7 +224,7 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
         (Format::Json, None) => print_json(&shown.json(None::<()>)),
         (Format::Json, Some(_)) => eprint_json(&shown.json(None::<()>)),
         (Format::Human, _) => {
-            eprint(&shown.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
+            eprint_coloured(&shown.human(if arguments.quiet { Severity::Error } else { Severity::Note }));
         }
     }
     if compilation.output.is_none() && arguments.format == Format::Human {

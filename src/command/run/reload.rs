@@ -9,13 +9,14 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use saoms_api::Level;
+use saoms_api::host::one_line;
 use saoms_core::schedule::{ChangeError, Handle};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::diagnostic::Severity;
 
 use crate::arguments::FleetArguments;
 use crate::fleet::{DiagnosticReport, compiled};
-use crate::output::eprint;
+use crate::output::eprint_coloured;
 
 /// The time between two looks at the files. A file is loaded when two looks in a row find it unchanged.
 const LOOK: Duration = Duration::from_millis(300);
@@ -124,14 +125,14 @@ impl Watcher {
     /// Takes new builds of these libraries.
     fn reload(&mut self, changed: &[PathBuf]) {
         let names: Vec<String> = changed.iter().map(|path| format!("`{}`", path.display())).collect();
-        let names = names.join(", ");
+        let names = one_line(&names.join(", ")).into_owned();
         let kept = |why: &str| format!("{names} changed: {why}; the fleet goes on with the earlier build");
         // Faults of a library have been reported already.
         let Ok(compilation) = compiled(&self.arguments, |project, classes| project.compile(classes)) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
         let Some(assembly) = &compilation.output else {
-            eprint(&DiagnosticReport::from(&compilation).human(Severity::Error));
+            eprint_coloured(&DiagnosticReport::from(&compilation).human(Severity::Error));
             return self.handle.note(Level::Error, kept("the composites do not fit to it"));
         };
         if paths(assembly) != self.components {
@@ -149,6 +150,11 @@ impl Watcher {
         self.replace(affected.cloned().collect(), false);
     }
 
+    /// Tells it in one line: names and reasons are of others.
+    fn note(&self, level: Level, text: &str) {
+        self.handle.note(level, one_line(text).into_owned());
+    }
+
     /// `again` is true if it was reported before that they cannot be replaced now.
     fn replace(&mut self, components: Vec<ComponentSpec>, again: bool) {
         self.asked = Instant::now();
@@ -159,7 +165,7 @@ impl Watcher {
                 Ok(_) => {}
                 Err(ChangeError::NotNow { why, .. }) => {
                     if !again {
-                        self.handle.note(Level::Info, format!("component `{path}` is replaced later: {why}"));
+                        self.note(Level::Info, &format!("component `{path}` is replaced later: {why}"));
                     }
                     self.waiting.push(next);
                 }
@@ -168,9 +174,9 @@ impl Watcher {
                         ChangeError::Failed { failure, .. } => failure.to_string(),
                         other => other.to_string(),
                     };
-                    self.handle.note(
+                    self.note(
                         Level::Error,
-                        format!("component `{path}` is not replaced, the earlier one goes on: {why}"),
+                        &format!("component `{path}` is not replaced, the earlier one goes on: {why}"),
                     );
                 }
             }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use saoms_api::extension::RunSummary;
+use saoms_api::host::one_line;
 use saoms_core::journal::Journal;
 use saoms_core::report::{ComponentReport, RunReport, RunStatus};
 
@@ -16,7 +17,7 @@ const ROWS: usize = 24;
 pub(crate) fn summary(report: &RunReport, keeps_all: bool) -> String {
     let mut text = format!("\n{}\n", outcome(report));
     for reason in &report.outcome.reasons {
-        let _ = writeln!(text, "  {reason}");
+        let _ = writeln!(text, "  {}", one_line(reason));
     }
     text.push('\n');
     text.push_str(&table(&report.components));
@@ -77,7 +78,7 @@ fn problem_lines(components: &[ComponentReport]) -> String {
                 format!("{}{what}", counted(usize::try_from(*count).unwrap_or(usize::MAX), noun))
             })
             .collect();
-        (!lines.is_empty()).then(|| format!("{}: {}\n", one.name, lines.join(", ")))
+        (!lines.is_empty()).then(|| format!("{}: {}\n", one_line(&one.name), lines.join(", ")))
     });
     let mut lines: Vec<String> = lines.collect();
     let more = lines.len().saturating_sub(ROWS);
@@ -91,7 +92,8 @@ fn problem_lines(components: &[ComponentReport]) -> String {
 
 fn table(components: &[ComponentReport]) -> String {
     let shown = &components[..components.len().min(ROWS)];
-    let name_width = shown.iter().map(|one| one.name.chars().count()).max().unwrap_or(0).max("component".len());
+    let name_width =
+        shown.iter().map(|one| one_line(&one.name).chars().count()).max().unwrap_or(0).max("component".len());
     let class_width = shown.iter().map(|one| one.class.chars().count()).max().unwrap_or(0).max("class".len());
     let mut text = format!(
         "{:name_width$}  {:class_width$}  executions  missed  late us p50/p99/max  restarts  dropped\n",
@@ -102,7 +104,12 @@ fn table(components: &[ComponentReport]) -> String {
         let _ = writeln!(
             text,
             "{:name_width$}  {:class_width$}  {:>10}  {:>6}  {late:>19}  {:>8}  {:>7}",
-            one.name, one.class, one.executions, one.missed, one.restarts, one.dropped
+            one_line(&one.name),
+            one.class,
+            one.executions,
+            one.missed,
+            one.restarts,
+            one.dropped
         );
     }
     if components.len() > shown.len() {

@@ -1,8 +1,10 @@
 //! The answer for people.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fmt::Write;
 
+use saoms_api::host::one_line;
 use saoms_api::{Cause, Time};
 use saoms_core::journal::{Chain, JournalDocument, JournalEntry, Why};
 
@@ -13,6 +15,7 @@ const LAST: usize = 8;
 
 /// The answer: actions, the reasons for them, and the knowledge at that time.
 pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, document: &JournalDocument) -> String {
+    let component = &one_line(component);
     let Some(time) = why.time else { return nothing(component, asked, document) };
     let mut text = match asked.filter(|asked| *asked != time) {
         Some(asked) => {
@@ -32,7 +35,7 @@ pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, documen
             .iter()
             .map(|known| {
                 let since = known.since.map_or("from before".to_owned(), |since| format!("since {since}"));
-                (known.shown(), since)
+                (one_line(&known.shown()).into_owned(), since)
             })
             .collect();
         let names = why.knowledge.iter().map(|known| known.entry.chars().count()).max().unwrap_or(0);
@@ -79,7 +82,7 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     let mut rows: Vec<Row<'_>> = Vec::new();
     for (place, act) in chain.acts.iter().enumerate() {
         let number = if place == 0 { "1".to_owned() } else { String::new() };
-        rows.push(Row { number, entry: Some(act), text: act.text() });
+        rows.push(Row { number, entry: Some(act), text: one_line(&act.text()).into_owned() });
     }
     let anew = shown_anew(chain, earlier);
     let elided = anew.saturating_sub(SHOWN);
@@ -90,7 +93,11 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
             rows.push(Row { number: String::new(), entry: None, text });
         }
         if elided == 0 || place < kept || place >= kept + elided {
-            rows.push(Row { number: (place + 2).to_string(), entry: Some(reason), text: reason.text() });
+            rows.push(Row {
+                number: (place + 2).to_string(),
+                entry: Some(reason),
+                text: one_line(&reason.text()).into_owned(),
+            });
         }
     }
     if anew < chain.reasons.len() {
@@ -102,7 +109,7 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     let width = |cell: &dyn Fn(&Row<'_>) -> usize| rows.iter().map(cell).max().unwrap_or(0);
     let number = width(&|row| row.number.len());
     let time = width(&|row| row.entry.map_or(0, |entry| entry.time().to_string().len()));
-    let component = width(&|row| row.entry.map_or(0, |entry| entry.component().chars().count()));
+    let component = width(&|row| row.entry.map_or(0, |entry| one_line(entry.component()).chars().count()));
     let by = width(&|row| row.entry.map_or(0, |entry| loop_of(entry).chars().count()));
     let mut text = String::new();
     for row in &rows {
@@ -112,7 +119,7 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
                 "  {:>number$}  {:>time$}  {:component$}  {:by$}  {:8}  {}",
                 row.number,
                 entry.time().to_string(),
-                entry.component(),
+                one_line(entry.component()),
                 loop_of(entry),
                 entry.phase().name(),
                 row.text
@@ -123,6 +130,6 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     text
 }
 
-fn loop_of(entry: &JournalEntry) -> &str {
-    entry.loop_name().unwrap_or("-")
+fn loop_of(entry: &JournalEntry) -> Cow<'_, str> {
+    one_line(entry.loop_name().unwrap_or("-"))
 }

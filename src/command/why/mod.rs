@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use clap::Args;
 use saoms_api::Time;
-use saoms_api::host::format_duration;
+use saoms_api::host::{format_duration, one_line};
 use saoms_core::journal::{ComponentName, JournalDocument, JournalReadError, Why, read};
 use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
 
 use crate::Exit;
 use crate::arguments::Format;
-use crate::output::{eprint, print};
+use crate::output::{eprint, print, print_as_is};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -47,18 +47,22 @@ pub(crate) struct WhyArguments {
 }
 
 pub(crate) fn why(arguments: &WhyArguments) -> Exit {
+    let show = |text: &str| match arguments.format {
+        Format::Human => print(text),
+        Format::Json => print_as_is(text),
+    };
     match answer(arguments) {
         Ok(Answer { text, lost: None }) => {
-            print(&text);
+            show(&text);
             Exit::Done
         }
         Ok(Answer { text, lost: Some(lost) }) => {
-            print(&text);
-            eprint(&format!("error: {lost}\n"));
+            show(&text);
+            eprint(&format!("error: {}\n", one_line(&lost)));
             Exit::WrongInput
         }
         Err(problem) => {
-            eprint(&format!("error: {problem}\n"));
+            eprint(&format!("error: {}\n", one_line(&problem)));
             Exit::WrongInput
         }
     }

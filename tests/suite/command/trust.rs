@@ -105,3 +105,96 @@ fn tables_and_includes_outside_the_folder_are_refused() {
     let (_, stdout, stderr) = saoms(&site, &["check", "fleet"]);
     assert!(stderr.contains("S0009") && !(stdout + &stderr).contains(SECRET), "{stderr}");
 }
+
+/// A name that clears the screen, turns the direction, and adds a line.
+const HOSTILE: &str = "R\u{202e}\u{9b}2J&#10;error[S9999]: forged&#10;    1.000 s  forged 1";
+
+/// A fleet with such names, and a topic and an ID that are in order, where `id` is the ID of the robot.
+fn hostile(id: &str) -> String {
+    let one = |name: &str, class: &str, more: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.rust class=\"saoms.{class}\"/><property name=\"ID\">{name}</property><property name=\"period\">100</property>{more}</component>\n"
+        )
+    };
+    let robot = one("Rob\u{202e}\u{9b}ot1", "Robot", "<reference name=\"world\" target=\"World\"/>")
+        .replace("\"ID\">Rob\u{202e}\u{9b}ot1<", &format!("\"ID\">{id}<"));
+    let scenario = "<property name=\"scenario\">at 1s luggage (3,1) to (3,10)</property>";
+    composite(
+        &[one("World", "World", ""), one("Master", "MasterEnvironment", ""), one("E", "Environment", scenario), robot]
+            .concat(),
+    )
+    .replace("\"fleet\"", "\"fl\u{202e}eet\"")
+}
+
+fn assert_visible(what: &str, text: &str) {
+    let steers = |one: &char| *one != '\n' && (one.is_control() || ('\u{202a}'..='\u{202e}').contains(one));
+    assert_eq!(text.chars().find(steers), None, "{what}: {text:?}");
+    let forged = ["error[S9999]", "1.000 s  forged"];
+    let forged = text.lines().find(|line| forged.iter().any(|start| line.trim_start().starts_with(start)));
+    assert_eq!(forged, None, "{what}: {text}");
+}
+
+#[test]
+fn names_neither_steer_a_terminal_nor_forge_lines() {
+    let folder = site();
+    let site = folder.path().join("site");
+    let file = "fleet/fl\u{1b}[31m\nerror[S9999]: forged.composite";
+    fs::write(site.join(file), hostile("R").replace("name=\"period\"", &format!("name=\"{HOSTILE}\""))).unwrap();
+    for arguments in [&["check", file][..], &["run", "--virtual", file], &["expand", file], &["fmt", "--check", file]] {
+        let (_, stdout, stderr) = saoms(&site, arguments);
+        assert_visible(arguments[0], &(stdout + &stderr));
+    }
+    write(folder.path(), "fleet.composite", &hostile(HOSTILE));
+    let file = "fleet/fleet.composite";
+    for console in ["plain", "classic"] {
+        let arguments = ["run", "--virtual", file, "--console", console, "--report", "r.json", "--paths", "p.svg"];
+        let (code, stdout, stderr) = saoms(&site, &arguments);
+        assert_eq!(code, 0, "{stderr}");
+        assert_visible(console, &(stdout + &stderr));
+    }
+    let of_robot = ["why", "Rob\u{202e}\u{9b}ot1", "--report", "r.json"];
+    for arguments in [&["check", "--wiring", file][..], &of_robot] {
+        let (code, stdout, stderr) = saoms(&site, arguments);
+        assert_eq!(code, 0, "{stderr}");
+        assert_visible(arguments[0], &(stdout + &stderr));
+    }
+    for format in ["svg", "dot", "mermaid"] {
+        let (_, stdout, _) = saoms(&site, &["graph", file, "--format", format]);
+        assert!(stdout.contains("u{202e}"), "{format}: {stdout}");
+        // The lines of a value are indented in its tooltip.
+        assert_visible(format, &stdout.replace("\n    ", " "));
+    }
+    assert_visible("paths", &fs::read_to_string(site.join("p.svg")).unwrap());
+    // Programs get what is there.
+    let (_, stdout, _) = saoms(&site, &["expand", file]);
+    assert!(stdout.contains('\u{202e}'), "{stdout}");
+    let (_, stdout, _) = saoms(&site, &["why", "Rob\u{202e}\u{9b}ot1", "--report", "r.json", "--format", "json"]);
+    let answer: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!(answer["component"], "Rob\u{202e}\u{9b}ot1");
+}
+
+#[test]
+fn messages_quote_a_line_of_a_value_at_most() {
+    let folder = site();
+    let site = folder.path().join("site");
+    let long = "Zq".repeat(50_000);
+    let places =
+        ["\"ID\">R1<", "\"period\">100<", "\"number\">1<", "(3,1)", "saoms.World", "name=\"world\"", "\"World\""];
+    let whole = hostile("R1").replace("</component>", "<property name=\"number\">1</property></component>");
+    for place in places {
+        let end = place.find(['<', ')']).unwrap_or(place.len() - 1);
+        let text = whole.replace(place, &format!("{}{long}{}", &place[..end], &place[end..]));
+        write(folder.path(), "fleet.composite", &text);
+        let (code, stdout, stderr) = saoms(&site, &["check", "fleet/fleet.composite", "--format", "json"]);
+        assert_eq!(code, 2, "{place}: {stderr}");
+        let found: serde_json::Value = serde_json::from_str(&stdout).unwrap();
+        for one in found["diagnostics"].as_array().unwrap() {
+            let help = one["help"].as_array().into_iter().flatten().chain([&one["message"]]);
+            for text in help.filter_map(|text| text.as_str()) {
+                assert!(!text.contains(&long[..101]), "{place}: {text:.200}");
+            }
+        }
+        let (_, stdout, stderr) = saoms(&site, &["check", "fleet/fleet.composite"]);
+        assert!(!(stdout + &stderr).contains(&long[..401]), "{place}: {stderr:.800}");
+    }
+}
