@@ -31,15 +31,19 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     if worlds.len() < 2 {
         return Vec::new();
     }
-    let mut first_luggage: HashMap<&str, Place> = HashMap::new();
+    // The environment with luggage, and where it is; two of one topic are reported by another rule.
+    let mut environments: HashMap<&str, (usize, Option<Place>)> = HashMap::new();
     for line in luggage(fleet) {
-        first_luggage.entry(topic(line.index)).or_insert_with(|| line.whole());
+        let (index, place) = environments.entry(topic(line.index)).or_insert_with(|| (line.index, Some(line.whole())));
+        if *index != line.index {
+            *place = None;
+        }
     }
     let mut first: HashMap<&str, usize> = HashMap::new();
     let mut findings = Vec::new();
     for world in worlds {
         let events = topic(world);
-        let Some(line) = first_luggage.get(events) else { continue };
+        let Some((_, Some(line))) = environments.get(events) else { continue };
         let Some(&other) = first.get(events) else {
             first.insert(events, world);
             continue;

@@ -150,6 +150,47 @@ fn what_another_program_may_supply_is_a_warning() {
     }
 }
 
+#[test]
+fn one_robot_has_to_reach_both_ends_of_luggage() {
+    let map = format!("{}\n{0}", ".".repeat(41));
+    let with = |scenario: &str| {
+        let scenario = [("scenario", scenario)];
+        let far = [("chargeX", "40"), ("chargeY", "1")];
+        found(&[
+            ("World", "saoms.World", &[("map", &map)], false),
+            ("Environment", "saoms.Environment", &scenario, false),
+            MASTER,
+            ROBOT,
+            ("Robot2", "saoms.Robot", &far, true),
+        ])
+    };
+    assert!(with("at 1s luggage (0,0) to (20,1); at 1s luggage (21,0)..(30,0) to (40,1)").is_empty());
+    let message =
+        "no robot can bring luggage from (3,1) to (30,1): the charger of each robot is too far from one of them";
+    assert_eq!(with("at 1s luggage (3,1) to (30,1)"), [format!("error S5006 {message}")]);
+    assert_eq!(with("at 1s luggage (3,1)..(4,1) to (30,1)"), [format!("warning S5006 {message}")]);
+}
+
+#[test]
+fn worlds_with_robots_have_environments_of_their_own() {
+    let text = |robot: &str| {
+        let fleet = std::fs::read_to_string(crate::support::root().join("tests/rules/S5016.composite")).unwrap();
+        fleet.replace("<reference name=\"world\" target=\"Hall\"/>", robot)
+    };
+    let of_rule = |text: String| {
+        let found = saoms_testkit::Fleet::of_text(text).diagnostics();
+        found.lines().filter(|line| line.contains("S5016")).count()
+    };
+    assert_eq!(of_rule(text("<reference name=\"world\" target=\"Hall\"/>")), 1);
+    assert_eq!(of_rule(text("<reference name=\"world\" target=\"World\"/>")), 0, "nobody is in the other world");
+    let renamed = text("<reference name=\"world\" target=\"Hall\"/>").replacen(
+        "<property name=\"ID\">Hall</property>",
+        "<property name=\"ID\">Hall</property><property name=\"topicRename\">ETOPIC,far</property>",
+        1,
+    );
+    assert_eq!(of_rule(renamed), 0, "it hears of other luggage");
+}
+
 /// The findings about shifts with these properties, wired to these components.
 fn shifts(all: &[(&str, &str, &str)], waits: bool) -> Vec<String> {
     let mut text = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" \

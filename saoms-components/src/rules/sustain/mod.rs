@@ -5,6 +5,7 @@
 //! it and charge.
 
 mod load;
+mod missed;
 mod reach;
 
 use std::time::Duration;
@@ -19,6 +20,7 @@ use crate::robot::safe::is_within;
 use crate::robot::{Battery, Policy};
 
 use load::overloaded;
+use missed::Missed;
 use reach::{Ways, out_of_reach};
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -55,8 +57,11 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let chargers = ranges.iter().map(|range| range.charger);
     let ends = luggage.iter().flat_map(|piece| [&piece.from, &piece.to]);
     let mut ways = Ways::on(&area.map, chargers.chain(ends.filter_map(|spot| spot.value.block())));
-    let mut findings: Vec<Finding> =
-        luggage.iter().filter_map(|piece| out_of_reach(&area, &ranges, piece, &mut ways)).collect();
+    let missed = Missed::on(&area.map, &ranges);
+    let told = |missed: &Missed| {
+        luggage.iter().filter_map(|piece| out_of_reach(&area, &ranges, missed, piece, &mut ways)).collect()
+    };
+    let mut findings: Vec<Finding> = missed.as_ref().map_or_else(Vec::new, told);
     // Luggage that no robot can bring is no load.
     if findings.is_empty() {
         findings.extend(overloaded(&area, &ranges, &luggage, &mut ways));

@@ -6,47 +6,57 @@ use saoms_api::Finding;
 use saoms_api::rule::Severity;
 
 use super::Range;
+use super::missed::Missed;
 use crate::environment::Spot;
 use crate::grid::{Block, Map};
 use crate::rules::budget::Budget;
 use crate::rules::map::{LuggageLine, WorldMap};
 
+/// Finding for luggage of a line that no robot can bring, or for a part of it.
 pub(super) fn out_of_reach(
     area: &WorldMap,
     ranges: &[Range],
+    missed: &Missed,
     piece: &LuggageLine,
     ways: &mut Ways<'_>,
 ) -> Option<Finding> {
-    for spot in [&piece.from, &piece.to] {
-        for block in farthest(area, spot.value) {
-            let mut nearest = None;
-            let mut is_reached = false;
-            // Usually the robot that reached the last piece, or one after it in the document, reaches this one.
-            let (before, behind) = ranges.split_at(ways.reached.min(ranges.len()));
-            for (place, range) in behind.iter().chain(before).enumerate() {
-                if !ways.budget.admit(LOOK) {
-                    return None;
-                }
-                // Luggage that no way leads to is reported by another rule.
-                let Some(moves) = ways.moves(range.charger, block)? else { continue };
-                is_reached = range.reaches(moves);
-                if is_reached {
-                    ways.reached = (ways.reached + place) % ranges.len();
-                    break;
-                }
-                nearest = Some(nearest.map_or(moves, |nearest: u32| nearest.min(moves)));
+    let (from, to) = (&piece.from, &piece.to);
+    let of_spot = [(from, "from"), (to, "to")].into_iter().find_map(|(spot, verb)| {
+        let (cut, all, first) = missed.count(area, spot.value, &mut ways.budget)?;
+        let (nearest, most) = (ways.nearest(ranges, first)?, ways.most(ranges));
+        let where_to = match spot.value.block() {
+            Some(block) => format!("{block}: "),
+            None => format!("{cut} of the {all} free blocks here: {first} is "),
+        };
+        let message = format!(
+            "no robot can bring luggage {verb} {where_to}{nearest} moves from the nearest charger, and a full battery \
+             lasts for {most} and back"
+        );
+        let severity = if cut == all { Severity::Error } else { Severity::Warning };
+        Some(Finding::new(piece.place(spot), message).severity(severity).help(HELP))
+    });
+    of_spot.or_else(|| out_of_one_reach(area, ranges, piece, ways))
+}
+
+const HELP: &str = "put a charger closer to it, or let the robots need less energy: `discharge` counts executions, so that \
+    a slow world needs more; with `dischargePerBlock` and `chargePerSecond` it does not";
+
+/// Finding for luggage whose ends are in the reach of some robot each, and of no robot both.
+fn out_of_one_reach(area: &WorldMap, ranges: &[Range], piece: &LuggageLine, ways: &mut Ways<'_>) -> Option<Finding> {
+    let ends = [&piece.from, &piece.to].map(|spot| farthest(area, spot.value));
+    for from in &ends[0] {
+        for to in ends[1].iter().filter(|to| *to != from) {
+            if ways.is_brought(ranges, *from, *to)? {
+                continue;
             }
-            let Some(nearest) = nearest.filter(|_| !is_reached) else { continue };
-            let is_one = spot.value.block().is_some();
-            let most = *ways.most.get_or_insert_with(|| ranges.iter().map(Range::most).max().unwrap_or(0));
-            let message = format!(
-                "no robot can bring luggage {} {block}: {nearest} moves from the nearest charger, and a full battery \
-                 lasts for {most} and back",
-                if spot.bytes == piece.from.bytes { "from" } else { "to" }
-            );
+            let is_one = piece.from.value.block().is_some() && piece.to.value.block().is_some();
             let severity = if is_one { Severity::Error } else { Severity::Warning };
-            let help = "put a charger closer to it, or let the robots need less energy: `discharge` counts executions, so that a slow world needs more; with `dischargePerBlock` and `chargePerSecond` it does not";
-            return Some(Finding::new(piece.place(spot), message).severity(severity).help(help));
+            let message = format!(
+                "no robot can bring luggage from {from} to {to}: the charger of each robot is too far from one of them"
+            );
+            return Some(Finding::new(piece.whole(), message).severity(severity).help(
+                "a robot charges at its own charger alone: put one nearer to both, or let robots need less energy",
+            ));
         }
     }
     None
@@ -80,7 +90,7 @@ pub(super) struct Ways<'m> {
 }
 
 /// Maximum number of blocks that are searched for all luggage together: a check must not take longer than the run.
-const SEARCHED: usize = 20_000_000;
+pub(super) const SEARCHED: usize = 20_000_000;
 
 /// Maximum number of distances that are kept.
 const KEPT: usize = 250_000;
@@ -103,6 +113,46 @@ impl<'m> Ways<'m> {
         }
         let known = HashMap::new();
         Ways { map, starts, marked, known, left: SEARCHED, budget: Budget::default(), reached: 0, most: None }
+    }
+
+    /// Number of moves from the nearest charger; `None` if the budget is used up.
+    fn nearest(&mut self, ranges: &[Range], block: Block) -> Option<u32> {
+        let mut nearest = None;
+        for range in ranges {
+            if !self.budget.admit(LOOK) {
+                return None;
+            }
+            let moves = self.moves(range.charger, block)?;
+            nearest = nearest.into_iter().chain(moves).min();
+        }
+        nearest
+    }
+
+    /// True if a robot can go from its charger to both blocks and back from each, or no way leads there, which another
+    /// rule reports; `None` if the budget is used up.
+    fn is_brought(&mut self, ranges: &[Range], from: Block, to: Block) -> Option<bool> {
+        // Usually the robot that brought the last piece, or one after it in the document, brings this one.
+        let (before, behind) = ranges.split_at(self.reached.min(ranges.len()));
+        let mut is_connected = false;
+        for (place, range) in behind.iter().chain(before).enumerate() {
+            if !self.budget.admit(LOOK) {
+                return None;
+            }
+            let (Some(there), Some(on)) = (self.moves(range.charger, from)?, self.moves(range.charger, to)?) else {
+                continue;
+            };
+            is_connected = true;
+            if range.reaches(there) && range.reaches(on) {
+                self.reached = (self.reached + place) % ranges.len();
+                return Some(true);
+            }
+        }
+        Some(!is_connected)
+    }
+
+    /// Maximum number of moves from its charger of any robot.
+    fn most(&mut self, ranges: &[Range]) -> u32 {
+        *self.most.get_or_insert_with(|| ranges.iter().map(Range::most).max().unwrap_or(0))
     }
 
     /// Number of moves. The outer `None` means that the budget is used up, the inner one that no way leads there.
