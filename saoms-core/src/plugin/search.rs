@@ -1,5 +1,6 @@
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -94,8 +95,13 @@ impl Search {
                 found.errors.push(PluginError::Unreadable { path: path.clone(), message });
             }
         }
-        for library in self.folders.iter().flat_map(|folder| libraries(folder)) {
-            look(&library, false, &mut found);
+        for folder in &self.folders {
+            match fs::read_dir(folder) {
+                Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                    found.errors.push(PluginError::Unreadable { path: folder.clone(), message: error.to_string() });
+                }
+                _ => libraries(folder).iter().for_each(|library| look(library, false, &mut found)),
+            }
         }
         found
     }

@@ -72,6 +72,7 @@ impl Finder {
             deployed.extend(contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some));
             contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
         }
+        unreadable(&mut self.index, context.sources, context.diagnostics);
         let is_empty = fleets.is_empty() && !has_definitions && !context.diagnostics.has_errors();
         unlisted(folder, is_empty, &self.index, sources, diagnostics);
         fleets
@@ -105,8 +106,20 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
         waiting.extend(contents.folders);
     }
     all.sort_unstable();
-    unlisted(folder, all.is_empty(), &index, sources, diagnostics);
+    let is_empty = all.is_empty() && index.unreadable.is_empty();
+    unreadable(&mut index, sources, diagnostics);
+    unlisted(folder, is_empty, &index, sources, diagnostics);
     all
+}
+
+/// Reports the folders that could not be read: what is in them may be wrong, or be what others mean.
+fn unreadable(index: &mut Index, sources: &mut Sources, diagnostics: &mut Diagnostics) {
+    for (folder, error) in index.unreadable.drain(..) {
+        let file = sources.add(folder.display().to_string(), "");
+        let message = format!("the directory cannot be read: {error}");
+        let one = Diagnostic::new(&codes::FILE_UNREADABLE, Span::empty(0).in_file(file), message);
+        diagnostics.push(one.help("let it be read, or name the directories and files beside it one by one"));
+    }
 }
 
 /// Reports a folder that has no composites, or too many files to look at all of them.

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, VecDeque};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, FileType};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -30,6 +31,8 @@ pub(super) struct Index {
     left: usize,
     /// True if there were more entries than are looked at.
     pub(super) is_cut: bool,
+    /// The folders that cannot be read, each with the reason.
+    pub(super) unreadable: Vec<(PathBuf, io::Error)>,
     open: OpenTexts,
 }
 
@@ -96,6 +99,7 @@ impl Index {
             roots: HashMap::new(),
             left: FLEET_ENTRIES,
             is_cut: false,
+            unreadable: Vec::new(),
             open,
         }
     }
@@ -195,11 +199,15 @@ impl Index {
         let root = self.root(folder);
         let shown = if root.as_os_str().is_empty() { Path::new(".") } else { &root };
         let shown = quoted(&shown.display().to_string());
-        match self.is_cut {
-            true => format!(
+        match (self.is_cut, self.unreadable.first()) {
+            (true, _) => format!(
                 "looked among some ten thousand files in {shown} and below, and not in all; name the file of the composite beside this one"
             ),
-            false => format!("looked in the files `*.composite` in {shown} and below"),
+            (false, Some((folder, error))) => format!(
+                "looked in the files `*.composite` in {shown} and below, but not in {}, which cannot be read: {error}",
+                quoted(&folder.display().to_string())
+            ),
+            (false, None) => format!("looked in the files `*.composite` in {shown} and below"),
         }
     }
 
@@ -265,7 +273,23 @@ impl Index {
         }
         let mut listing = Listing::default();
         let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        for entry in fs::read_dir(here).into_iter().flatten().flatten() {
+        let entries = match fs::read_dir(here) {
+            Ok(entries) => Some(entries),
+            // It is looked for because of a text that has no file.
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => None,
+            Err(error) => {
+                self.unreadable.push((here.to_owned(), error));
+                None
+            }
+        };
+        for entry in entries.into_iter().flatten() {
+            let entry = match entry {
+                Ok(entry) => entry,
+                Err(error) => {
+                    self.unreadable.push((here.to_owned(), error));
+                    break;
+                }
+            };
             let Some(left) = self.left.checked_sub(1) else {
                 self.is_cut = true;
                 break;

@@ -198,3 +198,28 @@ fn messages_quote_a_line_of_a_value_at_most() {
         assert!(!(stdout + &stderr).contains(&long[..401]), "{place}: {stderr:.800}");
     }
 }
+
+#[test]
+fn a_folder_that_cannot_be_read_is_an_error() {
+    let folder = site();
+    let site = folder.path().join("site");
+    write(folder.path(), "fleet.composite", &composite(""));
+    // Nobody, whatever his rights, reads a folder whose path is longer than paths can be.
+    let chain = |name: &str| (0..12).fold(site.join(name), |path, _| path.join("x".repeat(200)));
+    fs::create_dir_all(chain("one")).unwrap();
+    fs::create_dir_all(chain("two")).unwrap();
+    fs::rename(site.join("two"), chain("one").join("two")).unwrap();
+    for arguments in [&["check", "."][..], &["run", "--virtual", "."], &["fmt", "--check", "."]] {
+        let (code, stdout, stderr) = saoms(&site, arguments);
+        assert!(code == 2 && stderr.contains("error[S0003]: the directory cannot be read"), "{stdout}{stderr}");
+    }
+    // Where a name is not found, it may be there.
+    fs::write(site.join("other.composite"), composite("<include name=\"a:none\"/>")).unwrap();
+    fs::write(
+        site.join("sca-contribution.xml"),
+        "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"/>",
+    )
+    .unwrap();
+    let (_, _, stderr) = saoms(&site, &["check", "other.composite"]);
+    assert!(stderr.contains("S2030") && stderr.contains("which cannot be read: File name too long"), "{stderr}");
+}
