@@ -17,6 +17,8 @@ pub(crate) struct Editor {
     uri: String,
     next: i32,
     opened: Instant,
+    /// The time at which the last message was there: to parse it is no work of the server.
+    came: Instant,
 }
 
 impl Editor {
@@ -39,7 +41,8 @@ impl Editor {
         let input = server.stdin.take().ok_or("no input")?;
         let output = BufReader::new(server.stdout.take().ok_or("no output")?);
         let (last, _) = files.last().ok_or("no file")?;
-        let mut editor = Self { server, input, output, uri: uri(last), next: 0, opened: Instant::now() };
+        let mut editor =
+            Self { server, input, output, uri: uri(last), next: 0, opened: Instant::now(), came: Instant::now() };
         editor.ask("initialize", &json!({ "capabilities": {} }))?;
         editor.tell("initialized", &json!({}))?;
         editor.opened = Instant::now();
@@ -53,7 +56,7 @@ impl Editor {
     /// Waits for the first diagnostics of the file; returns the time since the files were opened, in ms.
     pub(crate) fn diagnostics(&mut self) -> Outcome<f64> {
         self.shown(0)?;
-        Ok(milliseconds(self.opened))
+        Ok(self.milliseconds(self.opened))
     }
 
     /// Types `typed`, waits for the diagnostics of the new text, and undoes it; returns the time to the diagnostics, in
@@ -63,7 +66,7 @@ impl Editor {
         let begun = Instant::now();
         self.change(&start, &start, typed)?;
         self.shown(self.next)?;
-        let took = milliseconds(begun);
+        let took = self.milliseconds(begun);
         self.change(&start, &end, "")?;
         // The next check must not wait for this one.
         self.shown(self.next)?;
@@ -98,7 +101,7 @@ impl Editor {
         });
         let begun = Instant::now();
         let answer = self.ask(method, &asked)?;
-        let took = milliseconds(begun);
+        let took = self.milliseconds(begun);
         // A name that cannot be changed is refused.
         let is_refused = answer["error"]["code"] == -32803;
         let is_empty = answer["result"].is_null() && (is_refused || answer["error"].is_null());
@@ -115,7 +118,7 @@ impl Editor {
         self.change(&start, &start, typed)?;
         let asked = json!({ "textDocument": { "uri": self.uri }, "position": end });
         let answer = self.ask("textDocument/completion", &asked)?;
-        let took = milliseconds(begun);
+        let took = self.milliseconds(begun);
         if answer["result"]["items"].as_array().is_none_or(|all| all.is_empty() && !may_be_empty) {
             return Err(format!("nothing can be written at {start}: {answer}").into());
         }
@@ -128,6 +131,11 @@ impl Editor {
         self.tell("exit", &Value::Null)?;
         self.server.wait()?;
         Ok(())
+    }
+
+    /// The time from then to the last message, in ms.
+    fn milliseconds(&self, since: Instant) -> f64 {
+        self.came.duration_since(since).as_secs_f64() * 1e3
     }
 
     fn change(&mut self, start: &Value, end: &Value, text: &str) -> Outcome<()> {
@@ -174,6 +182,7 @@ impl Editor {
         }
         let mut bytes = vec![0; length];
         self.output.read_exact(&mut bytes)?;
+        self.came = Instant::now();
         Ok(serde_json::from_slice(&bytes)?)
     }
 }
@@ -185,8 +194,4 @@ fn places(text: &str, at: usize, length: usize) -> (Value, Value) {
     let column = before[before.rfind('\n').map_or(0, |found| found + 1)..].encode_utf16().count();
     let place = |column: usize| json!({ "line": line, "character": column });
     (place(column), place(column + length))
-}
-
-fn milliseconds(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
 }

@@ -1,143 +1,103 @@
-//! Diagnostics of the checker as editors show them, and their suggestions as edits.
+//! Diagnostics and their fixes in the types of the protocol.
 
-use std::collections::{BTreeMap, HashMap};
-use std::path::{Path, PathBuf};
+use std::io::Write;
 use std::str::FromStr;
 use std::sync::Arc;
 
 use lsp_types::{
-    DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, TextEdit, Uri,
+    CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionParams, Diagnostic, DiagnosticRelatedInformation,
+    DiagnosticSeverity, DiagnosticTag, Location, NumberOrString, Position, Range, TextEdit, Uri, WorkspaceEdit,
 };
-use saoms_lang::diagnostic::{Diagnostic, Severity, codes};
-use saoms_lang::source::{FileId, LineIndex, Location as SourcePlace, Sources, identity};
+use saoms_lang::diagnostic::Severity;
+use saoms_tools::editor::{EditorDiagnostic, FixAction, RangeEdit, RelatedPlace, fix_all, fixes, touching};
 
-use saoms_tools::editor::describe_code;
-
-use super::position;
+use super::position::{line_range, range_of};
+use super::server::{Refusal, Server};
 use super::uri;
 
-/// A diagnostic with the ways to mend it.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Reported {
-    pub(super) shown: lsp_types::Diagnostic,
-    /// The meaning of the code, for hovering.
-    pub(super) meaning: String,
-    /// The code, where a composite can say that it is no fault.
-    pub(super) can_be_allowed: Option<&'static str>,
-    pub(super) fixes: Vec<Fix>,
+/// A diagnostic as editors show it.
+pub(super) fn diagnostic(one: &EditorDiagnostic) -> Diagnostic {
+    let related = one.related.iter().filter_map(|RelatedPlace { path, range, message }| {
+        let location = Location { uri: Uri::from_str(&uri::uri(path)).ok()?, range: range_of(*range) };
+        Some(DiagnosticRelatedInformation { location, message: message.clone() })
+    });
+    let related: Vec<DiagnosticRelatedInformation> = related.collect();
+    Diagnostic {
+        range: range_of(one.range),
+        severity: Some(match one.severity {
+            Severity::Error => DiagnosticSeverity::ERROR,
+            Severity::Warning => DiagnosticSeverity::WARNING,
+            Severity::Note => DiagnosticSeverity::INFORMATION,
+        }),
+        code: Some(NumberOrString::String(one.code.to_owned())),
+        source: Some("saoms".to_owned()),
+        message: one.message.clone(),
+        related_information: (!related.is_empty()).then_some(related),
+        tags: one.is_without_effect.then(|| vec![DiagnosticTag::UNNECESSARY]),
+        ..Diagnostic::default()
+    }
 }
 
-/// A way to mend it.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fix {
-    pub(super) title: String,
-    /// Edits by file.
-    pub(super) edits: BTreeMap<PathBuf, Vec<TextEdit>>,
-}
+impl<W: Write> Server<W> {
+    /// Fixes for the diagnostics that a range touches, the likeliest first; then fixes for all of the file.
+    pub(super) fn fixes(&mut self, params: &CodeActionParams) -> Result<Vec<CodeActionOrCommand>, Refusal> {
+        let uri = &params.text_document.uri;
+        let Some(document) = self.documents.get(uri.as_str()) else { return Ok(Vec::new()) };
+        let path = document.path.clone();
+        let all = self.current(uri);
+        let mut actions = Vec::new();
+        if is_wanted(params, &CodeActionKind::QUICKFIX) {
+            let scene = self.scene(uri)?;
+            let found = fixes(&scene, &all, line_range(params.range));
+            actions.extend(found.into_iter().map(|one| self.action(one, CodeActionKind::QUICKFIX)));
+        }
+        if is_wanted(params, &CodeActionKind::SOURCE_FIX_ALL) {
+            // In a list of what can be done, one fault has its own fix; who mends all on saving means that one, too.
+            let least = if params.context.only.is_none() { 2 } else { 1 };
+            let whole = fix_all(&all, &path, least);
+            actions.extend(whole.map(|one| self.action(one, CodeActionKind::SOURCE_FIX_ALL)));
+        }
+        Ok(actions.into_iter().map(CodeActionOrCommand::CodeAction).collect())
+    }
 
-/// The diagnostics with the files that they are of.
-pub(super) fn reported<'d>(
-    all: &'d [Diagnostic],
-    sources: &'d Sources,
-) -> impl Iterator<Item = (PathBuf, Reported)> + use<'d> {
-    let mut places = Places { sources, lines: HashMap::new(), paths: HashMap::new() };
-    all.iter().map(move |one| {
-        let related: Vec<DiagnosticRelatedInformation> = one
-            .labels
-            .iter()
-            .filter_map(|label| {
-                let location = Location { uri: places.uri(label.location.file)?, range: places.range(label.location) };
-                Some(DiagnosticRelatedInformation { location, message: label.text.clone() })
-            })
-            .collect();
-        let mended = one.suggestions.iter().map(|suggestion| &suggestion.description);
-        let lines = mended.chain(&one.help).map(|help| format!("\n{help}"));
-        let shown = lsp_types::Diagnostic {
-            range: places.range(one.location),
-            severity: Some(match one.severity {
-                Severity::Error => DiagnosticSeverity::ERROR,
-                Severity::Warning => DiagnosticSeverity::WARNING,
-                Severity::Note => DiagnosticSeverity::INFORMATION,
-            }),
-            code: Some(NumberOrString::String(one.code.id.to_owned())),
-            source: Some("saoms".to_owned()),
-            message: format!("{}{}", one.message, lines.collect::<String>()),
-            related_information: (!related.is_empty()).then_some(related),
-            tags: codes::is_without_effect(one.code).then(|| vec![DiagnosticTag::UNNECESSARY]),
-            ..lsp_types::Diagnostic::default()
-        };
-        let meaning = describe_code(one.code, one.rule);
-        let fixes = one.suggestions.iter().map(|suggestion| Fix {
-            title: capitalized(&suggestion.description),
-            edits: suggestion.edits.iter().fold(BTreeMap::new(), |mut edits, edit| {
-                let path = places.path(edit.location.file);
-                let range = places.range(edit.location);
-                edits.entry(path).or_insert_with(Vec::new).push(TextEdit::new(range, edit.replacement.clone()));
-                edits
-            }),
+    fn action(&self, FixAction { fix, of, is_preferred }: FixAction<'_>, kind: CodeActionKind) -> CodeAction {
+        let edit = |RangeEdit { range, text }: RangeEdit| TextEdit::new(range_of(range), text);
+        let changes = fix.edits.into_iter().filter_map(|(path, edits)| {
+            let uri = Uri::from_str(&self.uri_of(&path)).ok()?;
+            Some((uri, edits.into_iter().map(edit).collect()))
         });
-        let fixes = fixes.collect();
-        let can_be_allowed = one.severity != Severity::Error || codes::is_judgement(one.code);
-        let can_be_allowed = can_be_allowed.then_some(one.code.id);
-        (places.path(one.location.file), Reported { shown, meaning, can_be_allowed, fixes })
-    })
-}
-
-/// The diagnostics of one file in several fleets, the same one once. A place that one fleet reports is not reported
-/// again for another one in other words, unless it is worse there: so `saoms check` has it for a folder.
-pub(super) fn merged(of_fleets: &[&Arc<Vec<Reported>>]) -> Arc<Vec<Reported>> {
-    let mut all: Vec<Reported> = Vec::new();
-    let mut known: HashMap<_, Place> = HashMap::new();
-    for (fleet, one) in of_fleets.iter().enumerate().flat_map(|(fleet, of)| of.iter().map(move |one| (fleet, one))) {
-        let shown = &one.shown;
-        let (Some(code), Some(severity)) = (&shown.code, shown.severity) else { continue };
-        let place = known.entry((shown.range.start, shown.range.end, code));
-        let place = place.or_insert(Place { fleet, severity, messages: Vec::new() });
-        let is_wanted = place.fleet == fleet || severity < place.severity;
-        if is_wanted && !place.messages.contains(&shown.message.as_str()) {
-            place.fleet = fleet;
-            place.severity = place.severity.min(severity);
-            place.messages.push(&shown.message);
-            all.push(one.clone());
+        CodeAction {
+            title: fix.title,
+            kind: Some(kind),
+            diagnostics: Some(of.into_iter().map(diagnostic).collect()),
+            edit: Some(WorkspaceEdit { changes: Some(changes.collect()), ..WorkspaceEdit::default() }),
+            is_preferred: Some(is_preferred),
+            ..CodeAction::default()
         }
     }
-    Arc::new(all)
-}
 
-/// The reports of one code at one place.
-struct Place<'d> {
-    /// The last fleet with such a report.
-    fleet: usize,
-    /// The worst severity; the smaller, the worse.
-    severity: DiagnosticSeverity,
-    messages: Vec<&'d str>,
-}
-
-/// Translator of the places of a check.
-struct Places<'s> {
-    sources: &'s Sources,
-    lines: HashMap<FileId, LineIndex>,
-    paths: HashMap<FileId, PathBuf>,
-}
-
-impl Places<'_> {
-    fn path(&mut self, file: FileId) -> PathBuf {
-        let path = || identity(Path::new(self.sources.get(file).path()));
-        self.paths.entry(file).or_insert_with(path).clone()
+    /// Meanings of the codes of the diagnostics that are shown at a place.
+    pub(super) fn reported_at(&self, uri: &Uri, at: Position) -> Vec<String> {
+        let all = self.current(uri);
+        touching(&all, line_range(Range::new(at, at))).map(|one| one.meaning.clone()).collect()
     }
 
-    fn uri(&mut self, file: FileId) -> Option<Uri> {
-        Uri::from_str(&uri::uri(&self.path(file))).ok()
-    }
-
-    fn range(&mut self, at: SourcePlace) -> lsp_types::Range {
-        let text = self.sources.get(at.file).text();
-        let lines = self.lines.entry(at.file).or_insert_with(|| position::lines(text));
-        position::range(lines, text, at.span.start as usize..at.span.end.max(at.span.start) as usize)
+    /// The diagnostics that are shown of a document; none of an older text, where they may have stood elsewhere.
+    fn current(&self, uri: &Uri) -> Arc<Vec<EditorDiagnostic>> {
+        let shown = self.documents.get(uri.as_str()).and_then(|document| {
+            let shown = self.shown.get(&document.path)?;
+            shown.is_of(document.version).then(|| Arc::clone(&shown.all))
+        });
+        shown.unwrap_or_default()
     }
 }
 
-fn capitalized(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+/// True if actions of a kind are asked for: all are where none is named, or the empty one.
+fn is_wanted(params: &CodeActionParams, kind: &CodeActionKind) -> bool {
+    params.context.only.as_ref().is_none_or(|kinds| {
+        kinds.iter().any(|asked| {
+            let rest = kind.as_str().strip_prefix(asked.as_str());
+            rest.is_some_and(|rest| asked.as_str().is_empty() || rest.is_empty() || rest.starts_with('.'))
+        })
+    })
 }

@@ -1,18 +1,15 @@
 //! `saoms lsp`: answers editors, by the Language Server Protocol 3.17 on standard input and output.
 //!
-//! One thread reads, one answers, one checks. Answers come from [`saoms_tools::editor`]; diagnostics come from the
-//! loader and the checker, as `saoms check` has them. This module holds the protocol alone: messages, documents,
-//! positions in UTF-16.
+//! One thread reads, one answers, one checks. Answers and diagnostics come from [`saoms_tools::editor`]. This module
+//! holds the protocol alone: messages, documents, positions, and results in its types.
 
 mod capabilities;
 mod check;
 mod convert;
 mod diagnostics;
 mod documents;
-mod fixes;
-mod fleets;
+mod plugins;
 mod position;
-mod registries;
 mod requests;
 mod rpc;
 mod server;
@@ -26,8 +23,9 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc;
 use std::thread;
 
-use check::{CheckOptions, Checker};
-use registries::Registries;
+use saoms_tools::editor::{CheckOptions, Checker, ClassCache};
+
+use check::check_all;
 use server::{Event, Server};
 
 use crate::Exit;
@@ -36,13 +34,13 @@ use crate::command::lsp::LspArguments;
 pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
     let (events, came) = mpsc::channel();
     let (jobs, asked) = mpsc::channel();
-    let registries = Arc::new(Registries::new(arguments.plugins.clone()));
+    let classes = Arc::new(ClassCache::new(arguments.plugins.clone()));
     let newest = Arc::new(AtomicU64::new(0));
     let LspArguments { assume_classes, allow_outside, .. } = *arguments;
     let options = CheckOptions { assume_classes, allow_outside };
-    let checker = Checker::new(Arc::clone(&registries), options, Arc::clone(&newest));
-    let done = events.clone();
-    thread::spawn(move || checker.run(&asked, |outcome| drop(done.send(Event::Checked(outcome)))));
+    let checker = Checker::new(Arc::clone(&classes), options);
+    let (done, wanted) = (events.clone(), Arc::clone(&newest));
+    thread::spawn(move || check_all(checker, &wanted, &asked, |outcome| drop(done.send(Event::Checked(outcome)))));
     thread::spawn(move || {
         let mut input = BufReader::new(io::stdin().lock());
         while let Ok(Some(incoming)) = rpc::read(&mut input) {
@@ -52,5 +50,5 @@ pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
         }
         let _ = events.send(Event::Closed);
     });
-    Server::new(io::stdout().lock(), registries, jobs, newest).run(&came)
+    Server::new(io::stdout().lock(), classes, jobs, newest).run(&came)
 }

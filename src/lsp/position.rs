@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lsp_types::Position;
-use saoms_lang::source::{ColumnUnit, LineColumn, LineIndex};
+use saoms_lang::source::{ColumnUnit, LineColumn, LineIndex, LineRange};
 use saoms_tools::editor::File;
 
 /// The lines of a text with columns as editors count them.
@@ -34,6 +34,18 @@ pub(super) fn range(lines: &LineIndex, text: &str, range: Range<usize>) -> lsp_t
 /// The same of a range of bytes of a file.
 pub(super) fn range_in(file: &File, at: Range<usize>) -> lsp_types::Range {
     range(&file.lines, &file.text, at)
+}
+
+/// The range of a diagnostic, whose columns are counted in UTF-16.
+pub(super) fn range_of(LineRange { start, end }: LineRange) -> lsp_types::Range {
+    let position = |LineColumn { line, column }: LineColumn| Position::new(line - 1, column - 1);
+    lsp_types::Range::new(position(start), position(end))
+}
+
+/// The same the other way round.
+pub(super) fn line_range(range: lsp_types::Range) -> LineRange {
+    let place = |at: Position| LineColumn { line: at.line.saturating_add(1), column: at.character.saturating_add(1) };
+    LineRange { start: place(range.start), end: place(range.end) }
 }
 
 /// The byte of a file at a position.

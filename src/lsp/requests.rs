@@ -1,6 +1,6 @@
 //! The questions that an editor can ask, in the terms of the protocol.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -98,7 +98,7 @@ impl<W: Write> Server<W> {
         let at = &params.text_document_position_params;
         let (scene, byte) = self.place(at)?;
         let known = hover(&scene, byte);
-        let mut parts: Vec<String> = self.reported_at(&at.text_document.uri, at.position).collect();
+        let mut parts: Vec<String> = self.reported_at(&at.text_document.uri, at.position);
         let range = known.as_ref().map(|(_, range)| range_in(scene.file(), range.clone()));
         parts.extend(known.map(|(text, _)| text));
         let contents = MarkupContent { kind: MarkupKind::Markdown, value: parts.join("\n\n---\n\n") };
@@ -108,7 +108,9 @@ impl<W: Write> Server<W> {
     fn definition(&mut self, params: &GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position_params)?;
         let all = definition(&scene, byte).into_iter().filter_map(|target| match target {
-            DefinitionTarget::Range(place) => self.location(&scene, &place),
+            DefinitionTarget::Range(place) => {
+                Some(Location { uri: self.uri_in(&scene, place.file)?, range: range(&scene, &place) })
+            }
             DefinitionTarget::File(path) => {
                 let uri = Uri::from_str(&uri::uri(&path)).ok()?;
                 Some(Location { uri, range: lsp_types::Range::default() })
@@ -120,7 +122,12 @@ impl<W: Write> Server<W> {
     fn references(&mut self, params: &ReferenceParams) -> Result<Option<Vec<Location>>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position)?;
         let found = references(&scene, byte, params.context.include_declaration);
-        Ok(Some(found.iter().filter_map(|place| self.location(&scene, place)).collect()))
+        let mut uris: HashMap<usize, Option<Uri>> = HashMap::new();
+        let location = |place: &FileRange| {
+            let uri = uris.entry(place.file).or_insert_with(|| self.uri_in(&scene, place.file));
+            Some(Location { uri: uri.clone()?, range: range(&scene, place) })
+        };
+        Ok(Some(found.iter().filter_map(location).collect()))
     }
 
     fn highlights(&mut self, params: &DocumentHighlightParams) -> Result<Option<Vec<DocumentHighlight>>, Refusal> {
@@ -138,18 +145,16 @@ impl<W: Write> Server<W> {
         Ok(Some(PrepareRenameResponse::Range(range(&scene, &place))))
     }
 
-    #[expect(clippy::mutable_key_type, reason = "the protocol's edits are by URIs, which never change")]
     fn rename(&mut self, params: &RenameParams) -> Result<Option<WorkspaceEdit>, Refusal> {
         let (scene, byte) = self.place(&params.text_document_position)?;
         let edits = rename(&scene, byte, &params.new_name);
         let edits = edits.map_err(|why| Refusal(ErrorCode::RequestFailed, why))?;
-        let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
+        let mut files: BTreeMap<usize, Vec<TextEdit>> = BTreeMap::new();
         for (place, new) in edits {
-            if let Some(location) = self.location(&scene, &place) {
-                changes.entry(location.uri).or_default().push(TextEdit::new(location.range, new));
-            }
+            files.entry(place.file).or_default().push(TextEdit::new(range(&scene, &place), new));
         }
-        Ok(Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }))
+        let changes = files.into_iter().filter_map(|(file, edits)| Some((self.uri_in(&scene, file)?, edits)));
+        Ok(Some(WorkspaceEdit { changes: Some(changes.collect()), ..WorkspaceEdit::default() }))
     }
 
     fn symbols(&mut self, params: &DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>, Refusal> {
@@ -232,9 +237,9 @@ impl<W: Write> Server<W> {
         Ok(Some(vec![TextEdit::new(whole, formatted)]))
     }
 
-    fn location(&self, scene: &Scene, place: &FileRange) -> Option<Location> {
-        let uri = self.uri_of(&scene.files[place.file].path);
-        Some(Location { uri: Uri::from_str(&uri).ok()?, range: range(scene, place) })
+    /// The URI of a file of a scene.
+    fn uri_in(&self, scene: &Scene, file: usize) -> Option<Uri> {
+        Uri::from_str(&self.uri_of(&scene.files[file].path)).ok()
     }
 
     /// The URI of a file: that of the editor where it is open.

@@ -15,7 +15,7 @@ use lsp_types::notification::{
 };
 use lsp_types::{MessageType, PublishDiagnosticsParams, ShowMessageParams, Uri, WorkspaceFolder};
 use saoms_api::host::contain::contained;
-use saoms_tools::editor::{Scene, Workspace};
+use saoms_tools::editor::{ClassCache, EditorDiagnostic, Scene, Workspace};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::value::{RawValue, to_raw_value};
@@ -23,9 +23,8 @@ use serde_json::{Value, json};
 
 use super::capabilities::{Client, capabilities, watchers};
 use super::check::{Job, Outcome};
-use super::diagnostics::Reported;
+use super::diagnostics::diagnostic;
 use super::documents::Documents;
-use super::registries::Registries;
 use super::rpc::{self, Incoming};
 use super::uri;
 use crate::Exit;
@@ -71,7 +70,7 @@ pub(super) struct Server<W> {
     pub(super) client: Client,
     pub(super) documents: Documents,
     pub(super) workspace: Workspace,
-    pub(super) registries: Arc<Registries>,
+    pub(super) classes: Arc<ClassCache>,
     jobs: Sender<Job>,
     newest: Arc<AtomicU64>,
     /// The diagnostics by file as they were shown last, with the URI and the version that they were shown for.
@@ -83,7 +82,7 @@ pub(super) struct Server<W> {
 pub(super) struct PublishedDiagnostics {
     uri: String,
     version: Option<i32>,
-    pub(super) all: Arc<Vec<Reported>>,
+    pub(super) all: Arc<Vec<EditorDiagnostic>>,
 }
 
 impl PublishedDiagnostics {
@@ -94,14 +93,14 @@ impl PublishedDiagnostics {
 }
 
 impl<W: Write> Server<W> {
-    pub(super) fn new(output: W, registries: Arc<Registries>, jobs: Sender<Job>, newest: Arc<AtomicU64>) -> Self {
+    pub(super) fn new(output: W, classes: Arc<ClassCache>, jobs: Sender<Job>, newest: Arc<AtomicU64>) -> Self {
         Self {
             output,
             state: State::New,
             client: Client::default(),
             documents: Documents::default(),
             workspace: Workspace::default(),
-            registries,
+            classes,
             jobs,
             newest,
             shown: BTreeMap::new(),
@@ -253,7 +252,7 @@ impl<W: Write> Server<W> {
             if let Some(before) = before.as_ref().filter(|before| before.uri != uri) {
                 self.show(&before.uri, None, &[])?;
             }
-            let is_equal = |known: &Arc<Vec<Reported>>| Arc::ptr_eq(known, &all) || *known == all;
+            let is_equal = |known: &Arc<Vec<EditorDiagnostic>>| Arc::ptr_eq(known, &all) || *known == all;
             let is_same = before.is_some_and(|one| one.uri == uri && one.version == version && is_equal(&one.all));
             if !is_same {
                 self.show(&uri, version, &all)?;
@@ -265,15 +264,15 @@ impl<W: Write> Server<W> {
         self.log_plugin_faults()
     }
 
-    fn show(&mut self, uri: &str, version: Option<i32>, all: &[Reported]) -> io::Result<()> {
+    fn show(&mut self, uri: &str, version: Option<i32>, all: &[EditorDiagnostic]) -> io::Result<()> {
         let Ok(uri) = Uri::from_str(uri) else { return Ok(()) };
-        let diagnostics = all.iter().map(|one| one.shown.clone()).collect();
+        let diagnostics = all.iter().map(diagnostic).collect();
         self.notify(PublishDiagnostics::METHOD, PublishDiagnosticsParams { uri, diagnostics, version })
     }
 
     /// Says what is wrong with plugins, once.
     fn log_plugin_faults(&mut self) -> io::Result<()> {
-        for problem in self.registries.new_problems() {
+        for problem in self.classes.new_problems() {
             let typ = if problem.is_error { MessageType::ERROR } else { MessageType::WARNING };
             let message = format!("saoms: {}", problem.text);
             self.notify(notice::ShowMessage::METHOD, ShowMessageParams { typ, message })?;
@@ -297,7 +296,7 @@ impl<W: Write> Server<W> {
         };
         let around = self.workspace.around(&path);
         let libraries = around.file().map(|file| file.libraries().to_vec()).unwrap_or_default();
-        Ok(Scene::new(around, self.registries.of(&path, &libraries)))
+        Ok(Scene::new(around, self.classes.of(&path, &libraries)))
     }
 }
 

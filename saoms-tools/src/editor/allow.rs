@@ -10,16 +10,16 @@ use super::syntax::{Places, bytes, root};
 
 /// Edits that allow a code in one part of a composite.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Allowance {
+pub(super) struct Allowance {
     /// The title of the action.
-    pub title: String,
+    pub(super) title: String,
     /// The edits of the file.
-    pub edits: Vec<FileEdit>,
+    pub(super) edits: Vec<FileEdit>,
 }
 
 /// The ways to allow a code at a byte of the first file: for the component, service, reference, wire or include there,
 /// and for the whole composite. The reason stays empty: the checker asks for it until somebody writes it.
-pub fn allowances(scene: &Scene, at: usize, code: &str) -> Vec<Allowance> {
+pub(super) fn allowances(scene: &Scene, at: usize, code: &str) -> Vec<Allowance> {
     let file = scene.file();
     let mut found = Vec::new();
     // The place of a diagnostic may be the first byte of an element.

@@ -101,7 +101,7 @@ pub(crate) fn looping(one: &RegisteredLoop) -> String {
 }
 
 /// The meaning of a diagnostic's code in Markdown, with the rule of SCA that it is about.
-pub fn code(one: &Code, rule: Option<&str>) -> String {
+pub(super) fn code(one: &Code, rule: Option<&str>) -> String {
     let rule = rule.map_or_else(String::new, |rule| format!(" SCA Assembly: {rule}."));
     format!("**{} {}**: {}{rule}", one.id, one.name, one.meaning)
 }

@@ -1,9 +1,10 @@
-//! Answers for editors: completion, hovering, definitions, references, renaming, outlines.
+//! Answers for editors: completion, hovering, definitions, references, renaming, outlines; and checks of what is open.
 //!
 //! Each question is a pure function of a [`Scene`] (a file, the files around it, the classes) and a byte of the file.
 //! The answers are ranges of bytes and plain types; a protocol maps them to its own.
 
 mod allow;
+mod check;
 mod complete;
 mod describe;
 mod folding;
@@ -23,9 +24,11 @@ mod tests;
 
 use std::ops::Range;
 
-pub use allow::{Allowance, allowances};
+pub use check::{
+    CheckOptions, CheckUpdate, Checker, ClassCache, EditorDiagnostic, Fix, FixAction, PluginSearch, RangeEdit,
+    RelatedPlace, fix_all, fixes, touching,
+};
 pub use complete::{Insert, Proposal, ProposalKind, complete};
-pub use describe::code as describe_code;
 pub use folding::{Fold, folds};
 pub use formatting::formatted;
 pub use hover::hover;
@@ -34,7 +37,7 @@ pub use navigate::{DefinitionTarget, definition, references};
 pub use rename::{prepare as prepare_rename, rename};
 pub use scene::file::File;
 pub use scene::symbol::FileRange;
-pub use scene::workspace::{Shape, Surroundings, Workspace};
+pub use scene::workspace::{Surroundings, Workspace};
 pub use scene::{Scene, SceneFleet};
 pub use selection::{linked_tags, selections};
 pub use symbols::{DocumentSymbol, SymbolKind, WorkspaceSymbol, document_symbols, workspace_symbols};

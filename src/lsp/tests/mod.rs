@@ -2,7 +2,6 @@
 
 #[path = "../../../saoms-tools/src/editor/testing/composite.rs"]
 mod composite;
-mod positions;
 mod session;
 
 use composite::composite;

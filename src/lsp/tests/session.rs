@@ -8,12 +8,12 @@ use std::sync::mpsc;
 
 use lsp_server::{Message, Notification, Request};
 use saoms_lang::source::OpenTexts;
+use saoms_tools::editor::{CheckOptions, Checker, ClassCache};
 use serde_json::{Value, json};
 
 use crate::Exit;
 use crate::arguments::PluginArguments;
-use crate::lsp::check::{CheckOptions, Checker, Job, Outcome};
-use crate::lsp::registries::Registries;
+use crate::lsp::check::{Job, Outcome, check};
 use crate::lsp::rpc::Incoming;
 use crate::lsp::server::{Event, Server};
 use crate::lsp::tests::composite;
@@ -46,16 +46,19 @@ fn fixes(id: i32) -> Event {
     ask(id, "textDocument/codeAction", params)
 }
 
+fn classes() -> Arc<ClassCache> {
+    Arc::new(ClassCache::new(PluginArguments { plugins: Vec::new(), copies: false }))
+}
+
 /// The event of a check of this text.
 fn checked(generation: u64, text: &str) -> Event {
-    let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new(), copies: false }));
-    let newest = Arc::new(AtomicU64::new(generation));
-    let mut checker = Checker::new(registries, CheckOptions::default(), newest);
+    let mut checker = Checker::new(classes(), CheckOptions::default());
     let mut open = OpenTexts::default();
     let path = Path::new("/nowhere/fleet.composite");
     open.insert(path, text.to_owned());
     let outcomes = RefCell::new(Vec::new());
-    checker.check(&Job { generation, open, looks_anew: true }, |outcome| outcomes.borrow_mut().push(outcome));
+    let job = Job { generation, open, looks_anew: true };
+    check(&mut checker, &job, &AtomicU64::new(generation), &|outcome| outcomes.borrow_mut().push(outcome));
     let outcome = outcomes.into_inner().pop().unwrap();
     Event::Checked(outcome)
 }
@@ -67,9 +70,8 @@ fn session(events: Vec<Event>) -> (Vec<String>, Exit) {
     let start = [ask(0, "initialize", json!({}))];
     start.into_iter().chain(events).for_each(|event| sender.send(event).unwrap());
     drop(sender);
-    let registries = Arc::new(Registries::new(PluginArguments { plugins: Vec::new(), copies: false }));
     let mut output = Vec::new();
-    let exit = Server::new(&mut output, registries, jobs, Arc::new(AtomicU64::new(0))).run(&receiver);
+    let exit = Server::new(&mut output, classes(), jobs, Arc::new(AtomicU64::new(0))).run(&receiver);
     let output = String::from_utf8(output).unwrap();
     let all = output.split("Content-Length: ").skip(2);
     let said = all.map(|one| {

@@ -125,6 +125,17 @@ fn crates_know_only_what_they_may() {
 }
 
 #[test]
+fn the_protocol_of_editors_neither_reads_composites_nor_checks_them() {
+    for file in rust_files(&root().join("src/lsp")) {
+        let text = fs::read_to_string(&file).unwrap();
+        for absent in ["load", "contribution", "check", "syntax", "model", "project::Project", "assembly"] {
+            assert!(!text.contains(&format!("saoms_lang::{absent}")), "{} uses `{absent}`", file.display());
+        }
+        assert!(!text.contains("std::fs"), "{} reads files", file.display());
+    }
+}
+
+#[test]
 fn the_contract_does_no_input_or_output() {
     for file in rust_files(&root().join("saoms-api/src")) {
         let text = fs::read_to_string(&file).unwrap();

@@ -8,11 +8,12 @@ use saoms_lang::contribution::Finder;
 use saoms_lang::diagnostic::{Diagnostic, codes};
 use saoms_lang::project::Project;
 use saoms_lang::source::{OpenTexts, Sources, identity};
-use saoms_tools::editor::{Scene, Shape, Workspace};
 
-use super::check::{CheckOptions, Job};
-use super::diagnostics::{Reported, merged, reported};
-use super::registries::Registries;
+use super::checker::CheckOptions;
+use super::classes::ClassCache;
+use super::diagnostic::{EditorDiagnostic, merged, reported};
+use crate::editor::scene::Scene;
+use crate::editor::scene::workspace::{Shape, Workspace};
 
 /// Files that are checked together.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -26,7 +27,7 @@ pub(super) enum Fleet {
 /// The result of the check of one fleet.
 #[derive(Debug)]
 pub(super) struct Found {
-    files: BTreeMap<PathBuf, Arc<Vec<Reported>>>,
+    files: BTreeMap<PathBuf, Arc<Vec<EditorDiagnostic>>>,
     /// All files that were read for it.
     sources: HashSet<PathBuf>,
 }
@@ -47,16 +48,22 @@ pub(super) struct CheckedFleets {
 }
 
 impl CheckedFleets {
-    /// Takes in the texts of a job. Gives the files that changed.
-    pub(super) fn update(&mut self, job: &Job, workspace: &mut Workspace, registries: &Registries) -> HashSet<PathBuf> {
-        let known = std::mem::replace(&mut self.open, job.open.clone());
+    /// Takes in the open texts. Gives the files that changed.
+    pub(super) fn update(
+        &mut self,
+        open: &OpenTexts,
+        looks_anew: bool,
+        workspace: &mut Workspace,
+        classes: &ClassCache,
+    ) -> HashSet<PathBuf> {
+        let known = std::mem::replace(&mut self.open, open.clone());
         let is_new = |path: &&Path| {
-            let (before, now) = (known.get(path), job.open.get(path));
+            let (before, now) = (known.get(path), open.get(path));
             before.zip(now).is_none_or(|(before, now)| !Arc::ptr_eq(before, now))
         };
-        let changed: HashSet<PathBuf> = job.open.paths().filter(is_new).map(Path::to_owned).collect();
-        let (mut is_named_anew, mut names_others) = (job.looks_anew, job.looks_anew);
-        self.shapes.retain(|path, _| job.open.get(path).is_some());
+        let changed: HashSet<PathBuf> = open.paths().filter(is_new).map(Path::to_owned).collect();
+        let (mut is_named_anew, mut names_others) = (looks_anew, looks_anew);
+        self.shapes.retain(|path, _| open.get(path).is_some());
         for path in &changed {
             let shape = workspace.shape(path);
             let before = self.shapes.insert(path.clone(), shape);
@@ -64,7 +71,7 @@ impl CheckedFleets {
             names_others |= before.is_none_or(|before| before.uses != shape.uses);
         }
         if is_named_anew || names_others {
-            self.find(workspace, registries);
+            self.find(workspace, classes);
         }
         let has_changed = |fleet: &Fleet, found: &Found| {
             is_named_anew || fleet.files().iter().chain(&found.sources).any(|file| changed.contains(file))
@@ -75,11 +82,11 @@ impl CheckedFleets {
     }
 
     /// Finds the fleets of all open files. Files with the same others around them are looked at together.
-    fn find(&mut self, workspace: &mut Workspace, registries: &Registries) {
+    fn find(&mut self, workspace: &mut Workspace, classes: &ClassCache) {
         let paths: BTreeSet<PathBuf> = self.open.paths().map(Path::to_owned).collect();
         let mut groups: HashMap<PathBuf, (Scene, HashMap<PathBuf, usize>)> = HashMap::new();
         let around = |workspace: &mut Workspace, path: &Path| {
-            let scene = Scene::new(workspace.around(path), registries.of(path, &[]));
+            let scene = Scene::new(workspace.around(path), classes.of(path, &[]));
             let places = scene.files.iter().enumerate().map(|(place, file)| (file.path.clone(), place)).collect();
             (scene, places)
         };
@@ -152,8 +159,8 @@ impl CheckedFleets {
     }
 
     /// All diagnostics by file.
-    pub(super) fn diagnostics(&self) -> BTreeMap<PathBuf, Arc<Vec<Reported>>> {
-        let mut all: BTreeMap<&PathBuf, Vec<&Arc<Vec<Reported>>>> = BTreeMap::new();
+    pub(super) fn diagnostics(&self) -> BTreeMap<PathBuf, Arc<Vec<EditorDiagnostic>>> {
+        let mut all: BTreeMap<&PathBuf, Vec<&Arc<Vec<EditorDiagnostic>>>> = BTreeMap::new();
         let of_fleets = self.all.iter().filter_map(|fleet| self.found.get(fleet));
         let known: HashSet<&Fleet> = self.all.iter().collect();
         let of_single = self.found.iter().filter(|(fleet, _)| !known.contains(fleet)).map(|(_, found)| found);
@@ -162,7 +169,7 @@ impl CheckedFleets {
                 all.entry(path).or_default().push(diagnostics);
             }
         }
-        let merged = |of_fleets: &[&Arc<Vec<Reported>>]| match of_fleets {
+        let merged = |of_fleets: &[&Arc<Vec<EditorDiagnostic>>]| match of_fleets {
             [one] => Arc::clone(one),
             _ => merged(of_fleets),
         };
@@ -185,7 +192,7 @@ impl Fleet {
         open: &OpenTexts,
         options: CheckOptions,
         finder: &mut Finder,
-        registries: &Registries,
+        classes: &ClassCache,
     ) -> Found {
         match self {
             Self::Composites { files, may_be_part } => {
@@ -197,7 +204,7 @@ impl Fleet {
                     .assume_classes(options.assume_classes)
                     .without_plugin_code()
                     .part(*may_be_part);
-                let found = project.load_with(finder, registries).compile();
+                let found = project.load_with(finder, classes).compile();
                 let reported: Vec<_> = found.reported().cloned().collect();
                 self.found(&reported, &found.sources)
             }
@@ -218,7 +225,7 @@ impl Fleet {
     }
 
     fn found(&self, diagnostics: &[Diagnostic], sources: &Sources) -> Found {
-        let mut files: BTreeMap<PathBuf, Vec<Reported>> = BTreeMap::new();
+        let mut files: BTreeMap<PathBuf, Vec<EditorDiagnostic>> = BTreeMap::new();
         for (path, one) in reported(diagnostics, sources) {
             files.entry(path).or_default().push(one);
         }

@@ -5,11 +5,10 @@ use std::path::Path;
 use proptest::prelude::*;
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
-use saoms_lang::source::OpenTexts;
+use saoms_lang::source::{ColumnUnit, LineIndex, OpenTexts};
 
-use crate::lsp::diagnostics::reported;
-use crate::lsp::position::{lines, offset};
-use crate::lsp::tests::composite;
+use crate::editor::check::diagnostic::reported;
+use crate::editor::testing::composite;
 
 const INSIDE: &str = "<!-- ü🤖 -->\r\n<component name=\"R🤖${index:03}\" s:count=\"2 * n\">\r\
     <implementation.rust class=\"saoms.Robto\"/><property name=\"ü\" value=\"🤖\"/><property name=\"peroid\">1</property>\n\
@@ -24,12 +23,12 @@ fn hold(text: &str) -> usize {
     let all: Vec<_> = found.reported().cloned().collect();
     let told: Vec<_> = reported(&all, &found.sources).collect();
     assert_eq!(all.len(), told.len());
-    let lines = lines(text);
+    let lines = LineIndex::new(text, ColumnUnit::Utf16);
     for (one, (path, told)) in all.iter().zip(&told) {
         assert_eq!(one.suggestions.len(), told.fixes.len());
         assert_eq!(path, Path::new("/nowhere/fleet.composite"));
-        let range = told.shown.range;
-        let bytes = [range.start, range.end].map(|end| offset(&lines, text, end) as u32);
+        let range = told.range;
+        let bytes = [range.start, range.end].map(|end| lines.offset(text, end) as u32);
         // Editors do not show a mark at the start.
         let mark = if text.starts_with('\u{feff}') { 3 } else { 0 };
         let known = [one.location.span.start, one.location.span.end].map(|end| end.max(mark));
