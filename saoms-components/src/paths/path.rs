@@ -104,6 +104,13 @@ impl Pieces {
         }
     }
 
+    /// Adds other pieces.
+    pub(super) fn absorb(&mut self, others: Pieces) {
+        self.count += others.count;
+        self.first.extend(others.first);
+        self.first.truncate(Pieces::KEPT);
+    }
+
     /// Their numbers where there are at most so many, otherwise `None`.
     pub(super) fn numbers(&self, most: usize) -> Option<String> {
         let all = self.count <= most && self.count == self.first.len();

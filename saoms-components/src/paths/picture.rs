@@ -41,13 +41,39 @@ pub(super) type Moved<'a> = (u32, &'a Robot, &'a Path);
 
 /// Draws a recording, under a title and a line about the end of the run.
 pub(super) fn draw(recording: &Recording, title: &str, outcome: &str) -> String {
+    let (svg, width, height) = drawn(recording, title, outcome);
+    svg.finish(width, height, title)
+}
+
+/// A world with its robots, in a picture of several.
+#[derive(Debug)]
+pub(super) struct Panel {
+    pub(super) name: String,
+    pub(super) recording: Recording,
+}
+
+/// Draws several worlds below each other, each under its name.
+pub(super) fn draw_several(panels: &[Panel], title: &str, outcome: &str) -> String {
+    let mut svg = Svg::default();
+    head(&mut svg, title, outcome);
+    let mut size = (MARGIN + 7.2 * outcome.chars().count() as f64, MARGIN + HEAD);
+    for Panel { name, recording } in panels {
+        let (panel, width, height) = drawn(recording, name, "");
+        svg.nest(&panel, size.1, (width, height), name);
+        size = (size.0.max(width), size.1 + height);
+    }
+    svg.finish(size.0 + MARGIN, size.1 + MARGIN, title)
+}
+
+/// A recording with its title and a line below that, and the size of all.
+fn drawn(recording: &Recording, title: &str, outcome: &str) -> (Svg, f64, f64) {
     let all = recording.robots.iter();
     let robots: Vec<Moved<'_>> =
         all.filter_map(|(number, robot)| Some((*number, robot, robot.path.as_ref()?))).collect();
     let mut svg = Svg::default();
     let Some(area) = Area::of(recording) else {
         head(&mut svg, title, "no robot said where it is: there is nothing to draw");
-        return svg.finish(640.0, MARGIN + HEAD, title);
+        return (svg, 640.0, MARGIN + HEAD);
     };
     let (style, cell) = choose(recording, &robots, &area);
     let frame = Frame { area, cell, left: MARGIN + AXIS, top: MARGIN + HEAD + AXIS };
@@ -78,7 +104,7 @@ pub(super) fn draw(recording: &Recording, title: &str, outcome: &str) -> String 
     let right = (frame.left + frame.width())
         .max(left + columns as f64 * COLUMN)
         .max(MARGIN + 7.2 * outcome.chars().count() as f64);
-    svg.finish(right + MARGIN, bottom.max(top + height) + MARGIN, title)
+    (svg, right + MARGIN, bottom.max(top + height) + MARGIN)
 }
 
 /// Each pass has its own line where there is room for that; otherwise passes share lines, and in the end there are

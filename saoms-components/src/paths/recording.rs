@@ -1,4 +1,4 @@
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::path::{Path, Pieces, Robot};
@@ -18,7 +18,6 @@ const LEGS: usize = 20_000;
 /// not with the length of the run.
 #[derive(Debug, Default)]
 pub(super) struct Recording {
-    topics: HashMap<String, Content>,
     pub(super) robots: BTreeMap<u32, Robot>,
     pub(super) map: Option<Map>,
     /// Luggage that was asked for and not delivered: where it was to be collected.
@@ -41,8 +40,8 @@ pub(super) struct Visits {
 }
 
 /// The content of a topic.
-#[derive(Clone, Copy, Debug)]
-enum Content {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content {
     Area,
     Position,
     Robot,
@@ -51,37 +50,68 @@ enum Content {
     Fault,
 }
 
-fn carries<M: saoms_api::Message>(declared: &TopicDeclaration<'_>, topic: &Topic<M>) -> bool {
-    let topic = topic.declaration();
-    (declared.kind, declared.message, declared.schema) == (topic.kind, topic.message, topic.schema)
-}
-
-impl Recording {
-    /// True if a topic carries messages that the picture shows, whatever its name; they are recorded from then on.
-    pub(super) fn record_topic(&mut self, name: &str, declared: &TopicDeclaration<'_>) -> bool {
-        let content = match declared {
+impl Content {
+    /// The content of a topic whose messages the picture shows, whatever the name of the topic.
+    pub(super) fn of(declared: &TopicDeclaration<'_>) -> Option<Content> {
+        Some(match declared {
             area if carries(area, &AREA) => Content::Area,
             position if carries(position, &POSITION) => Content::Position,
             robot if carries(robot, &ROBOT_LIST) => Content::Robot,
             luggage if carries(luggage, &EVENT_LUGGAGE) => Content::Luggage,
             collision if carries(collision, &COLLISION) => Content::Collision,
             fault if carries(fault, &FAULT) => Content::Fault,
-            _ => return false,
-        };
-        self.topics.insert(name.to_owned(), content);
-        true
+            _ => return None,
+        })
+    }
+}
+
+fn carries<M: saoms_api::Message>(declared: &TopicDeclaration<'_>, topic: &Topic<M>) -> bool {
+    let topic = topic.declaration();
+    (declared.kind, declared.message, declared.schema) == (topic.kind, topic.message, topic.schema)
+}
+
+impl Recording {
+    /// Records a message that a component sent on a topic with this content. Requests for luggage are kept elsewhere,
+    /// as nobody says in which world it is; of luggage that is delivered now, `from` is where it was to be collected.
+    pub(super) fn record(
+        &mut self,
+        content: Content,
+        component: &Arc<str>,
+        message: &SharedMessage,
+        from: Option<Block>,
+    ) {
+        match content {
+            Content::Area => self.record_area(message),
+            Content::Position => self.record_position(component, message),
+            Content::Robot => self.record_robot(component, message),
+            Content::Luggage => self.record_luggage(component, message, from),
+            Content::Collision => self.record_collision(message),
+            Content::Fault => self.record_fault(message),
+        }
     }
 
-    /// Records a message that a component sent.
-    pub(super) fn record(&mut self, topic: &str, component: &Arc<str>, message: &SharedMessage) {
-        match self.topics.get(topic) {
-            Some(Content::Area) => self.record_area(message),
-            Some(Content::Position) => self.record_position(component, message),
-            Some(Content::Robot) => self.record_robot(component, message),
-            Some(Content::Luggage) => self.record_luggage(component, message),
-            Some(Content::Collision) => self.record_collision(message),
-            Some(Content::Fault) => self.record_fault(message),
-            None => {}
+    /// Takes in another recording, of other robots.
+    pub(super) fn absorb(&mut self, other: Recording) {
+        let Recording { robots, map, open, collected, delivered, collisions, breakdowns, visits, legs } = other;
+        self.robots.extend(robots);
+        self.map = self.map.take().or(map);
+        self.open.extend(open);
+        self.legs += legs;
+        for (own, others) in [(&mut self.collected, collected), (&mut self.delivered, delivered)] {
+            for (block, pieces) in others {
+                own.entry(block).or_default().absorb(pieces);
+            }
+        }
+        for (own, others) in [(&mut self.collisions, collisions), (&mut self.breakdowns, breakdowns)] {
+            for (block, count) in others {
+                *own.entry(block).or_default() += count;
+            }
+        }
+        for (block, more) in visits {
+            let visits = self.visits.entry(block).or_default();
+            visits.count += more.count;
+            visits.right += more.right;
+            visits.down += more.down;
         }
     }
 
@@ -113,15 +143,13 @@ impl Recording {
         }
     }
 
-    fn record_luggage(&mut self, component: &Arc<str>, message: &SharedMessage) {
+    fn record_luggage(&mut self, component: &Arc<str>, message: &SharedMessage, from: Option<Block>) {
         let Some(event) = message.get::<EventLuggage>() else { return };
         match event.stage {
-            LuggageStage::Request => {
-                self.open.insert(event.luggage, event.from);
-            }
+            LuggageStage::Request => {}
             LuggageStage::Delivered => {
                 self.robot_at(event.robot, component, event.block);
-                let from = self.open.remove(&event.luggage).unwrap_or(event.from);
+                let from = from.unwrap_or(event.from);
                 self.collected.entry(from).or_default().add(event.luggage);
                 self.delivered.entry(event.to).or_default().add(event.luggage);
                 if let Some(robot) = self.robots.get_mut(&event.robot) {

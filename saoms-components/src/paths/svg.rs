@@ -40,6 +40,20 @@ impl Svg {
         let _ = writeln!(self.text, ">{}</{name}>", shown(text));
     }
 
+    /// A whole document of this size inside this one, at this height, which shows a world.
+    pub(super) fn nest(&mut self, inner: &Svg, y: f64, (width, height): (f64, f64), world: &str) {
+        let (y, width, height) = (number(y), number(width), number(height));
+        self.open(
+            "svg",
+            format_args!(
+                r#"class="world" data-world="{}" y="{y}" width="{width}" height="{height}" viewBox="0 0 {width} {height}""#,
+                escaped(world)
+            ),
+        );
+        self.text.push_str(&inner.text);
+        self.close();
+    }
+
     /// The whole document, of this size, with a title for those who do not see it.
     pub(super) fn finish(mut self, width: f64, height: f64, title: &str) -> String {
         while !self.open.is_empty() {

@@ -27,10 +27,11 @@ impl RobotKnowledge {
 
     /// Writes the row of the robot to the report. A robot that is scheduled again goes on counting.
     pub(super) fn report_row(&self, context: &mut Context<'_>) {
-        let row = |field: &str| format!("robots.by_number.{}.{field}", self.number);
+        // Dots lead into objects.
+        let key = context.name().replace('.', "_");
+        let row = |field: &str| format!("robots.by_path.{key}.{field}");
         let Tally { delivered, blocks, waited } = self.tally;
-        let component = context.name().to_owned();
-        context.report(&row("component"), component.as_str());
+        context.report(&row("number"), i64::from(self.number));
         context.count(&row("delivered"), i64::try_from(delivered).unwrap_or(i64::MAX));
         context.count(&row("blocks"), i64::try_from(blocks).unwrap_or(i64::MAX));
         context.count(&row("waited_ms"), i64::try_from(waited.as_millis()).unwrap_or(i64::MAX));

@@ -25,13 +25,14 @@ impl World {
         }
     }
 
-    fn report(&self, context: &mut Context<'_>, collision: Collision) -> Result<(), Failure> {
+    fn report(&mut self, context: &mut Context<'_>, collision: Collision) -> Result<(), Failure> {
         if collision.swap {
             // It was counted as a meeting in one block when the first of the two robots moved.
             context.count("collisions.vertex", -1);
             context.count("collisions.swap", 1);
         } else {
             context.count("collisions.vertex", 1);
+            self.collided += 1;
         }
         context.warn(format_args!("{collision}"));
         context.send(&self.collisions, collision)

@@ -79,6 +79,13 @@ impl Stock {
         self.open == 0
     }
 
+    /// The numbers of pieces that are delivered, open (those that were given up included), and given up.
+    pub(super) fn counts(&self) -> (usize, usize, usize) {
+        let delivered = self.pieces.values().filter(|piece| piece.place == PiecePosition::Delivered).count();
+        let open = self.pieces.len() - delivered;
+        (delivered, open, open.saturating_sub(self.open))
+    }
+
     /// The open piece with the lowest number, and how many others are open.
     pub(super) fn first_open(&self) -> Option<(u32, usize)> {
         let open = self.pieces.iter().filter(|(_, piece)| piece.is_open());

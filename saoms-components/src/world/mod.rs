@@ -8,7 +8,7 @@ mod referee;
 #[cfg(test)]
 mod tests;
 
-use saoms_api::{Class, Component, Context, Failure, Publisher, Subscription, Work};
+use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue, Subscription, Work};
 
 use crate::hardware::Hardware;
 use crate::messages::{
@@ -47,6 +47,8 @@ pub struct World {
     responses: Subscription<EventLuggage>,
     collisions: Publisher<Collision>,
     vote: Option<Work>,
+    /// Number of collisions.
+    collided: usize,
 }
 
 impl Component for World {
@@ -64,6 +66,7 @@ impl Component for World {
             responses: Subscription::default(),
             collisions: Publisher::default(),
             vote: None,
+            collided: 0,
         })
     }
 
@@ -115,6 +118,11 @@ impl Component for World {
         Ok(())
     }
 
+    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.report_row(context);
+        Ok(())
+    }
+
     fn waits_for(&self) -> Option<String> {
         let Some((first, more)) = self.stock.first_open() else { return Some("luggage".to_owned()) };
         let pieces = pieces(first, more);
@@ -137,6 +145,22 @@ impl World {
             self.vote = Some(vote);
             context.vote(vote);
         }
+    }
+
+    /// Writes the row of the world to the report: the sections count all worlds together.
+    fn report_row(&self, context: &mut Context<'_>) {
+        // Dots lead into objects.
+        let key = context.name().replace('.', "_");
+        let number = |number: usize| ReportValue::from(i64::try_from(number).unwrap_or(i64::MAX));
+        let (delivered, open, given_up) = self.stock.counts();
+        let row = vec![
+            ("robots".to_owned(), number(self.referee.robots())),
+            ("delivered".to_owned(), number(delivered)),
+            ("open".to_owned(), number(open)),
+            ("given_up".to_owned(), number(given_up)),
+            ("collisions".to_owned(), number(self.collided)),
+        ];
+        context.report(&format!("worlds.{key}"), ReportValue::Map(row));
     }
 
     fn break_down(&mut self, context: &mut Context<'_>, fault: &Fault) {

@@ -89,6 +89,11 @@ impl Referee {
         Ok(block)
     }
 
+    /// Number of robots in this world.
+    pub(super) fn robots(&self) -> usize {
+        self.bodies.len()
+    }
+
     /// True if no robot is in this world.
     pub(super) fn is_empty(&self) -> bool {
         self.bodies.is_empty()

@@ -77,7 +77,7 @@ pub(crate) struct RunArguments {
     #[arg(long, requires = "report")]
     pub(crate) short_report: bool,
 
-    /// Draw the robots' paths into this SVG file, `-` for standard output
+    /// Draw the robots' paths into this SVG file, several worlds one below the other; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) paths: Option<PathBuf>,
 
@@ -175,7 +175,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some());
     let report = report.map(|output| Arc::new(ReportFile { output, is_short: arguments.short_report }));
     let picture = picture.zip(paths);
-    let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths)));
+    let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths, &assembly)));
     // At the end, they write in this order.
     let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, &assembly))];
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));

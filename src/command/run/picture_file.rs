@@ -4,6 +4,7 @@ use saoms_api::extension::{PictureRegistration, RunPicture};
 use saoms_api::host::TopicDeclaration;
 use saoms_core::observe::{Interest, Observer, SentMessage};
 use saoms_core::report::RunReport;
+use saoms_lang::assembly::{Assembly, Traffic};
 
 use super::outputs::Output;
 use super::summary::outcome;
@@ -16,8 +17,26 @@ pub(super) struct PictureFile {
 }
 
 impl PictureFile {
-    pub(super) fn new(output: Output, title: String, picture: &PictureRegistration) -> PictureFile {
-        PictureFile { output, title, picture: Mutex::new((picture.new)()) }
+    pub(super) fn new(
+        output: Output,
+        title: String,
+        picture: &PictureRegistration,
+        assembly: &Assembly,
+    ) -> PictureFile {
+        let mut picture = (picture.new)();
+        for component in &assembly.components {
+            for wire in component.references.iter() {
+                for target in &wire.targets {
+                    picture.wire(&component.path, &wire.reference, &assembly.components[target.component].path);
+                }
+            }
+        }
+        for topic in &Traffic::of(assembly).topics {
+            for reader in &topic.readers {
+                picture.reader(&topic.name, &assembly.components[reader.component].path);
+            }
+        }
+        PictureFile { output, title, picture: Mutex::new(picture) }
     }
 
     fn picture(&self) -> MutexGuard<'_, Box<dyn RunPicture>> {

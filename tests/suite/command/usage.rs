@@ -424,19 +424,19 @@ fn the_classic_console_shows_what_robots_of_the_default_policy_do() {
 fn the_report_has_a_row_for_each_robot_and_its_fields_are_documented() {
     let run = ["run", "composites/airport.composite", "--virtual", "--quiet", "--report", "-"];
     let long: Value = serde_json::from_str(&stdout(&saoms(&run))).unwrap();
-    let rows = long["robots"]["by_number"].as_object().unwrap();
+    let rows = long["robots"]["by_path"].as_object().unwrap();
     assert_eq!(rows.len(), 10);
     let sum = |field: &str| rows.values().map(|row| row[field].as_u64().unwrap()).sum::<u64>();
     assert_eq!(Value::from(sum("delivered")), long["luggage"]["delivered"]);
     assert!(sum("blocks") > 100 && sum("waited_ms") > 0);
-    assert_eq!((&rows["1"]["component"], &rows["1"]["state"]), (&Value::from("Robot001"), &Value::from("broken")));
+    assert_eq!((&rows["Robot001"]["number"], &rows["Robot001"]["state"]), (&Value::from(1), &Value::from("broken")));
     let documented = crate::support::project("docs/report.md");
     let nested = ["luggage", "collisions", "robots", "messages"];
     let fields = long.as_object().unwrap().iter().flat_map(|(name, value)| match value.as_object() {
         Some(inner) if nested.contains(&name.as_str()) => inner.keys().map(|key| format!("{name}.{key}")).collect(),
         _ => vec![name.clone()],
     });
-    let of_rows = rows["1"].as_object().unwrap().keys().chain(long["components"][0].as_object().unwrap().keys());
+    let of_rows = rows["Robot001"].as_object().unwrap().keys().chain(long["components"][0].as_object().unwrap().keys());
     for field in fields.chain(of_rows.cloned()) {
         assert!(documented.contains(&format!("`{field}")), "docs/report.md lacks `{field}`");
     }

@@ -241,3 +241,72 @@ fn the_picture_of_the_readme_is_real() {
     assert!(readme.contains("saoms run composites/scenario2.composite --virtual --paths docs/scenario2.svg"));
     assert!(readme.contains("(docs/scenario2.svg)"));
 }
+
+/// Two halls with a robot each, which have topics of their own.
+fn two_halls() -> String {
+    let mut text =
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"halls\" targetNamespace=\"urn:h\">\n"
+            .to_owned();
+    for (hall, (width, height), number, scenario) in [
+        ("North", (8, 4), 1, "at 1s luggage (3,1) to (6,3); at 2s luggage (1,1) to (5,2)"),
+        ("South", (6, 9), 2, "at 1s luggage (2,7) to (5,8); at 5s breakdown 2; at 6s luggage (1,1) to (2,2)"),
+    ] {
+        let world = format!("<property name=\"width\">{width}</property><property name=\"height\">{height}</property>");
+        let robot =
+            format!("<property name=\"number\">{number}</property><reference name=\"world\" target=\"World{hall}\"/>");
+        let scenario = format!("<property name=\"scenario\">{scenario}</property>");
+        let topics = |topics: &[&str]| {
+            let pairs: Vec<String> = topics.iter().map(|topic| format!("{topic},{topic}-{hall}")).collect();
+            format!("<property name=\"topicRename\">{}</property>", pairs.join("::"))
+        };
+        let events = ["ETOPIC", "ELMSTOPIC", "RLMSTOPIC", "AREATOPIC"];
+        for (name, class, more, topics) in [
+            ("World", "World", world, topics(&["AREATOPIC", "ETOPIC", "ELMSTOPIC", "RLMSTOPIC"])),
+            ("Environment", "Environment", scenario, topics(&events)),
+            ("Master", "MasterEnvironment", String::new(), topics(&[&events[..], &["FAULTTOPIC"]].concat())),
+            ("Robot", "Robot", robot, topics(&["ELMSTOPIC", "RLMSTOPIC", "POSTOPIC", "FAULTTOPIC"])),
+        ] {
+            writeln!(
+                text,
+                "<component name=\"{name}{hall}\"><implementation.rust class=\"saoms.{class}\"/>\
+                 <property name=\"ID\">{name}{hall}</property><property name=\"period\">100</property>{more}{topics}</component>"
+            )
+            .unwrap();
+        }
+    }
+    let path = empty_folder("paths/two-halls").join("halls.composite");
+    fs::write(&path, text + "</composite>\n").unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn two_worlds_are_two_panels_with_their_names() {
+    let fleet = two_halls();
+    let folder = std::path::Path::new(&fleet).parent().unwrap();
+    let report = folder.join("report.json");
+    let run = ["run", &fleet, "--virtual", "--quiet", "--paths", "-", "--report", report.to_str().unwrap()];
+    let output = saoms(&run);
+    // Nobody is left in the south.
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let svg = String::from_utf8(output.stdout).unwrap();
+    let document = Document::parse(&svg).unwrap();
+    let worlds: Vec<_> = document.descendants().filter(|node| node.attribute("class") == Some("world")).collect();
+    let names: Vec<_> = worlds.iter().map(|world| world.attribute("data-world").unwrap()).collect();
+    assert_eq!(names, ["WorldNorth", "WorldSouth"]);
+    let top = |world: &roxmltree::Node<'_, '_>, name| world.attribute(name).unwrap().parse::<f64>().unwrap();
+    assert!(top(&worlds[1], "y") >= top(&worlds[0], "y") + top(&worlds[0], "height"));
+    for (world, robot, waiting) in [(worlds[0], "RobotNorth", false), (worlds[1], "RobotSouth", true)] {
+        let of = |class: &'static str| world.descendants().filter(move |node| node.attribute("class") == Some(class));
+        let robots: Vec<_> = of("robot").map(|one| one.attribute("data-robot").unwrap()).collect();
+        assert_eq!((of("title").next().unwrap().text(), &robots[..]), (world.attribute("data-world"), &[robot][..]));
+        assert_eq!(of("wait").next().is_some(), waiting, "{robot}");
+    }
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
+    assert_eq!(
+        report["worlds"],
+        serde_json::json!({
+            "WorldNorth": {"robots": 1, "delivered": 2, "open": 0, "given_up": 0, "collisions": 0},
+            "WorldSouth": {"robots": 1, "delivered": 1, "open": 1, "given_up": 1, "collisions": 0},
+        })
+    );
+}
