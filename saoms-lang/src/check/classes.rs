@@ -90,12 +90,20 @@ fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &
         // Unfolded already.
         ImplementationKind::Composite { .. } => None,
         ImplementationKind::Other { .. } if assume_classes => None,
-        ImplementationKind::Other { kind, .. } => {
-            let message = format!("{} cannot run here", quoted(&format!("implementation.{kind}")));
+        ImplementationKind::Other { kind, is_sca } => {
+            let element = quoted(&format!("implementation.{kind}"));
+            let is_of_sca = *is_sca || !["java", "rust", "composite"].contains(&kind.as_str());
+            let (message, help) = match is_of_sca {
+                true => (format!("{element} cannot run here"), SUPPORTED),
+                false => (
+                    format!("{element} of another namespace cannot run here"),
+                    "give it the prefix of the elements around it, or none where they have none: then it is that of SCA",
+                ),
+            };
             // What it lacks does not matter then.
             report.withdraw(&codes::MISSING_ATTRIBUTE, implementation.tag());
             let one = Diagnostic::new(&codes::IMPLEMENTATION_UNSUPPORTED, implementation.tag(), message);
-            report.push(one.help(SUPPORTED));
+            report.push(one.help(help));
             None
         }
     }

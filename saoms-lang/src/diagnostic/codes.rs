@@ -94,6 +94,7 @@ codes! {
     MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001") [Judgement]: "There is text where none belongs.";
     NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and what is in it is passed over.";
     NEWER_ATTRIBUTE = "S1014" Warning "newer-attribute": "A file of SCA 1.0 has an attribute of SCA 1.1.";
+    FOREIGN_ELEMENT = "S1015" Warning "foreign-element": "An element has a name of SCA and the namespace of something else, or is one of XInclude: it is passed over.";
     // S20: names, composite properties, services, references and wires.
     COMPOSITE_REPEATED = "S2001" Error "composite-repeated" ("ASM60001") [Judgement]: "Two composites of one namespace have one name.";
     COMPONENT_REPEATED = "S2002" Error "component-repeated" ("ASM50001"): "Two components have one name.";
@@ -132,7 +133,7 @@ codes! {
     FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites or replicas come to more components or wires, or sources to more values, than a fleet can have; or paths of sources look at too many elements.";
     PROMOTED_MULTIPLICITY = "S2036" Error "promoted-multiplicity" ("ASM60011") [Judgement]: "A composite's reference allows numbers of targets that a reference it promotes does not.";
     PROMOTED_FIXED = "S2037" Error "promoted-fixed" ("ASM50042") [Judgement]: "A reference for one target that must not be overridden is promoted.";
-    WIRED_BY_IMPLEMENTATION = "S2038" Error "wired-by-implementation" ("ASM50013"): "A reference that its implementation wires has a target. In SCA 1.0 files a warning.";
+    WIRED_BY_IMPLEMENTATION = "S2038" Error "wired-by-implementation" ("ASM50013"): "A reference that its implementation wires has a target. In SCA 1.0 files a warning, and where the target comes from outside.";
     TYPE_AND_ELEMENT = "S2039" Error "type-and-element" [Judgement]: "A property has both a type and an element.";
     BINDING_REPEATED = "S2040" Error "binding-repeated" ("ASM90002") [Judgement]: "A service or a reference has two bindings of one name.";
     SERVICE_BINDING_URI = "S2041" Warning "service-binding-uri" ("ASM90005") [Judgement]: "A service's binding of SCA has a URI.";

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::Loader;
 use super::children::is_known;
-use super::vocabulary::{self, Kind, Known};
+use super::vocabulary::{self, Holds, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
 use crate::limits::LIST_WORDS;
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
@@ -22,6 +22,9 @@ impl Loader<'_> {
             {
                 if known.only_1_1 && !self.version.is_1_1() {
                     self.newer(element, attribute, known);
+                }
+                if matches!(known.holds, Holds::Names | Holds::Element) {
+                    self.prefixes(element, attribute);
                 }
                 continue;
             }
@@ -42,6 +45,19 @@ impl Loader<'_> {
                 self.unknown(element, attribute, kind, free);
             } else {
                 self.prefixed(attribute, free);
+            }
+        }
+    }
+
+    /// Tells of names whose prefixes mean nothing: what they name is not found by others.
+    fn prefixes(&mut self, element: Element<'_>, attribute: Attribute<'_>) {
+        for word in attribute.words().take(LIST_WORDS) {
+            let Some((prefix, local)) = word.split_once(':') else { continue };
+            if is_local_name(prefix) && !local.starts_with('/') && element.resolve_prefix(prefix).is_none() {
+                let message = format!("the prefix {} of {} is bound to no namespace", quoted(prefix), quoted(&word));
+                let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, word.location, message).severity(Severity::Warning);
+                let help = format!("declare it in the root element: `xmlns:{prefix}=\"...\"`, or correct it");
+                self.report(one.help(help));
             }
         }
     }

@@ -15,6 +15,9 @@ const ONLY_1_0: &[&str] = &["operation"];
 /// Elements that SCA 1.1 added.
 const ONLY_1_1: &[&str] = &["requires", "policySetAttachment", "documentation", "extensions", "externalAttachment"];
 
+/// The namespace of XInclude, which nobody reads here.
+const XINCLUDE: &str = "http://www.w3.org/2001/XInclude";
+
 /// Elements of SCA that the model does not keep.
 const NOT_KEPT: [&str; 5] = ["operation", "requires", "policySetAttachment", "documentation", "extensions"];
 
@@ -77,7 +80,8 @@ impl Loader<'_> {
                 continue;
             }
             match family {
-                Family::Foreign | Family::Nobody => {}
+                Family::Foreign => self.passed_over(child, kind),
+                Family::Nobody => {}
                 Family::Sca if NOT_KEPT.contains(&name) && kind.children.contains(&name) => self.check_not_kept(child),
                 Family::Own if name == SEVERITY.name && SEVERITY_PARENTS.contains(&kind.name) => {
                     self.severity(child, parent);
@@ -90,6 +94,24 @@ impl Loader<'_> {
                 }
             }
         }
+    }
+
+    /// Reports an element of another vocabulary that is meant to count here: an inclusion of XML, or one with a name of
+    /// SCA. What is in a namespace that is nearly one that counts is reported with that.
+    #[cold]
+    fn passed_over(&mut self, element: Element<'_>, parent: &'static Kind) {
+        let (name, local, namespace) = (element.name(), element.local_name(), element.namespace());
+        let is_of_sca = || parent.children.contains(&local) && !NOT_KEPT.contains(&local);
+        let help = match namespace {
+            XINCLUDE => "`<include name=\"...\"/>` without a prefix includes a composite by its name".to_owned(),
+            _ if !is_of_sca() || self.meant_namespace(namespace, element.document()).is_some() => return,
+            _ => {
+                let prefix = element.document().root().prefix().map_or_else(String::new, |prefix| format!("{prefix}:"));
+                format!("write {} if it is meant to be of SCA", quoted(&format!("<{prefix}{local}>")))
+            }
+        };
+        let message = format!("{} is of the namespace {} and is passed over", quoted(name), quoted(namespace));
+        self.report(Diagnostic::new(&codes::FOREIGN_ELEMENT, element.name_location(), message).help(help));
     }
 
     /// Reports an element of SCA, or of SAOMS, that cannot be where it is. Gives the name that is meant where it is

@@ -1,5 +1,7 @@
 //! References that their implementations wire, and something else as well.
 
+use crate::check::contracts::offer::parts;
+use crate::check::fleet::{Fleet, Kind, Unit};
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Composite, ReferenceElement, Version};
@@ -18,30 +20,40 @@ pub(crate) fn reference(reference: &ReferenceElement, version: Version, report: 
     } else {
         return;
     };
-    wired_twice(reference, (at, what, rule), wired.location, version, report);
+    wired_twice(&reference.name, (at, what, rule), wired.location, severity(version), report);
+}
+
+fn severity(version: Version) -> Severity {
+    if version.is_1_1() { Severity::Error } else { Severity::Warning }
 }
 
 fn wired_twice(
-    reference: &ReferenceElement,
+    name: &str,
     (at, what, rule): (Location, &str, &'static str),
     said: Location,
-    version: Version,
+    severity: Severity,
     report: &mut Report<'_>,
 ) {
-    let message = format!("reference {} is wired by its implementation, and {what}", quoted(&reference.name));
-    let severity = if version.is_1_1() { Severity::Error } else { Severity::Warning };
+    let message = format!("reference {} is wired by its implementation, and {what}", quoted(name));
     let one = Diagnostic::new(&codes::WIRED_BY_IMPLEMENTATION, at, message).severity(severity).rule(rule);
     report.push(one.label(said, "said here").help("remove the target, or `wiredByImpl`"));
 }
 
-/// Reports wires that start from references that their implementations wire, which are few.
+/// Reports references that implementations wire, and that the composite or its wires lead somewhere; these are few.
 pub(crate) fn wires(composite: &Composite, report: &mut Report<'_>) {
+    for reference in &composite.references {
+        if let (Some(wired), Some(target)) =
+            (reference.wired_by_impl.filter(|one| one.value), reference.targets.first())
+        {
+            let what = (target.location, "has a target", "ASM40006");
+            wired_twice(&reference.name, what, wired.location, Severity::Warning, report);
+        }
+    }
     if composite.wires.is_empty() {
         return;
     }
     for component in &composite.components {
-        let wired = |one: &&ReferenceElement| one.wired_by_impl.is_some_and(|wired| wired.value);
-        for reference in component.references.iter().filter(wired) {
+        for reference in component.references.iter().filter(|one| is_wired(one)) {
             let is_from = |source: &&Text| {
                 let end = source.split_once('/');
                 end == Some((component.name.as_str(), reference.name.as_str()))
@@ -49,7 +61,54 @@ pub(crate) fn wires(composite: &Composite, report: &mut Report<'_>) {
             let mut sources = composite.wires.iter().filter_map(|wire| wire.source.as_ref());
             let (Some(at), Some(said)) = (sources.find(is_from), reference.wired_by_impl) else { continue };
             let what = (at.location, "starts a wire", "ASM50010");
-            wired_twice(reference, what, said.location, composite.version, report);
+            wired_twice(&reference.name, what, said.location, severity(composite.version), report);
         }
     }
+}
+
+/// Reports what a component gives as targets of references that its composite, or its component type, says to be wired
+/// by the implementation.
+pub(crate) fn from_outside(place: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let member = &fleet.members[place];
+    let inner = fleet.inner(place).into_iter().flat_map(Unit::references);
+    let described = fleet.component_type(place).into_iter().flat_map(|described| &described.references);
+    for reference in inner.chain(described) {
+        let own = member.component.reference(&reference.name);
+        let Some(said) = said(place, reference, fleet).filter(|_| own.is_none_or(|own| !is_wired(own))) else {
+            continue;
+        };
+        let mut wires = member.composite.wires.iter().filter_map(|wire| wire.source.as_ref());
+        let is_from = |source: &&Text| parts(source) == (member.component.name.as_str(), Some(reference.name.as_str()));
+        let (at, what) = match own.and_then(|own| own.targets.first()) {
+            Some(target) => (target, "has a target"),
+            None => match wires.find(is_from) {
+                Some(source) => (source, "starts a wire"),
+                None => continue,
+            },
+        };
+        wired_twice(&reference.name, (at.location, what, "ASM40006"), said, Severity::Warning, report);
+    }
+}
+
+/// The place that says that the implementation wires a reference, or the first one that it promotes.
+fn said<'f>(mut member: usize, mut reference: &'f ReferenceElement, fleet: &'f Fleet<'_>) -> Option<Location> {
+    // Each step leads one composite further in.
+    loop {
+        if let Some(wired) = reference.wired_by_impl.filter(|wired| wired.value) {
+            return Some(wired.location);
+        }
+        let Kind::Composite(scope) = fleet.members[member].kind else { return None };
+        let (component, name) = parts(reference.promote.first()?);
+        let name = name?;
+        member = fleet.find(scope, component)?;
+        let own = fleet.members[member].component.reference(name);
+        if let Some(wired) = own.filter(|own| is_wired(own)).and_then(|own| own.wired_by_impl) {
+            return Some(wired.location);
+        }
+        reference = fleet.inner(member)?.references().find(|one| one.name == name)?;
+    }
+}
+
+fn is_wired(reference: &ReferenceElement) -> bool {
+    reference.wired_by_impl.is_some_and(|wired| wired.value)
 }

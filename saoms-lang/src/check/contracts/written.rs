@@ -26,8 +26,9 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             bindings::of_reference(one, composite.version, report);
         }
     }
-    for member in &fleet.members {
+    for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
+        wired_by_implementation::from_outside(place, fleet, report);
         let component = member.component;
         // Most are a text alone, of no type.
         for property in component.properties.iter().filter(|property| property.only_text().is_none()) {

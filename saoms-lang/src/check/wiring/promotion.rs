@@ -34,9 +34,11 @@ pub(crate) fn check<'f>(fleet: &'f Fleet<'_>, report: &mut Report<'_>) -> Promot
     let is_outermost = |unit: &&Unit<'_>| fleet.scopes[unit.scope].owner.is_none();
     let inner = fleet.units.iter().filter(|unit| !is_outermost(unit));
     for unit in inner.chain(fleet.units.iter().filter(is_outermost)) {
-        // No component here takes what a composite offers that runs by itself: it runs the same with faults in it, and
-        // other programs report those of SCA 1.0. A component that it implements is another matter.
-        let is_lenient = is_outermost(&unit) && unit.composites.iter().all(|composite| !composite.version.is_1_1());
+        // No component takes what a composite offers that runs by itself: other programs run one of SCA 1.0 with faults
+        // in that. One that is written for components of this one is another matter, and so is one that implements one.
+        let is_own = || fleet.scopes[unit.scope].members.iter().any(|member| fleet.class_of(*member).is_some());
+        let is_1_0 = || unit.composites.iter().all(|composite| !composite.version.is_1_1());
+        let is_lenient = is_outermost(&unit) && is_1_0() && !is_own();
         let most = if is_lenient { Severity::Warning } else { Severity::Error };
         report.within(most, None, |report| all.add(unit, fleet, report));
     }

@@ -10,6 +10,7 @@ mod loops;
 mod mistakes;
 mod mutations;
 mod names;
+mod namespaces;
 mod policies;
 mod report;
 mod support;

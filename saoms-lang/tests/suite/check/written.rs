@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::check::component_types::found;
-use crate::check::support::faults;
+use crate::check::support::{faults, outcome, part};
 
 /// The diagnostics of a component of an unknown class.
 fn given(inside: &str) -> String {
@@ -200,4 +200,34 @@ fn what_its_implementation_wires_nothing_else_wires() {
     "#]]
     .assert_eq(&found(inside, &[], true));
     assert!(!found(&inside.replace("='true' target", "='0' target"), &[], true).contains("`a`"));
+}
+
+#[test]
+fn what_the_implementation_inside_wires_nothing_outside_wires() {
+    let inner = "<component name='B'><implementation.java class='x.B'/>
+<reference name='a'/><reference name='b' wiredByImpl='true'/><reference name='c'/></component>
+<reference name='a' promote='B/a' wiredByImpl='true' multiplicity='0..1'/><reference name='b' promote='B/b' multiplicity='0..1'/>
+<reference name='c' promote='B/c' multiplicity='0..1'/>";
+    let outer = "<component name='A'><implementation.composite name='t:inner'/>
+<reference name='a' target='C'/><reference name='c' target='C'/></component>
+<component name='C'><implementation.java class='x.C'/></component><wire source='A/b' target='C'/>";
+    let told = outcome(&[&part("outer", "", outer), &part("inner", "", inner)], &[]);
+    let told: Vec<&str> = told.lines().filter(|line| line.contains("S2038")).collect();
+    expect![[r#"
+        3:29-30 warning S2038: reference `a` is wired by its implementation, and has a target
+        4:81-84 warning S2038: reference `b` is wired by its implementation, and starts a wire"#]]
+    .assert_eq(&told.join("\n"));
+    let described = [("A.componentType", "<reference name='a' wiredByImpl='true'/>")];
+    let inside = "<component name='A'><implementation.java class='x.A'/><reference name='a' target='C'/></component>
+<component name='C'><implementation.java class='x.C'/></component>
+<reference name='r' promote='A/a' wiredByImpl='true' target='C' multiplicity='0..1'/>";
+    expect![[r#"
+        2:83-84 warning S2038: reference `a` is wired by its implementation, and has a target
+          A.componentType:2:34-38 said here
+          help: remove the target, or `wiredByImpl`
+        4:62-63 warning S2038: reference `r` is wired by its implementation, and has a target
+          4:48-52 said here
+          help: remove the target, or `wiredByImpl`
+    "#]]
+    .assert_eq(&found(inside, &described, true));
 }

@@ -3,7 +3,7 @@
 use expect_test::expect;
 
 use crate::check::component_types::found;
-use crate::check::support::{faults, nested, part, shown};
+use crate::check::support::{faults, fleet_1_0, nested, outcome, part, shown};
 
 const TYPE: &[(&str, &str)] = &[(
     "A.componentType",
@@ -145,4 +145,22 @@ fn a_promoted_reference_is_wired_where_it_has_an_address_or_nobody_knows_what_ta
     let address = "<reference name='r'><binding.ws uri='http://x'/></reference>";
     expect![[""]].assert_eq(&told(&class("example.Robot001"), address));
     expect![[""]].assert_eq(&told(&class("unknown.Robot"), ""));
+}
+
+#[test]
+fn what_is_promoted_has_to_be_there_in_a_file_of_any_version() {
+    let of = |class: &str| {
+        let text = fleet_1_0(&format!(
+            "<component name='A'><implementation.java class='{class}'/></component>\n\
+             <service name='s' promote='A/nix'/><service name='t' promote='B'/>"
+        ));
+        outcome(&[&text], &[])
+    };
+    expect![[r#"
+        3:30-33 error S2021: component `A` has no service `nix`
+          help: its services are `position`
+        3:63-64 error S2011: there is no component `B`
+          help: the components are `A`
+    "#]]
+    .assert_eq(&of("example.Gps"));
 }

@@ -1,0 +1,46 @@
+//! Elements and names whose namespaces are not those that count.
+
+use expect_test::expect;
+
+use crate::check::component_types::found;
+use crate::check::support::faults;
+
+#[test]
+fn an_element_of_sca_in_another_namespace_is_told() {
+    let inside = "<x:component xmlns:x='urn:x' name='A'><implementation.java class='x.A'/></x:component>
+<component name='B'><implementation.java class='x.B'/><x:property xmlns:x='urn:x' name='p'>1</x:property><x:note xmlns:x='urn:x'/></component>
+<x:documentation xmlns:x='urn:x'/>
+<xi:include xmlns:xi='http://www.w3.org/2001/XInclude' href='more.composite'/>";
+    expect![[r#"
+        2:2-13 warning S1015: `x:component` is of the namespace `urn:x` and is passed over
+          help: write `<component>` if it is meant to be of SCA
+        3:56-66 warning S1015: `x:property` is of the namespace `urn:x` and is passed over
+          help: write `<property>` if it is meant to be of SCA
+        5:2-12 warning S1015: `xi:include` is of the namespace `http://www.w3.org/2001/XInclude` and is passed over
+          help: `<include name="..."/>` without a prefix includes a composite by its name
+    "#]]
+    .assert_eq(&found(inside, &[], true));
+    let implementation = "<component name='A'><x:implementation.java xmlns:x='urn:x' class='example.Gps'/></component>
+<component name='B'><x:implementation.bpel xmlns:x='urn:x' process='x:b'/></component>";
+    expect![[r#"
+        2:22-43 error S3002: `implementation.java` of another namespace cannot run here
+          help: give it the prefix of the elements around it, or none where they have none: then it is that of SCA
+        3:22-43 error S3002: `implementation.bpel` cannot run here
+          help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
+    "#]].assert_eq(&faults(implementation));
+}
+
+#[test]
+fn a_prefix_in_a_list_of_names_has_a_namespace() {
+    let inside = "<component name='A' requires='t:known q:unknown plain' policySets='{urn:x}p http://x/y'><implementation.java class='x.A'/></component>
+<property name='p' element='q:e'/>";
+    expect![[r#"
+        2:39-48 warning S1011: the prefix `q` of `q:unknown` is bound to no namespace
+          help: declare it in the root element: `xmlns:q="..."`, or correct it
+        3:17-18 warning S2026: the property `p` of the composite is used by no component
+          help: a component takes its value with `source="$p"`
+        3:29-32 warning S1011: the prefix `q` of `q:e` is bound to no namespace
+          help: declare it in the root element: `xmlns:q="..."`, or correct it
+    "#]]
+    .assert_eq(&found(inside, &[], true));
+}
