@@ -115,6 +115,13 @@ fn luggage_for_which_there_is_no_block_does_not_happen() {
 }
 
 #[test]
+fn a_line_of_very_many_words_is_one_mistake() {
+    // If each word took time with the length of the rest, this would not end.
+    let line = "at 1s landing 4 ".repeat(100_000);
+    assert_eq!(Scenario::read(&[line]).unwrap_err().len(), 1);
+}
+
+#[test]
 fn every_wrong_line_says_where_and_why() {
     let kinds = "`luggage`, `landing`, `takeoff`, `breakdown` or `end`";
     let block = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";

@@ -26,7 +26,7 @@ impl<'a> Tokenizer<'a> {
                 rest.find(')').map_or(rest.len(), |end| end + 1)
             } else {
                 let end = rest.find(|sign: char| sign.is_whitespace() || sign == '(').unwrap_or(rest.len());
-                rest.find(DOTS).map_or(end, |dots| dots.min(end))
+                rest[..end].find(DOTS).unwrap_or(end)
             };
             words.push(rest[..length].trim_end());
             rest = rest[length..].trim_start();
