@@ -1,7 +1,7 @@
 //! The classes that composites can name: those linked in, and those of plugins.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use saoms_api::host::one_line;
 use saoms_core::plugin::Search;
@@ -16,7 +16,8 @@ use crate::output::eprint;
 const SEARCH_PATH: &str = "SAOMS_PLUGIN_PATH";
 
 /// The classes of a command. Plugins are looked for where the command line says, in the folders of `SAOMS_PLUGIN_PATH`,
-/// beside each composite, and in a folder `plugins` beside it or in the current folder.
+/// beside each composite, and in a folder `plugins` beside it or in the current folder; of those that the command line
+/// and the variable do not name, the declarations are read and no code runs.
 pub(crate) struct CommandClasses<'a> {
     arguments: &'a PluginArguments,
     linked: Registry,
@@ -40,7 +41,19 @@ impl<'a> CommandClasses<'a> {
 
 impl ClassPath for CommandClasses<'_> {
     fn classes(&self, files: &[PathBuf]) -> Classes {
-        search(self.arguments, files).classes(self.linked.clone())
+        let mut classes = search(self.arguments, files).classes(self.linked.clone());
+        let unasked = classes.registry.rules().iter().filter(|rule| rule.is_only_read());
+        let mut unasked: Vec<&Path> = unasked.filter_map(|rule| rule.origin()).collect();
+        unasked.dedup();
+        let told = unasked.into_iter().map(|path| {
+            let path = path.display();
+            let text = format!(
+                "plugin `{path}` was found and not named: its rules do not judge the fleet; `--plugin {path}` lets its code run"
+            );
+            PluginFault { is_error: false, text }
+        });
+        classes.problems.extend(told);
+        classes
     }
 }
 
@@ -54,7 +67,8 @@ pub(crate) fn files_read(arguments: &PluginArguments) -> Vec<PathBuf> {
 /// # Errors
 /// A plugin cannot be used, which was reported.
 pub(crate) fn registry(arguments: &PluginArguments) -> Result<Registry, Exit> {
-    let Classes { registry, problems, .. } = CommandClasses::new(arguments)?.classes(&[]);
+    let CommandClasses { linked, .. } = CommandClasses::new(arguments)?;
+    let Classes { registry, problems, .. } = search(arguments, &[]).classes(linked);
     usable(&problems)?;
     Ok(registry)
 }
@@ -73,12 +87,13 @@ pub(crate) fn usable(problems: &[PluginFault]) -> Result<(), Exit> {
 /// The places where plugins are looked for.
 pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     let path = env::var_os(SEARCH_PATH).unwrap_or_default();
-    let mut folders: Vec<PathBuf> = env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
+    let folders = env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
+    let mut around = Vec::new();
     for file in files {
         let beside =
             file.parent().map(|parent| if parent.as_os_str().is_empty() { ".".into() } else { parent.to_owned() });
-        folders.extend(beside.into_iter().flat_map(|beside| [beside.join("plugins"), beside]));
+        around.extend(beside.into_iter().flat_map(|beside| [beside.join("plugins"), beside]));
     }
-    folders.push("plugins".into());
-    Search { named: arguments.plugins.clone(), folders, copies: arguments.copies }
+    around.push("plugins".into());
+    Search { named: arguments.plugins.clone(), folders, around, copies: arguments.copies, runs_all: false }
 }

@@ -9,7 +9,8 @@ let client;
 function commandLine(settings) {
   const plugins = settings.get("plugins", []).flatMap((path) => ["--plugin", path]);
   const assume = settings.get("assumeClasses", false) ? ["--assume-classes"] : [];
-  return { command: settings.get("path", "saoms"), args: ["lsp", ...plugins, ...assume] };
+  const outside = settings.get("allowOutside", false) ? ["--allow-outside"] : [];
+  return { command: settings.get("path", "saoms"), args: ["lsp", ...plugins, ...assume, ...outside] };
 }
 
 // Proposes at once what a proposal that was taken leaves open, as the class in `<implementation.rust class="..."/>`.

@@ -183,6 +183,6 @@ impl ClassPath for Linked {
     #[expect(clippy::panic, reason = "two linked classes of one name are a fault of the test's own build")]
     fn classes(&self, _: &[PathBuf]) -> Classes {
         let linked = Registry::linked().unwrap_or_else(|error| panic!("{error}"));
-        Search::default().classes(linked)
+        Search { runs_all: true, ..Search::default() }.classes(linked)
     }
 }

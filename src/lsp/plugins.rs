@@ -19,8 +19,8 @@ impl PluginArguments {
 
 impl PluginSearch for PluginArguments {
     fn places(&self, file: &Path) -> Vec<PathBuf> {
-        let Search { named, folders, .. } = self.search(file);
-        named.into_iter().chain(folders).collect()
+        let Search { named, folders, around, .. } = self.search(file);
+        named.into_iter().chain(folders).chain(around).collect()
     }
 
     fn find(&self, file: &Path, name: &str) -> Option<PathBuf> {

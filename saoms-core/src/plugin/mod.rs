@@ -35,14 +35,24 @@ struct Code {
     rules: Vec<ImportedRule>,
 }
 
+/// The use that may be made of the code of a library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CodeUse {
+    Load,
+    /// A copy of the file is loaded, so that the file may change.
+    LoadCopy,
+    /// Nobody named the library: none of its code may run.
+    Nothing,
+}
+
 /// A library with classes, loops and rules.
 #[derive(Debug)]
 pub struct Plugin {
     path: PathBuf,
     text: String,
     metadata: Metadata,
-    /// True if a copy of the file is loaded, so that the file may change.
-    copied: bool,
+    /// What may become of its code.
+    use_of_code: CodeUse,
     /// Its code, once it is loaded.
     code: OnceLock<Result<Code, PluginError>>,
 }
@@ -53,7 +63,7 @@ impl Plugin {
     /// # Errors
     /// It is no library for this machine, has no metadata, or was built for another version of the boundary.
     pub fn open(path: &Path) -> Result<Arc<Plugin>, PluginError> {
-        Plugin::read(path, false)
+        Plugin::read(path, CodeUse::Load)
     }
 
     /// The same; a copy is loaded then, so that the file may be written anew while the program runs, and a new build of
@@ -62,18 +72,23 @@ impl Plugin {
     /// # Errors
     /// As [`open`](Plugin::open).
     pub fn open_copy(path: &Path) -> Result<Arc<Plugin>, PluginError> {
-        Plugin::read(path, true)
+        Plugin::read(path, CodeUse::LoadCopy)
     }
 
-    fn read(path: &Path, copied: bool) -> Result<Arc<Plugin>, PluginError> {
+    fn read(path: &Path, use_of_code: CodeUse) -> Result<Arc<Plugin>, PluginError> {
         let text = file::read_section(path)?;
         let metadata = metadata::read(path, &text)?;
-        Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, copied, code: OnceLock::new() }))
+        Ok(Arc::new(Plugin { path: path.to_owned(), text, metadata, use_of_code, code: OnceLock::new() }))
     }
 
     /// Path of the library.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// True if none of its code runs, because nobody named it.
+    pub fn is_only_read(&self) -> bool {
+        self.use_of_code == CodeUse::Nothing
     }
 
     /// Metadata of the library.
@@ -106,7 +121,15 @@ impl Plugin {
 
     /// Loads its code, at the first call.
     fn code(&self) -> Result<&Code, Failure> {
-        let code = self.code.get_or_init(|| library::load(&self.path, self.copied, &self.metadata, &self.text));
+        let copied = match self.use_of_code {
+            CodeUse::Load => false,
+            CodeUse::LoadCopy => true,
+            CodeUse::Nothing => {
+                let path = self.path.display();
+                return Err(Failure::new(format!("nobody named the library: `--plugin {path}` lets its code run")));
+            }
+        };
+        let code = self.code.get_or_init(|| library::load(&self.path, copied, &self.metadata, &self.text));
         code.as_ref().map_err(|error| Failure::new(error.to_string()))
     }
 }
@@ -127,6 +150,10 @@ impl Provider for Part {
     fn origin(&self) -> Option<&Path> {
         Some(self.plugin.path())
     }
+
+    fn is_only_read(&self) -> bool {
+        self.plugin.is_only_read()
+    }
 }
 
 impl LoopProvider for Part {
@@ -138,6 +165,10 @@ impl LoopProvider for Part {
     fn origin(&self) -> Option<&Path> {
         Some(self.plugin.path())
     }
+
+    fn is_only_read(&self) -> bool {
+        self.plugin.is_only_read()
+    }
 }
 
 impl RuleProvider for Part {
@@ -148,5 +179,9 @@ impl RuleProvider for Part {
 
     fn origin(&self) -> Option<&Path> {
         Some(self.plugin.path())
+    }
+
+    fn is_only_read(&self) -> bool {
+        self.plugin.is_only_read()
     }
 }

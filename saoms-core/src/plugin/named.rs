@@ -52,7 +52,8 @@ impl Search {
                 false => Vec::new(),
             }
         });
-        let folders = self.folders.iter().flat_map(|folder| names.iter().map(|name| folder.join(name)));
+        let folders =
+            self.folders.iter().chain(&self.around).flat_map(|folder| names.iter().map(|name| folder.join(name)));
         for path in beside.chain(named).chain(folders) {
             if fs::metadata(&path).is_ok_and(|found| found.is_file()) {
                 return Ok(path);

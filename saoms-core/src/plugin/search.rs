@@ -7,16 +7,21 @@ use std::sync::Arc;
 
 use saoms_lang::project::{Classes, PluginFault};
 use saoms_lang::registry::{Registry, RegistryError};
+use saoms_lang::source::identity;
 
-use super::{Plugin, PluginError};
+use super::{CodeUse, Plugin, PluginError};
 
 /// Places in which libraries are searched.
 #[derive(Clone, Debug, Default)]
 pub struct Search {
     /// Files and folders named by the user: a fault in one of them is an error.
     pub named: Vec<PathBuf>,
-    /// Folders that are searched if they exist; files in them without metadata are ignored.
+    /// Folders named by the user that are searched if they exist; files in them without metadata are ignored.
     pub folders: Vec<PathBuf>,
+    /// The same of folders that nobody named, around composites: none of the code in them runs.
+    pub around: Vec<PathBuf>,
+    /// True if the code of libraries that nobody named runs, too: for tests, whose composites are their own.
+    pub runs_all: bool,
     /// True if copies are loaded, so that the files may be overwritten while the program runs.
     pub copies: bool,
 }
@@ -35,7 +40,24 @@ pub struct FoundLibraries {
 impl Search {
     /// Reads the metadata of one library.
     pub(super) fn plugin(&self, path: &Path) -> Result<Arc<Plugin>, PluginError> {
-        if self.copies { Plugin::open_copy(path) } else { Plugin::open(path) }
+        let use_of_code = match (self.runs_all || self.is_named(path), self.copies) {
+            (false, _) => CodeUse::Nothing,
+            (true, true) => CodeUse::LoadCopy,
+            (true, false) => CodeUse::Load,
+        };
+        Plugin::read(path, use_of_code)
+    }
+
+    /// True if the user named a library, or the folder that it is in.
+    fn is_named(&self, path: &Path) -> bool {
+        let folder =
+            path.parent().map(|folder| identity(if folder.as_os_str().is_empty() { ".".as_ref() } else { folder }));
+        let file = identity(path);
+        self.named
+            .iter()
+            .chain(&self.folders)
+            .map(|place| identity(place))
+            .any(|place| place == file || folder.as_ref() == Some(&place))
     }
 
     /// The classes of a registry together with those of all libraries that are found, and what is wrong with these.
@@ -59,7 +81,7 @@ impl Search {
     /// The libraries in all places, each of which [`run`](Search::run) reads.
     pub fn files(&self) -> Vec<PathBuf> {
         let named = self.named.iter().flat_map(|path| if path.is_dir() { libraries(path) } else { vec![path.clone()] });
-        named.chain(self.folders.iter().flat_map(|folder| libraries(folder))).collect()
+        named.chain(self.folders.iter().chain(&self.around).flat_map(|folder| libraries(folder))).collect()
     }
 
     /// Reads the metadata of all libraries. No code of them runs.
@@ -95,7 +117,7 @@ impl Search {
                 found.errors.push(PluginError::Unreadable { path: path.clone(), message });
             }
         }
-        for folder in &self.folders {
+        for folder in self.folders.iter().chain(&self.around) {
             match fs::read_dir(folder) {
                 Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
                     found.errors.push(PluginError::Unreadable { path: folder.clone(), message: error.to_string() });

@@ -25,6 +25,8 @@ pub struct Options {
     pub wiring: bool,
     /// True if the code of plugins is left alone: what their constructors would say about values is not known then.
     pub without_plugin_code: bool,
+    /// True if the fleet is to start: a library whose code must not run is an error then.
+    pub is_to_start: bool,
 }
 
 impl Options {

@@ -90,6 +90,7 @@ impl Project {
             assume_classes: self.assume_classes,
             wiring: self.wiring,
             without_plugin_code: self.without_plugin_code,
+            is_to_start: self.is_to_start,
             ..Options::default()
         }
     }

@@ -60,6 +60,7 @@ pub struct Project {
     assume_classes: bool,
     wiring: bool,
     without_plugin_code: bool,
+    is_to_start: bool,
     is_part: bool,
     in_memory: bool,
 }
@@ -93,6 +94,7 @@ impl Project {
             assume_classes: false,
             wiring: false,
             without_plugin_code: false,
+            is_to_start: false,
             is_part: false,
             in_memory: false,
         }
@@ -205,6 +207,12 @@ impl Project {
     #[must_use]
     pub fn without_plugin_code(self) -> Self {
         Self { without_plugin_code: true, ..self }
+    }
+
+    /// Takes it that the fleet is to start: needing a library whose code must not run is an error.
+    #[must_use]
+    pub fn to_start(self) -> Self {
+        Self { is_to_start: true, ..self }
     }
 
     /// Takes it that composites elsewhere may use those of the fleet: what these leave to their users is no fault.

@@ -58,6 +58,11 @@ impl RegisteredClass {
         self.provider.origin()
     }
 
+    /// True if its library was found and not named: it is known by its declaration alone, and none of its code runs.
+    pub fn is_only_read(&self) -> bool {
+        self.provider.is_only_read()
+    }
+
     /// Constructs a component. `values` are all values, those preset by the name included; absent ones take their
     /// defaults.
     ///
@@ -78,6 +83,11 @@ pub trait Provider: fmt::Debug + Send + Sync {
 
     /// As [`RegisteredClass::origin`].
     fn origin(&self) -> Option<&Path>;
+
+    /// As [`RegisteredClass::is_only_read`].
+    fn is_only_read(&self) -> bool {
+        false
+    }
 }
 
 impl Provider for Registration {

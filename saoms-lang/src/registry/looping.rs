@@ -152,6 +152,11 @@ impl RegisteredLoop {
         self.provider.origin()
     }
 
+    /// True if its library was found and not named: it is known by its declaration alone, and none of its code runs.
+    pub fn is_only_read(&self) -> bool {
+        self.provider.is_only_read()
+    }
+
     /// Constructs a loop; values that are absent take their defaults.
     ///
     /// # Errors
@@ -171,6 +176,11 @@ pub trait LoopProvider: fmt::Debug + Send + Sync {
 
     /// As [`RegisteredLoop::origin`].
     fn origin(&self) -> Option<&Path>;
+
+    /// As [`RegisteredLoop::is_only_read`].
+    fn is_only_read(&self) -> bool {
+        false
+    }
 }
 
 impl LoopProvider for LoopRegistration {

@@ -43,6 +43,11 @@ impl RegisteredRule {
     pub fn origin(&self) -> Option<&Path> {
         self.provider.origin()
     }
+
+    /// True if its library was found and not named: it is known by its declaration alone, and none of its code runs.
+    pub fn is_only_read(&self) -> bool {
+        self.provider.is_only_read()
+    }
 }
 
 /// The source of the code of a rule.
@@ -55,6 +60,11 @@ pub trait RuleProvider: fmt::Debug + Send + Sync {
 
     /// As [`RegisteredRule::origin`].
     fn origin(&self) -> Option<&Path>;
+
+    /// As [`RegisteredRule::is_only_read`].
+    fn is_only_read(&self) -> bool {
+        false
+    }
 }
 
 impl RuleProvider for &'static FleetRule {

@@ -217,7 +217,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
 /// The fleet to run, and the files that were read; `None` after its errors have been shown. Texts and diagnostics are
 /// dropped here: a run may last for days.
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembly, Vec<PathBuf>)> {
-    let compilation = compiled(files, |project, classes| project.compile(classes)).ok()?;
+    let compilation = compiled(files, |project, classes| project.to_start().compile(classes)).ok()?;
     let shown = DiagnosticReport::from(&compilation);
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &compilation.output) {

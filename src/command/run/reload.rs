@@ -128,7 +128,7 @@ impl Watcher {
         let names = one_line(&names.join(", ")).into_owned();
         let kept = |why: &str| format!("{names} changed: {why}; the fleet goes on with the earlier build");
         // Faults of a library have been reported already.
-        let Ok(compilation) = compiled(&self.arguments, |project, classes| project.compile(classes)) else {
+        let Ok(compilation) = compiled(&self.arguments, |project, classes| project.to_start().compile(classes)) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
         };
         let Some(assembly) = &compilation.output else {

@@ -26,8 +26,13 @@ fn folder(components: &str, place: &str) -> TempDir {
 
 const RUN: [&str; 5] = ["run", "fleet/t.composite", "--virtual", "--for", "450ms"];
 
-fn runs(folder: &Path, more: &[&str]) {
-    let run = saoms(folder, &[&RUN, more].concat());
+/// Runs a fleet with a library that was named, and does not without.
+fn runs(folder: &Path, library: &str) {
+    let checked = saoms(folder, &["check", "fleet/t.composite"]);
+    assert!(checked.text.contains("error[S3015]") || checked.text.contains("note[S3016]"), "{}", checked.text);
+    let unnamed = saoms(folder, &RUN);
+    assert_eq!(unnamed.code, Some(2), "{}", unnamed.text);
+    let run = saoms(folder, &[&RUN[..], &["--plugin", library]].concat());
     assert_eq!(run.code, Some(0), "{}", run.text);
     assert!(run.text.contains("good.Sender") && run.text.contains(" 5 "), "{}", run.text);
 }
@@ -53,11 +58,11 @@ fn a_library_is_found_from_the_composite_and_by_the_search_path() {
         ("my_good", "fleet/plugins/libmy_good.so"),
         ("my_good", "plugins/libmy_good.so"),
     ] {
-        runs(folder(&one(name), place).path(), &[]);
+        runs(folder(&one(name), place).path(), place);
     }
     let elsewhere = folder(&one("my_good"), "built/debug/libmy_good.so");
-    runs(elsewhere.path(), &["--plugin", "built/debug"]);
-    runs(elsewhere.path(), &["--plugin", "built/debug/libmy_good.so"]);
+    runs(elsewhere.path(), "built/debug");
+    runs(elsewhere.path(), "built/debug/libmy_good.so");
     refused(
         elsewhere.path(),
         &[
@@ -106,12 +111,13 @@ fn a_composite_in_a_composite_names_its_library_from_its_own_folder() {
     let folder = folder(&format!("{outer}</component>\n"), "fleet/parts/good.so");
     let inner = composite(&of_library("A", "good.Sender", "good")).replace("name=\"t\"", "name=\"inner\"");
     fs::write(folder.path().join("fleet/parts/inner.composite"), inner).unwrap();
-    runs(folder.path(), &[]);
+    runs(folder.path(), "fleet/parts");
     let shown = saoms(folder.path(), &["expand", "fleet/t.composite"]);
     assert!(shown.code == Some(0) && shown.text.contains("library=\"parts/good.so\""), "{}", shown.text);
     // What was expanded runs as well, beside the composite that it was.
     fs::write(folder.path().join("fleet/all.composite"), &shown.text).unwrap();
-    let run = saoms(folder.path(), &["run", "fleet/all.composite", "--virtual", "--for", "450ms"]);
+    let run =
+        saoms(folder.path(), &["run", "fleet/all.composite", "--virtual", "--for", "450ms", "--plugin", "fleet/parts"]);
     assert_eq!(run.code, Some(0), "{}", run.text);
 }
 

@@ -196,10 +196,14 @@ fn a_library_that_nobody_named_is_left_out_with_a_warning() {
     fs::create_dir(folder.path().join("plugins")).unwrap();
     fs::copy(library("aborts"), folder.path().join("plugins/libaborts.so")).unwrap();
     fs::write(folder.path().join("libtext.so"), "a text").unwrap();
-    let run = saoms(folder.path(), &["run", "t.composite", "--virtual", "--for", "1s"]);
+    let run = saoms(folder.path(), &["run", "t.composite", "--virtual", "--for", "1s", "--plugin", "libgood.so"]);
     assert_eq!(run.code, Some(0), "{}", run.text);
     assert_says(&run.text, &["warning: plugin `./plugins/libaborts.so` was built with"]);
     assert!(!run.text.contains("libtext"), "{}", run.text);
+    // Of one that is in order, no code runs, and its rules do not judge.
+    let check = saoms(folder.path(), &["check", "t.composite"]);
+    assert_eq!(check.code, Some(0), "{}", check.text);
+    assert_says(&check.text, &["warning: plugin `./libgood.so` was found and not named: its rules", "note[S3016]"]);
 }
 
 /// Reads what a file with these bytes offers. No part of it may be loaded.

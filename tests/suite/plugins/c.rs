@@ -204,3 +204,60 @@ fn the_component_of_the_guide_does_what_the_guide_says() {
     asks.execute().unwrap();
     assert_eq!(asks.log(), ["hears of 10"]);
 }
+
+/// A part of a library that leaves a file where it is loaded.
+const MARK: &str = "#include <stdio.h>\n__attribute__((constructor)) static void ran(void) { FILE *mark = fopen(\"RAN\", \"w\"); if (mark) fclose(mark); }\n";
+
+#[test]
+fn code_runs_only_where_somebody_named_the_library() {
+    let folder = tempfile::tempdir().unwrap();
+    let site = folder.path();
+    let mark = site.join("mark.c");
+    fs::write(&mark, MARK).unwrap();
+    let robot = ["robot.c", "traffic.c"].map(|file| root().join("plugins/robot-in-c").join(file));
+    fs::create_dir_all(site.join("fleet/plugins")).unwrap();
+    build(&[&robot[..], &[mark]].concat(), &site.join("fleet/libpatrol.so"));
+    let composite = fs::read_to_string(root().join(FLEET)).unwrap();
+    fs::write(site.join("fleet/t.composite"), &composite).unwrap();
+    let named = composite.replace("class=\"patrol.Robot\"", "class=\"patrol.Robot\" library=\"patrol\"");
+    assert_ne!(named, composite);
+    fs::write(site.join("fleet/named.composite"), named).unwrap();
+    let saoms = |arguments: &[&str]| {
+        let output = support::saoms_in(site, arguments);
+        let has_run = fs::remove_file(site.join("RAN")).is_ok();
+        (output.status.code(), has_run, text(&output))
+    };
+    for place in ["fleet/libpatrol.so", "fleet/plugins/libpatrol.so", "libpatrol.so", "plugins/libpatrol.so"] {
+        let present = ["fleet/libpatrol.so", "fleet/plugins/libpatrol.so", "libpatrol.so", "plugins/libpatrol.so"];
+        let present = present.iter().find(|path| site.join(path).exists()).unwrap();
+        fs::create_dir_all(site.join(place).parent().unwrap()).unwrap();
+        fs::rename(site.join(present), site.join(place)).unwrap();
+        let composite = if place == "libpatrol.so" { "t.composite" } else { "fleet/t.composite" };
+        if place == "libpatrol.so" {
+            fs::copy(site.join("fleet/t.composite"), site.join(composite)).unwrap();
+        }
+        for command in [&["check"][..], &["check", "--format", "sarif"], &["expand"], &["graph", "-o", "x.svg"]] {
+            let (code, has_run, text) = saoms(&[command, &[composite]].concat());
+            assert_eq!((code, has_run), (Some(0), false), "{place} {command:?}: {text}");
+        }
+        let (code, has_run, text) = saoms(&["run", composite, "--virtual", "--for", "1s"]);
+        assert_eq!((code, has_run), (Some(2), false), "{place}: {text}");
+        assert!(
+            text.contains("error[S3016]") && text.contains("`--plugin ") && text.contains(&format!("{place}`")),
+            "{text}"
+        );
+        let (code, has_run, text) = saoms(&["run", composite, "--virtual", "--for", "1s", "--plugin", place]);
+        assert_eq!((code, has_run), (Some(0), true), "{place}: {text}");
+        let (code, has_run, text) = saoms(&["check", composite, "--plugin", place]);
+        assert!(code == Some(0) && has_run && !text.contains("S3016"), "{place}: {text}");
+    }
+    // What a composite names itself, nobody named who trusts it.
+    fs::rename(site.join("plugins/libpatrol.so"), site.join("fleet/libpatrol.so")).unwrap();
+    let (code, has_run, text) = saoms(&["check", "fleet/named.composite"]);
+    assert!(code == Some(0) && !has_run && text.contains("note[S3016]"), "{text}");
+    let (code, has_run, text) = saoms(&["run", "fleet/named.composite", "--virtual", "--for", "1s"]);
+    assert!(code == Some(2) && !has_run && text.contains("error[S3016]"), "{text}");
+    let mut by_variable = support::command(&["run", "fleet/named.composite", "--virtual", "--for", "1s"]);
+    let output = by_variable.env("SAOMS_PLUGIN_PATH", site.join("fleet")).current_dir(site).output().unwrap();
+    assert!(output.status.success() && site.join("RAN").exists(), "{}", text);
+}

@@ -50,7 +50,7 @@ fn what_the_extension_starts_and_offers_exists() {
     assert!(help.status.success());
     let help = stdout(&help);
     let options: Vec<&str> = code.split('"').filter(|part| part.starts_with("--")).collect();
-    assert_eq!(options, ["--plugin", "--assume-classes"]);
+    assert_eq!(options, ["--plugin", "--assume-classes", "--allow-outside"]);
     for option in options {
         assert!(help.contains(option), "`saoms lsp` knows {option}: {help}");
     }

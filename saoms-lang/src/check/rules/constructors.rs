@@ -110,7 +110,8 @@ pub(crate) fn check_all(
     report: &mut Report<'_>,
 ) {
     saoms_api::host::contain::install_hook();
-    let is_asked = |origin: Option<&Path>| !options.without_plugin_code || origin.is_none();
+    let is_asked =
+        |origin: Option<&Path>, is_only_read: bool| !is_only_read && (!options.without_plugin_code || origin.is_none());
     let all = || {
         let all = fleet.members.iter().zip(checks);
         all.filter_map(|(member, check)| match member.kind {
@@ -121,17 +122,17 @@ pub(crate) fn check_all(
     for (member, check, of) in all().filter(|(_, check, _)| check.is_sound()) {
         report.about(member);
         let (subject, class) = (check.subject(member), of.class);
-        if is_asked(class.origin()) {
+        if is_asked(class.origin(), class.is_only_read()) {
             judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
         }
         for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {
-            if is_asked(class.origin()) {
+            if is_asked(class.origin(), class.is_only_read()) {
                 judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
             }
         }
     }
     let faulty = all().filter(|(member, check, _)| check.state == ComponentState::Faulty && !member.lacks_table());
-    for (member, check, class) in faulty.filter(|(.., class)| is_asked(class.class.origin())) {
+    for (member, check, class) in faulty.filter(|(.., one)| is_asked(one.class.origin(), one.class.is_only_read())) {
         report.about(member);
         partly(check.subject(member), class, &check.given.unknown, repeated, report);
     }

@@ -1,6 +1,7 @@
 //! Rules over the resolved fleet, each in a file: they run last, and those of components run code of these.
 
 mod constructors;
+mod only_read;
 mod plugin_rules;
 mod similar_names;
 pub(crate) mod traffic;
@@ -21,8 +22,9 @@ pub(crate) fn check(
     (registry, options): (&Registry, &Options),
     report: &mut Report<'_>,
 ) {
+    only_read::check(fleet, checks, options, report);
     constructors::check_all(fleet, checks, repeated, options, report);
     let rules = registry.rules().iter();
-    let rules = rules.filter(|rule| !options.without_plugin_code || rule.origin().is_none());
+    let rules = rules.filter(|rule| !rule.is_only_read() && (!options.without_plugin_code || rule.origin().is_none()));
     plugin_rules::check(fleet, checks, wiring, repeated, rules, report);
 }

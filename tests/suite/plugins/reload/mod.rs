@@ -61,6 +61,8 @@ impl Run {
         let mut child = command(&["run", "--reload", "--for", "60s", "--report"])
             .arg(folder.path().join("report.json"))
             .arg(composite)
+            .arg("--plugin")
+            .arg(folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

@@ -6,12 +6,16 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use expect_test::expect_file;
+use saoms_api::Failure;
+use saoms_api::host::{DynComponent, PropertyValue, SmolStr};
 use saoms_core::plugin::Search;
 use saoms_lang::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
 use saoms_lang::load::MAX_SIZE;
 use saoms_lang::project::{ClassPath, Classes, Compilation, Project, read};
+use saoms_lang::registry::{Provider, Registry};
 use saoms_lang::source::Sources;
 
 use crate::check::classes::registry;
@@ -101,6 +105,15 @@ fn example(code: &Code) -> Result<String, String> {
             fs::write(&path, text).unwrap();
             let found = Project::new().file(path).compile(&registry());
             without_folder(found.diagnostics, &found.sources, folder.path())
+        }
+        "S3016" => {
+            let mut registry = Registry::new();
+            let declaration = r#"{"contract": 1, "class": "example.Gps", "kind": "passive"}"#;
+            registry.add_provided(declaration, Arc::new(Unnamed)).unwrap();
+            let text = fs::read_to_string(folder().join("S3001.composite")).unwrap();
+            let found = Project::new().in_memory().text("fleet.composite", text.replace("example.Gsp", "example.Gps"));
+            let found = found.to_start().compile(&registry);
+            (found.diagnostics, found.sources)
         }
         "S2035" => {
             let level = |level: u32| {
@@ -251,4 +264,22 @@ fn without_folder(mut diagnostics: Vec<Diagnostic>, sources: &Sources, folder: &
         one.help = one.help.iter().map(|help| shown(help)).collect();
     }
     (diagnostics, renamed)
+}
+
+/// The source of a class whose library was found, and not named.
+#[derive(Debug)]
+struct Unnamed;
+
+impl Provider for Unnamed {
+    fn construct(&self, _: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        Err("its code must not run".into())
+    }
+
+    fn origin(&self) -> Option<&Path> {
+        Some(Path::new("fleets/libgps.so"))
+    }
+
+    fn is_only_read(&self) -> bool {
+        true
+    }
 }

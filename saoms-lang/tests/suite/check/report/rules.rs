@@ -26,7 +26,7 @@ const HEAD: &str = "\
 
 What composites are held to. Each code is described, with an example, in [diagnostics.md](diagnostics.md). The test of a code is its
 example, which has to have that one fault, and loses it when the rule is gone: the file of its name in `saoms-lang/tests/suite/check/examples`, or
-in `tests/rules` for `S50`. Those of `S0001` to `S0009` and `S2035` are no files that could be kept: `saoms-lang/tests/suite/check/report/reference.rs`
+in `tests/rules` for `S50`. Those of `S0001` to `S0009`, `S2035` and `S3016` are no files that could be kept: `saoms-lang/tests/suite/check/report/reference.rs`
 makes them.
 
 ## Codes
