@@ -133,6 +133,10 @@ fn every_wrong_line_says_where_and_why() {
     let times = "how often it happens: a whole number from 1 to 1000000";
     for (line, at, message, instead) in [
         ("luggage", "luggage", format!("found `luggage`, expected {start}"), None),
+        ("on 6s landing 4", "on", format!("found `on`, expected {start}"), Some("at")),
+        ("at 6s 10 luggage (3,1) to (3,10)", "10", "found `10` before `luggage`: how often it happens is said with `times`".into(), Some("10 times")),
+        ("at 6s 10 landing 4", "10", format!("found `10`, expected {kinds}"), None),
+        ("at 6s luggage radnom to (3,10)", "radnom", format!("found `radnom`, expected {block}"), Some("random")),
         ("ta 6s landing 4", "ta", format!("found `ta`, expected {start}"), Some("at")),
         ("at 6s lugage (3,1) to (3,10)", "lugage", format!("found `lugage`, expected {kinds}"), Some("luggage")),
         ("at 6s (3,1) to (3,10)", "(3,1)", format!("found `(3,1)`, expected {kinds}"), None),

@@ -80,15 +80,19 @@ impl Map {
         }
         #[expect(clippy::cast_possible_truncation, reason = "both are at most `LONGEST`")]
         let mut map = Map::new(width as u32, height as u32);
+        let mut unknown = Vec::new();
         let width_said = header.width.map(|(width, _)| width);
         for (y, row) in (0..).zip(rows) {
-            if faults.len() >= MOST_WRONG {
+            if faults.len() + unknown.len() >= MOST_WRONG {
                 break;
             }
-            if let Err((part, message)) = map.read_row(y, row, width, width_said) {
-                faults.push(TextFault::of(text, part, message));
+            match map.read_row(y, row, width, width_said) {
+                Ok(None) => {}
+                Ok(Some(sign)) => unknown.push(sign),
+                Err((part, message)) => faults.push(TextFault::of(text, part, message)),
             }
         }
+        faults.extend(unknown_signs(text, &unknown));
         if faults.is_empty() { Ok(map) } else { Err(faults) }
     }
 
@@ -102,26 +106,50 @@ impl Map {
         Some(bytes(text, &row[start..start + sign.len_utf8()]))
     }
 
-    fn read_row<'a>(&mut self, y: i32, row: &'a str, width: usize, said: Option<u32>) -> Result<(), (&'a str, String)> {
+    /// Reads a row up to its first unknown sign, which is returned.
+    fn read_row<'a>(
+        &mut self,
+        y: i32,
+        row: &'a str,
+        width: usize,
+        said: Option<u32>,
+    ) -> Result<Option<&'a str>, (&'a str, String)> {
         for (x, (start, sign)) in (0..).zip(row.char_indices()) {
             match sign {
                 '.' | 'G' | 'E' | 'S' => {}
                 '@' | 'O' | 'T' | 'W' => {
                     self.set_blocked(Block::new(x, y));
                 }
-                other => {
-                    let message = format!("found `{other}`, expected `.` for a free block or `@` for a blocked one");
-                    return Err((&row[start..start + other.len_utf8()], message));
-                }
+                other => return Ok(Some(&row[start..start + other.len_utf8()])),
             }
         }
         let found = row.chars().count();
         if found == width {
-            return Ok(());
+            return Ok(None);
         }
         let whose = if said.is_some() { "in the header" } else { "in the others" };
         Err((row, format!("found {found} blocks in this row, expected {width} as {whose}")))
     }
+}
+
+/// The fault of all rows with unknown signs, of each its first: they have one cause.
+fn unknown_signs(text: &str, signs: &[&str]) -> Option<TextFault> {
+    let sign = *signs.first()?;
+    let also = match signs.len() {
+        1 => String::new(),
+        rows => format!(" (in this row and {} more)", rows - 1),
+    };
+    let message = format!("found `{sign}`, expected `.` for a free block or `@` for a blocked one{also}");
+    let fault = TextFault::of(text, sign, message);
+    let meant = match sign {
+        "#" | "X" | "x" | "*" | "1" => "@",
+        "0" | "_" | "-" => ".",
+        _ => return Some(fault),
+    };
+    Some(match text.matches(sign).count() {
+        1 => fault.instead(Some(meant)),
+        _ => fault.help(format!("write `{meant}` for each `{sign}`")),
+    })
 }
 
 /// The most frequent length of a row; of equally frequent ones the first.

@@ -71,10 +71,10 @@ fn wrong_maps_say_where_and_why() {
             "...\n.x.\n\n#..",
             &[
                 "`` found an empty line behind row 1, expected the next row",
-                "`x` found `x`, expected `.` for a free block or `@` for a blocked one",
-                "`#` found `#`, expected `.` for a free block or `@` for a blocked one",
+                "`x` found `x`, expected `.` for a free block or `@` for a blocked one (in this row and 1 more)",
             ],
         ),
+        ("#.\n.#", &["`#` found `#`, expected `.` for a free block or `@` for a blocked one (in this row and 1 more)"]),
         ("height 3\nwidth 1\nmap\n.\n.", &["`3` found 2 rows, expected the 3 of the header"]),
         ("height 1\nwidth 1\nmap\n@\n.", &["`.` found 2 rows, expected the 1 of the header"]),
         (
@@ -92,6 +92,9 @@ fn wrong_maps_say_where_and_why() {
             faults.iter().map(|fault| format!("`{}` {fault}", &text[fault.bytes.clone()])).collect();
         assert_eq!(shown, found, "{text:?}");
     }
+    let faults = |text| Map::read(text).unwrap_err();
+    assert_eq!(faults("..\n.#")[0].instead.as_deref(), Some("@"));
+    assert_eq!(faults("##\n.#")[0].help.as_deref(), Some("write `@` for each `#`"));
     let wide = ".".repeat(9000);
     assert!(Map::read(&wide).unwrap_err()[0].message.contains("expected at most 8192 on a side"));
 }

@@ -47,7 +47,7 @@ impl Svg {
             "svg",
             format_args!(
                 r#"class="world" data-world="{}" y="{y}" width="{width}" height="{height}" viewBox="0 0 {width} {height}""#,
-                escaped(world)
+                shown(world)
             ),
         );
         self.text.push_str(&inner.text);
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(
             svg.finish(10.04, 20.0, "A & <B>"),
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"10\" height=\"20\" viewBox=\"0 0 10 20\" role=\"img\">\n \
-             <title>A &amp; &lt;B&gt;</title>\n <g id=\"&quot;1&quot;\\u{{1}}\">\n  <path d=\"M0 1.3\"/>\n  \
+             <title>A &amp; &lt;B&gt;</title>\n <g id=\"&quot;1&quot;\\u{1}\">\n  <path d=\"M0 1.3\"/>\n  \
              <text>x &lt; y</text>\n </g>\n</svg>\n"
         );
     }

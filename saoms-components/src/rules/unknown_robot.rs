@@ -163,6 +163,10 @@ fn check_name(
         let place = Place::component(robot.index);
         return Some(finding(message).label(place, "the robot").help(help));
     }
+    if names.numbers.windows(2).any(|pair| pair[0] == pair[1]) {
+        // Robots that share an ID or a number are told of; which are missing is not known.
+        return None;
+    }
     let message = match (least == most, known) {
         (true, _) => format!("the fleet has no robot {least}"),
         (false, 0) => format!("the fleet has no robot from {least} to {most}"),

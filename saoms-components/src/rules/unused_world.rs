@@ -41,7 +41,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     for area in areas(fleet) {
         let index = area.index;
         if used.binary_search(&index).is_err() {
-            findings.push(without_robots(fleet, &area));
+            findings.push(without_robots(fleet, &area, &robots));
         } else if let Ok(place) = first.binary_search_by_key(&index, |(world, _)| *world) {
             let (_, robot) = first[place];
             around.insert(composite(fleet.components()[index].path), (index, robot));
@@ -57,15 +57,27 @@ fn composite(path: &str) -> &str {
     path.rfind('/').map_or("", |at| &path[..=at])
 }
 
-fn without_robots(fleet: &FleetView<'_>, area: &WorldMap) -> Finding {
+fn without_robots(fleet: &FleetView<'_>, area: &WorldMap, robots: &[FleetRobot]) -> Finding {
     let message = match area.map.is_open() {
         true => "no robot is wired to this world, so it sees neither robots nor what they deliver",
         false => "no robot is wired to this world, so robots move through its blocked blocks",
     };
     let path = fleet.components()[area.index].path;
-    let help = format!("give each robot in it a `<reference name=\"world\" target=\"{path}\"/>`");
+    let around = composite(path);
+    let is_beside = |robot: &FleetRobot| composite(fleet.components()[robot.index].path) == around;
+    let help = match robots.iter().filter(|robot| robot.world.is_none()).find(|robot| !is_beside(robot)) {
+        // A target leads to what is in the same composite.
+        Some(robot) if !robots.iter().any(is_beside) => {
+            let robot = fleet.components()[robot.index].path;
+            format!("wire the reference `world` of `{robot}` to `{path}`, {BETWEEN}")
+        }
+        _ => format!("give each robot in it a `<reference name=\"world\" target=\"{}\"/>`", &path[around.len()..]),
+    };
     Finding::new(Place::component(area.index), message).help(help)
 }
+
+/// How a wire leads from one composite into another.
+const BETWEEN: &str = "through the composites in between: each promotes the reference or the service";
 
 /// A finding for a robot without a world if other robots in its composite have one; the innermost composite counts.
 fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &HashMap<&str, (usize, &FleetRobot)>) -> Option<Finding> {
@@ -77,10 +89,7 @@ fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &HashMap<&str, (usi
     let finding =
         Finding::new(Place::component(robot.index), message).label(Place::component(other.index), "this one is wired");
     Some(finding.help(match composite(path) == own {
-        true => {
-            let name = path.rsplit('/').next().unwrap_or(path);
-            format!("give it a `<reference name=\"world\" target=\"{name}\"/>`")
-        }
-        false => format!("wire its reference `world` to `{path}`, through the composites in between"),
+        true => format!("give it a `<reference name=\"world\" target=\"{}\"/>`", &path[own.len()..]),
+        false => format!("wire its reference `world` to `{path}`, {BETWEEN}"),
     }))
 }

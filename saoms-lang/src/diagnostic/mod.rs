@@ -138,6 +138,15 @@ impl Diagnostic {
         self
     }
 
+    /// Adds the place of another component; in words where it is the same, as in a composite that is used twice.
+    #[must_use]
+    pub fn other(self, location: Location, text: impl Into<String>) -> Self {
+        match location == self.location {
+            true => self.help("both come from here: what has to differ comes from outside, by a property or an index"),
+            false => self.label(location, text),
+        }
+    }
+
     /// Adds a line of help.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {

@@ -1,3 +1,5 @@
+use saoms_api::rule::nearest;
+
 use super::line::drawn;
 use super::random::{RandomRange, Spot};
 use super::tokenizer::{DOTS, Tokenizer};
@@ -8,6 +10,8 @@ use crate::text::TextFault;
 pub(super) const KINDS: [&str; 5] = ["luggage", "landing", "takeoff", "breakdown", "end"];
 const BLOCK: &str = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
 const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
+
+const RANDOM: &str = "random";
 
 /// Reads an event.
 pub(super) fn read(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
@@ -40,7 +44,7 @@ pub(super) fn read(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
 fn spot(words: &mut Tokenizer<'_>) -> Result<Spanned<Spot>, TextFault> {
     let first = words.next(BLOCK)?;
     let value = match first {
-        "random" => Spot::Anywhere,
+        RANDOM => Spot::Anywhere,
         _ => {
             let corner = block(words, first)?;
             if words.take(DOTS) {
@@ -55,7 +59,7 @@ fn spot(words: &mut Tokenizer<'_>) -> Result<Spanned<Spot>, TextFault> {
 }
 
 fn block(words: &Tokenizer<'_>, word: &str) -> Result<Block, TextFault> {
-    let block: Block = word.parse().map_err(|_| words.wrong(word, BLOCK))?;
+    let block: Block = word.parse().map_err(|_| words.wrong(word, BLOCK).instead(nearest(word, [RANDOM])))?;
     if block.x < 0 || block.y < 0 {
         return Err(words.fault(word, format!("found `{word}`, and every area starts at (0,0)")));
     }

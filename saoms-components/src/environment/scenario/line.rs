@@ -53,7 +53,10 @@ pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFa
     let mut words = Tokenizer::of(text, line);
     let start = words.next("`at`, `from` or `then`")?;
     if !STARTS.contains(&start) {
-        let near = nearest(start, STARTS);
+        let near = match start {
+            "on" | "in" | "after" | "when" => Some("at"),
+            _ => nearest(start, STARTS),
+        };
         let fault = words.wrong(start, "`at`, `from` or `then` at the start of a line").instead(near);
         return Err(fault.help("a line is such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`"));
     }
@@ -81,7 +84,12 @@ pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFa
     }
     let given = if words.peek_second() == Some("times") { Some(times(&mut words)?) } else { None };
     let until = if words.take("until") { Some(until(&mut words, every.is_some(), start, time)?) } else { None };
-    let bytes = words.bytes(words.peek().unwrap_or_default());
+    let first = words.peek().unwrap_or_default();
+    if words.peek_second() == Some("luggage") && first.parse::<u64>().is_ok() {
+        let message = format!("found `{first}` before `luggage`: how often it happens is said with `times`");
+        return Err(words.fault(first, message).instead(Some(format!("{first} times"))));
+    }
+    let bytes = words.bytes(first);
     let event = event::read(&mut words)?;
     if let Some(more) = words.peek() {
         return Err(words.wrong(more, "the end of the line, or `;` before the next event"));

@@ -60,7 +60,7 @@ pub(crate) fn diagnostic<'s>(
     let mut one = Diagnostic::new(code, place.at, message).severity(severity);
     for (other, text) in finding.labels() {
         let at = located(other, subject(other), report).at;
-        one = one.label(at, text);
+        one = one.other(at, text);
     }
     if let Some(source) = place.source {
         let property = finding.place().property_name().unwrap_or_default();

@@ -130,9 +130,7 @@ fn shared(
             let meant = if declaration.is_number() { "${index}".to_owned() } else { with_index(value) };
             one.replace(value, user.place, &meant)
         }
-        // In a composite that is there several times.
-        true => one.help("both have it from here: let each get its own from outside, by a property or an index"),
-        false => one.label(first.place, "the first"),
+        _ => one.other(first.place, "the first"),
     });
 }
 
@@ -142,7 +140,7 @@ fn task(value: &str, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut R
     let message = format!("components {earlier} and {later} share the ID {}", quoted(value));
     report.push(
         Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message)
-            .label(first.place, "the first")
+            .other(first.place, "the first")
             .help("messages and reports name tasks by their ID"),
     );
 }

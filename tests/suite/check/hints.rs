@@ -1,0 +1,104 @@
+//! What the checker proposes for mistakes of new users, seen in the output of `saoms check`.
+
+use std::fs;
+
+use crate::support::{empty_folder, saoms_in};
+
+const HALL: &str = include_str!("../../../composites/hall.composite");
+const HANGAR: &str = include_str!("../../../composites/hangar.composite");
+
+/// Checks a fleet that has these files, of which the composite `fleet.composite` is the first. The lines with
+/// messages and help come back.
+fn told(test: &str, files: &[(&str, &str)]) -> Vec<String> {
+    told_of(test, files, &["fleet.composite"])
+}
+
+/// Checks these composites of a folder with these files.
+fn told_of(test: &str, files: &[(&str, &str)], checked: &[&str]) -> Vec<String> {
+    let folder = empty_folder(&format!("hints/{test}"));
+    for (name, text) in files {
+        fs::write(folder.join(name), text).unwrap();
+    }
+    let output = saoms_in(&folder, &[&["check"], checked].concat());
+    let text = String::from_utf8(output.stderr).unwrap();
+    let is_told =
+        |line: &str| line.starts_with("error[") || line.starts_with("warning[") || line.starts_with("= help:");
+    text.lines().map(str::trim).filter(|line| is_told(line)).map(str::to_owned).collect()
+}
+
+/// The fleet of the README after a replacement.
+fn hall(from: &str, to: &str) -> String {
+    assert!(HALL.contains(from), "{from}");
+    HALL.replacen(from, to, 1)
+}
+
+/// Checks that there is one diagnostic, with this code and this help.
+fn assert_hint(test: &str, told: &[String], code: &str, help: &str) {
+    let count = told.iter().filter(|line| !line.starts_with('=')).count();
+    assert_eq!(count, 1, "{test}: {told:#?}");
+    assert!(told[0].contains(code), "{test}: {told:#?}");
+    assert!(told.iter().any(|line| line.contains(help)), "{test}: {told:#?}");
+}
+
+#[test]
+fn what_was_probably_meant_is_proposed() {
+    let map = |rows: &str| format!(r#""saoms.World"/><property name="map">{rows}</property>"#);
+    for (test, from, to, code, help) in [
+        ("random", "(3,10)", "radnom", "S3014", "replace `radnom` with `random`"),
+        ("on", "at 1s", "on 1s", "S3014", "replace `on` with `at`"),
+        ("times", "1s luggage", "1s 10 luggage", "S3014", "replace `10` with `10 times`"),
+        ("one wall", r#""saoms.World"/>"#, &map("....\n.X..\n"), "S3014", "replace `X` with `@`"),
+        (
+            "walls",
+            r#""saoms.World"/>"#,
+            &map("....\n.##.\n.#..\n"),
+            "(in this row and 1 more)",
+            "write `@` for each `#`",
+        ),
+    ] {
+        assert_hint(test, &told(test, &[("fleet.composite", &hall(from, to))]), code, help);
+    }
+}
+
+/// An inner composite, and an outer one around it with something more.
+fn nested(inner: &str, more: &str) -> [(&'static str, String); 2] {
+    let root = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:t="urn:t" targetNamespace="urn:t""#;
+    let outer = format!(
+        "{root} name=\"fleet\"><component name=\"A\"><implementation.composite name=\"t:inner\"/></component>{more}\
+         </composite>\n"
+    );
+    [("inner.composite", format!("{root} name=\"inner\">{inner}</composite>\n")), ("fleet.composite", outer)]
+}
+
+/// The components of the fleet of the README: the robot, and what is before it.
+fn parts() -> (String, String) {
+    let inside = HALL.split_once("\"urn:hall\">").unwrap().1.replace("</composite>", "");
+    let (others, robot) = inside.split_once("<component name=\"Robot7\">").unwrap();
+    (format!("<component name=\"Robot7\">{robot}"), others.to_owned())
+}
+
+#[test]
+fn a_robot_in_another_composite_than_the_world_is_not_given_a_target() {
+    let (robot, others) = parts();
+    let robot = robot.replace(r#"<reference name="world" target="World"/>"#, "");
+    let told = |test, [inner, outer]: [(&str, String); 2]| told(test, &[(inner.0, &inner.1), (outer.0, &outer.1)]);
+    for (test, files, help) in [
+        ("inner world", nested(&others, &robot), "wire the reference `world` of `Robot7` to `A/World`, through"),
+        ("inner robot", nested(&robot, &others), "wire the reference `world` of `A/Robot7` to `World`, through"),
+        ("both", nested(&format!("{others}{robot}"), ""), "<reference name=\"world\" target=\"World\"/>"),
+    ] {
+        assert_hint(test, &told(test, files), "S5009", help);
+    }
+    let again = r#"<component name="B"><implementation.composite name="t:inner"/></component>"#;
+    let all = told("twice", nested(&others, again));
+    assert!(all.iter().any(|line| line.contains("both come from here")), "{all:#?}");
+}
+
+#[test]
+fn robots_of_one_id_are_told_before_those_that_are_missing() {
+    let fleet = HANGAR.replace("<property name=\"ID\">Robot${index:02}", "<property name=\"ID\">Robot01");
+    let fleet = fleet.replace("at 10s landing 8", "at 10s breakdown 2");
+    let table = include_str!("../../../composites/hangar.csv");
+    let told = told("one id", &[("fleet.composite", &fleet), ("hangar.csv", table)]);
+    assert_hint("one id", &told, "S3013", "replace `Robot01` with `Robot01${index}`");
+}
