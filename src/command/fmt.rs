@@ -37,6 +37,10 @@ pub(crate) struct FmtArguments {
     #[arg(long, value_name = "COLUMNS", default_value_t = saoms_tools::format::WIDTH)]
     pub(crate) width: usize,
 
+    /// Format also what links in a folder lead to outside of it
+    #[arg(long)]
+    pub(crate) allow_outside: bool,
+
     /// Refuse larger files
     #[arg(long, value_name = "SIZE", default_value = "256MB", value_parser = parse_size)]
     pub(crate) max_size: u64,
@@ -44,7 +48,7 @@ pub(crate) struct FmtArguments {
 
 pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     let (mut is_wrong, mut has_failed) = (false, false);
-    let (mut files, refused) = composite_files(&arguments.files);
+    let (mut files, refused) = composite_files(&arguments.files, arguments.allow_outside);
     if let Some(refused) = refused {
         eprint_coloured(&refused.text(io::stderr().is_terminal()));
         is_wrong = true;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::read;
-use crate::contribution::composites_below;
+use crate::contribution::{composites_below, root};
 use crate::diagnostic::{Diagnostic, Diagnostics, human};
-use crate::source::Sources;
+use crate::source::{OpenTexts, Sources};
 use crate::syntax::{self, Document, Parse};
 
 /// The reasons why files cannot be taken, with the texts that they are about.
@@ -42,14 +42,24 @@ pub fn document(path: &Path, max_size: u64) -> Result<Document, Box<Refused>> {
 }
 
 /// The files of these paths, where a folder means all composites in it and below. Folders with none, and with more than
-/// are looked at, are refused beside the files.
-pub fn composite_files(paths: &[PathBuf]) -> (Vec<PathBuf>, Option<Refused>) {
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+/// are looked at, are refused beside the files, and so are links that lead out of a folder unless that is allowed.
+pub fn composite_files(paths: &[PathBuf], allows_outside: bool) -> (Vec<PathBuf>, Option<Refused>) {
+    let open = OpenTexts::default().confined(!allows_outside);
+    let (mut sources, mut diagnostics) = (Sources::with_open(open.clone()), Diagnostics::new());
     let mut files = Vec::with_capacity(paths.len());
     for path in paths {
-        match path.is_dir() {
-            true => files.extend(composites_below(path, &mut sources, &mut diagnostics)),
-            false => files.push(path.clone()),
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        open.permit(path);
+        open.permit(&root(path));
+        for file in composites_below(path, &mut sources, &mut diagnostics) {
+            match open.outside(&file) {
+                // It says why it is not read.
+                Some(_) => _ = read(&file, 0, &mut sources, &mut diagnostics),
+                None => files.push(file),
+            }
         }
     }
     let refused = diagnostics.has_errors().then(|| Refused { diagnostics: diagnostics.into_sorted(), sources });

@@ -102,6 +102,10 @@ fn tables_and_includes_outside_the_folder_are_refused() {
     symlink("../../secret.txt", site.join("fleet/part.composite")).unwrap();
     let told = check();
     assert!(told.contains("S0009") && told.contains("fleet/part.composite"), "{told}");
+    let (code, stdout, stderr) = saoms(&site, &["fmt", "fleet"]);
+    assert!(code == 2 && stderr.contains("S0009") && !(stdout + &stderr).contains(SECRET), "{stderr}");
+    let (code, _, stderr) = saoms(&site, &["fmt", "--allow-outside", "fleet"]);
+    assert_eq!(code, 0, "{stderr}");
     let (_, stdout, stderr) = saoms(&site, &["check", "fleet"]);
     assert!(stderr.contains("S0009") && !(stdout + &stderr).contains(SECRET), "{stderr}");
 }

@@ -172,7 +172,7 @@ fn thousands_of_composites_that_one_names_are_found_each_at_once() {
     }
     assert_eq!(all.composites().len(), 1 + ALL / 4 * 3);
     let codes: Vec<&str> = diagnostics.iter().map(|one| one.code.id).collect();
-    assert_eq!(codes, ["S2001"], "the two called `c2`");
+    assert_eq!(codes, ["S2001"], "the two called `c2`: {diagnostics:?}");
 }
 
 #[cfg(unix)]
