@@ -240,6 +240,7 @@ fn start(shape: &Shape) -> Result<RunningFleet, Box<dyn std::error::Error>> {
         components.push(ComponentSpec {
             path: format!("Robot{number}"),
             class: Arc::clone(class),
+            site: Default::default(),
             values: values.map(|(name, value)| (name.into(), PropertyValue::from(value.as_str()))).to_vec(),
             written: Default::default(),
             task: Some(TaskProperties::from_values(&task)?),

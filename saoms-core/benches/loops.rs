@@ -202,6 +202,7 @@ fn start(changes: Option<&str>) -> Result<RunningFleet, Box<dyn std::error::Erro
     let components = vec![ComponentSpec {
         path: "Robot".to_owned(),
         class: Arc::clone(class),
+        site: Default::default(),
         values: Vec::new(),
         written: Default::default(),
         task: Some(TaskProperties::from_values(&task)?),

@@ -119,6 +119,10 @@ fn component(component: &ComponentSpec, name: &str, references: impl IntoIterato
         true => node,
         false => node.with("s:path", component.path.as_str()).declare("s", SAOMS_NAMESPACE),
     };
+    let node = match component.site.as_str() {
+        "" => node,
+        site => node.with("s:site", site).declare("s", SAOMS_NAMESPACE),
+    };
     node.child(implementation(component)).children(valued(component)).children(references).children(loops(component))
 }
 

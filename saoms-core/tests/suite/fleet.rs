@@ -87,6 +87,7 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
     ComponentSpec {
         path: path.to_owned(),
         class,
+        site: Default::default(),
         library: None,
         values,
         written: Default::default(),

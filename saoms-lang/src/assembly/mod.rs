@@ -6,6 +6,7 @@ mod task;
 pub(crate) mod topic_rename;
 mod traffic;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use saoms_api::host::PropertyValue;
@@ -30,6 +31,8 @@ pub struct Assembly {
 pub struct ComponentSpec {
     /// The identity: the path in the composite, such as `Robot001` or `hall/Robot001`.
     pub path: String,
+    /// The site, with those around it, as `North` or `Plant/North`; empty outside all sites.
+    pub site: SmolStr,
     /// The class.
     pub class: Arc<RegisteredClass>,
     /// The library that a composite names for the class: a path from the folder of the first composite, or an absolute
@@ -45,6 +48,24 @@ pub struct ComponentSpec {
     pub references: Vec<Wire>,
     /// Its loops in their order; components share those that their class gives them.
     pub loops: Arc<[LoopSpec]>,
+}
+
+impl ComponentSpec {
+    /// The name on the bus of a topic that the class, or one of its loops, declares under this name: that of
+    /// `topicRename`, inside the site. A new name that begins with `/` is outside all sites.
+    pub fn topic<'a>(&'a self, declared: &'a str) -> Cow<'a, str> {
+        let renames = self.task.as_ref().map(|task| &task.topic_rename);
+        on_bus(&self.site, renames.map_or(declared, |renames| renames.name(declared)))
+    }
+}
+
+/// The name on the bus of a topic that is called so in a site.
+pub(crate) fn on_bus<'a>(site: &str, name: &'a str) -> Cow<'a, str> {
+    match name.strip_prefix('/') {
+        Some(outside) => outside.into(),
+        None if site.is_empty() => name.into(),
+        None => format!("{site}/{name}").into(),
+    }
 }
 
 /// One loop of a component, resolved.

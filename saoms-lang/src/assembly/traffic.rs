@@ -1,11 +1,14 @@
 //! Topics of a fleet with their writers and readers.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
 use saoms_api::host::TopicKind;
 
-use super::{Assembly, ComponentSpec};
+use smol_str::SmolStr;
+
+use super::{Assembly, ComponentSpec, on_bus};
 use crate::registry::ClassTopic;
 
 /// The topics of a fleet by the names they have after renaming, sorted.
@@ -20,6 +23,8 @@ pub struct Traffic {
 pub struct TrafficTopic {
     /// Its name.
     pub name: String,
+    /// The site that is a part of the name; empty outside all sites.
+    pub site: SmolStr,
     /// State or event.
     pub kind: TopicKind,
     /// The name of the type of its messages.
@@ -56,7 +61,7 @@ impl Traffic {
             for declared in written {
                 let topic = all.topic(declared, spec);
                 // Who gives it another name means a reader.
-                topic.is_optional &= declared.optional && topic.name == declared.name;
+                topic.is_optional &= declared.optional && topic.name == on_bus(&spec.site, &declared.name);
                 add(&mut topic.writers, component, spec);
             }
             read.for_each(|declared| add(&mut all.topic(declared, spec).readers, component, spec));
@@ -71,17 +76,19 @@ impl Traffic {
 #[derive(Default)]
 struct Known<'a> {
     topics: Vec<TrafficTopic>,
-    places: HashMap<&'a str, usize>,
+    places: HashMap<Cow<'a, str>, usize>,
 }
 
 impl<'a> Known<'a> {
     /// The topic that a component uses under the name that it gives it.
     fn topic(&mut self, declared: &'a ClassTopic, spec: &'a ComponentSpec) -> &mut TrafficTopic {
-        let name = spec.task.as_ref().map_or(&*declared.name, |task| task.topic_rename.name(&declared.name));
-        let place = *self.places.entry(name).or_insert(self.topics.len());
+        let name = spec.topic(&declared.name);
+        let is_inside = name.strip_prefix(&*spec.site).is_some_and(|rest| rest.starts_with('/'));
+        let place = *self.places.entry(name.clone()).or_insert(self.topics.len());
         if place == self.topics.len() {
             self.topics.push(TrafficTopic {
-                name: name.to_owned(),
+                name: name.into_owned(),
+                site: if is_inside { spec.site.clone() } else { SmolStr::default() },
                 kind: declared.kind,
                 message: declared.message.clone(),
                 is_optional: true,

@@ -50,6 +50,7 @@ pub(crate) fn assemble(
         });
         components.push(ComponentSpec {
             path: member.path().to_owned(),
+            site: member.site.clone(),
             class: Arc::clone(class.class),
             library: classes::library(member.component, fleet.contribution, sources),
             values,

@@ -21,6 +21,7 @@ mod rules;
 mod tasks;
 mod unfolding;
 mod values;
+mod wanted_tables;
 mod wiring;
 
 use crate::assembly::Assembly;
@@ -39,6 +40,7 @@ use unfolding::append_list::AppendList;
 pub use occurrences::{Occurrences, TopicUse};
 pub use options::{Options, Setting, Variable};
 pub use report::severities::SeveritySetting;
+pub use wanted_tables::wanted_tables;
 
 /// Checks composites as one fleet, and resolves them when there is no error among `diagnostics`, those from before
 /// included, and nothing had to be taken as given.

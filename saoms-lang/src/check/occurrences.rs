@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
-use crate::assembly::TopicRenames;
+use crate::assembly::{TopicRenames, on_bus};
 use crate::check::classes;
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
@@ -168,7 +168,7 @@ fn topics<'a>(
         let topics = published.chain(class.subscribes.iter().map(|topic| (*topic, false)));
         let uses = topics.map(|(topic, is_published)| {
             let declared = declared.entry(topic).or_insert_with(|| Rc::new(topic.clone()));
-            let name = renames.name(&topic.name).to_owned();
+            let name = on_bus(&member.site, renames.name(&topic.name)).into_owned();
             TopicUse { name, declared: Rc::clone(declared), is_published }
         });
         all.entry(within(&paths[member.scope], place(member.component.origin))).or_default().extend(uses);

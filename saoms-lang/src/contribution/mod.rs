@@ -26,7 +26,7 @@ pub use imports::{imported_near, importing_near};
 pub use index::{composites_near, description_near, root};
 pub use overrides::table;
 pub use resolve::load_named;
-pub use values::read_values;
+pub use values::{read_tables, read_values};
 
 use crate::diagnostic::Diagnostics;
 use crate::load::{MAX_SIZE, load_file, read};

@@ -1,16 +1,19 @@
 //! Values that properties take from files beside their composite.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+use smol_str::SmolStr;
 
 use super::overrides::table;
 use super::value_file::{self, FileValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
+use crate::expression::has_expression;
 use crate::load::read;
-use crate::model::Composite;
-use crate::source::{Sources, Text};
+use crate::model::{Composite, Contribution, Table};
+use crate::source::{FileId, Sources, Text};
 
 /// Reads the files that properties of the composite's components and their loops name with `file`, each of at most
 /// `max_size` bytes. A name is a URI (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the
@@ -56,14 +59,51 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
     }
     let components = composite.components.iter_mut();
     for replicas in components.filter_map(|component| component.replicas.as_mut()) {
-        let Some(file) = &replicas.overrides else { continue };
-        let path = folder.join(file.as_str());
-        match read::value(&path, max_size, file.location, sources.open()) {
-            Ok(text) => {
-                let file = sources.add(path.display().to_string(), text);
-                replicas.table = table(file, sources, diagnostics).map(Arc::new);
+        // Which file an expression names is known when composites are unfolded: see `read_tables`.
+        if let Some(file) = replicas.overrides.as_ref().filter(|file| !has_expression(file)) {
+            replicas.table = read_table(file, max_size, sources, diagnostics);
+        }
+    }
+}
+
+/// Reads the tables that components of a fleet name by expressions, until no further ones are wanted: the lines of one
+/// may name others.
+pub fn read_tables(
+    contribution: &mut Contribution,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+    wanted: impl Fn(&Contribution, &Sources) -> Vec<Text>,
+) {
+    let mut known: HashSet<(FileId, SmolStr)> = HashSet::new();
+    loop {
+        let count = known.len();
+        for name in wanted(contribution, sources) {
+            let file = name.location.file;
+            if known.insert((file, name.value.clone()))
+                && let Some(table) = read_table(&name, max_size, sources, diagnostics)
+            {
+                contribution.add_table(file, &name, table);
             }
-            Err(diagnostic) => diagnostics.push(*diagnostic),
+        }
+        if known.len() == count {
+            return;
+        }
+    }
+}
+
+/// The table in a file that is named in a composite, from whose folder its path is.
+fn read_table(name: &Text, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Arc<Table>> {
+    let folder = Path::new(sources.get(name.location.file).path()).parent().unwrap_or(Path::new(""));
+    let path = folder.join(name.as_str());
+    match read::value(&path, max_size, name.location, sources.open()) {
+        Ok(text) => {
+            let file = sources.add(path.display().to_string(), text);
+            table(file, sources, diagnostics).map(Arc::new)
+        }
+        Err(diagnostic) => {
+            diagnostics.push(*diagnostic);
+            None
         }
     }
 }

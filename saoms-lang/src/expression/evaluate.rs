@@ -1,5 +1,7 @@
 //! Evaluation of expressions.
 
+use smol_str::{SmolStr, format_smolstr};
+
 use super::parse::Node;
 use super::{Expression, ExpressionError, ExpressionFault, ExpressionValue, Lookup};
 use crate::diagnostic::quoted;
@@ -10,6 +12,22 @@ use crate::diagnostic::quoted;
 /// A name has no value, or it comes to something else.
 pub fn integer(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<i64, ExpressionFault> {
     number(value(expression, lookup)?, expression)
+}
+
+/// The text that stands for an expression in a text: its number with at least so many digits, or the text of a name
+/// that stands alone.
+///
+/// # Errors
+/// A name has no value, or it comes to something else.
+pub(super) fn text(
+    expression: &Expression,
+    digits: usize,
+    lookup: &mut Lookup<'_>,
+) -> Result<SmolStr, ExpressionFault> {
+    match value(expression, lookup)? {
+        ExpressionValue::Text(text) if digits == 0 && matches!(expression.node, Node::Name(..)) => Ok(text),
+        value => Ok(format_smolstr!("{:0digits$}", number(value, expression)?)),
+    }
 }
 
 /// True if an expression is true.

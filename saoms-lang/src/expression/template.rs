@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::evaluate;
 use super::parse::parse_from;
-use super::{Expression, ExpressionError, ExpressionFault, Lookup, integer};
+use super::{Expression, ExpressionError, ExpressionFault, Lookup};
 use crate::limits::NUMBER_DIGITS;
 
 enum Piece<'t> {
@@ -28,8 +29,8 @@ pub fn render(text: &str, lookup: &mut Lookup<'_>) -> Result<String, Vec<Express
     for piece in pieces(text) {
         match piece {
             Ok(Piece::Literal(literal)) => out.push_str(literal),
-            Ok(Piece::Expression(expression, digits)) => match integer(&expression, lookup) {
-                Ok(number) => out.push_str(&format!("{number:0digits$}")),
+            Ok(Piece::Expression(expression, digits)) => match evaluate::text(&expression, digits, lookup) {
+                Ok(value) => out.push_str(&value),
                 Err(fault) => faults.push(fault),
             },
             Err(fault) => faults.push(fault),

@@ -30,6 +30,7 @@ impl Loader<'_> {
             services: Vec::with_capacity(number_of("service")),
             references: Vec::with_capacity(number_of("reference")),
             path: self.path(element),
+            site: self.own(element, "site"),
             condition: self.own(element, "if"),
             replicas: replicas.map(Box::new),
             autowire: self.boolean(element, "autowire"),

@@ -24,6 +24,8 @@ pub struct ComponentElement {
     pub references: Vec<ReferenceElement>,
     /// `path`, in the namespace of SAOMS: the path that it keeps when its composite is written anew.
     pub path: Option<Text>,
+    /// `site`, in the namespace of SAOMS: the site of the component and of all that is inside it.
+    pub site: Option<Text>,
     /// `if`, in the namespace of SAOMS: it is there only where this is true.
     pub condition: Option<Text>,
     /// Its replicas, in the namespace of SAOMS; `None` for a single component.

@@ -2,8 +2,11 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use super::{ComponentElement, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Version};
+use smol_str::SmolStr;
+
+use super::{ComponentElement, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Table, Version};
 use crate::diagnostic::{Candidates, nearest};
 use crate::source::{FileId, Text};
 use crate::syntax::ElementId;
@@ -27,6 +30,8 @@ pub struct Contribution {
     component_types: Vec<ComponentType>,
     /// By the element of the implementation; `None` for one that was looked for and is not there.
     described: HashMap<(FileId, ElementId), Option<usize>>,
+    /// Tables whose names are expressions: by the file of the composite, and by the name that it comes to.
+    tables: HashMap<(FileId, SmolStr), Arc<Table>>,
 }
 
 /// The target of the name of a composite.
@@ -147,6 +152,16 @@ impl Contribution {
             all.link_known(place);
         }
         all
+    }
+
+    /// The table that a composite names so by an expression; see [`read_tables`](crate::contribution::read_tables).
+    pub fn table(&self, composite: FileId, name: &str) -> Option<&Table> {
+        self.tables.get(&(composite, SmolStr::from(name))).map(|table| &**table)
+    }
+
+    /// Adds such a table.
+    pub fn add_table(&mut self, composite: FileId, name: &str, table: Arc<Table>) {
+        self.tables.insert((composite, name.into()), table);
     }
 
     /// Every composite: those asked for, then those that they name.

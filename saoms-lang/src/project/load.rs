@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{ClassPath, Classes, Compilation, Input, PluginFault, Project, folder, libraries};
 use crate::assembly::Assembly;
 use crate::check::{self, Occurrences, Options, Setting, SeveritySetting, Variable};
-use crate::contribution::{Finder, read_values, root};
+use crate::contribution::{Finder, read_tables, read_values, root};
 use crate::diagnostic::Diagnostics;
 use crate::load::{self, STANDARD_INPUT, load_file, read_from};
 use crate::model::{Composite, Contribution};
@@ -127,6 +127,11 @@ impl Project {
         }
         let variables = Variable::read(&contribution, |name| (self.environment)(name), &mut sources, &mut diagnostics);
         let options = Options { variables, ..options };
+        if !self.in_memory {
+            read_tables(&mut contribution, self.max_size, &mut sources, &mut diagnostics, |contribution, sources| {
+                check::wanted_tables(contribution, &registry, &options, sources)
+            });
+        }
         let is_part = self.is_part;
         Loaded { contribution, registry, sources, problems, diagnostics, options, is_part }
     }

@@ -8,7 +8,7 @@ use std::thread;
 use saoms_api::extension::{EventLanguage, EventReader, LineFault};
 use saoms_api::host::is_invisible;
 use saoms_api::{Level, Time};
-use saoms_core::schedule::{Handle, Hold, InjectedContent, Injection};
+use saoms_core::schedule::{Handle, Hold, InjectError, InjectedContent, Injection};
 
 /// The most bytes of a line.
 const LONGEST: usize = 65_536;
@@ -99,24 +99,46 @@ impl Events {
         }
     }
 
-    /// Injects the messages of a line, and counts them.
+    /// Injects the messages of a line, and counts them. A site may stand before the event: `North: at 3s ...`.
     fn inject(&mut self, line: &str, now: Time, handle: &Handle) -> Result<i64, String> {
+        let (site, event) = line.split_once(':').map_or(("", line), |(site, event)| (site.trim(), event));
         let mut problem = None;
         for (topic, reader) in &mut self.languages {
-            match reader.read(line, now) {
+            match reader.read(event, now) {
                 Ok(messages) => {
                     let count = i64::try_from(messages.len()).unwrap_or(i64::MAX);
+                    let on_bus = if site.is_empty() { (*topic).to_owned() } else { format!("{site}/{topic}") };
                     for message in messages {
-                        let (topic, content) = ((*topic).to_owned(), InjectedContent::Bytes(message.bytes));
-                        let injection = Injection { topic, content, at: message.at, text: message.text };
-                        handle.inject(injection).map_err(|error| error.to_string())?;
+                        let content = InjectedContent::Bytes(message.bytes);
+                        let injection =
+                            Injection { topic: on_bus.clone(), content, at: message.at, text: message.text };
+                        handle.inject(injection).map_err(|error| refused(site, topic, &error))?;
                     }
                     return Ok(count);
                 }
                 Err(fault) => problem = problem.or(Some(fault)),
             }
         }
-        Err(problem.map_or_else(|| "no class of this program takes events".to_owned(), |one| shown(line, &one)))
+        let before = line.len() - event.len();
+        let shifted = |one: LineFault| LineFault { bytes: one.bytes.start + before..one.bytes.end + before, ..one };
+        let none = || "no class of this program takes events".to_owned();
+        Err(problem.map_or_else(none, |one| shown(line, &shifted(one))))
+    }
+}
+
+/// The reason why an event for a site, or for a fleet without sites, does not happen.
+fn refused(site: &str, topic: &str, error: &InjectError) -> String {
+    let InjectError::UnknownTopic { known, .. } = error else { return error.to_string() };
+    let of_site = |name: &String| name.strip_suffix(topic)?.strip_suffix('/').map(str::to_owned);
+    let sites: Vec<String> = known.iter().filter_map(of_site).collect();
+    match (site, sites.first()) {
+        ("", None) => error.to_string(),
+        (site, None) => format!("this fleet has no sites: write the event without `{site}:`"),
+        ("", Some(first)) => {
+            let sites = sites.join(", ");
+            format!("this fleet has sites: write for which one it is, as in `{first}: at 3s ...`; they are {sites}")
+        }
+        (site, Some(_)) => format!("the fleet has no site `{site}`; its sites are {}", sites.join(", ")),
     }
 }
 

@@ -96,6 +96,39 @@ fn events_of_standard_input_and_of_a_file_give_the_same_run_in_virtual_time() {
 }
 
 #[test]
+fn an_event_says_its_site() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("inner.composite"), FLEET).unwrap();
+    let site = |name: &str| {
+        format!(
+            "<component name=\"{name}\" saoms:site=\"{name}\"><implementation.composite name=\"y:Yard\"/></component>"
+        )
+    };
+    let outer = FLEET[..FLEET.find('>').unwrap() + 1].to_owned()
+        + "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:saoms=\"urn:saoms:1\" \
+           xmlns:y=\"http://example.com/yard\" name=\"Yards\" targetNamespace=\"http://example.com/yard\">"
+        + &site("North")
+        + &site("South")
+        + "</composite>";
+    fs::write(folder.path().join("yard.composite"), outer).unwrap();
+    let yard = Yard { folder };
+    let lines =
+        "North: luggage (3,1) to (3,4)\nluggage (1,1) to (5,5)\nNort: luggage (1,1) to (5,5)\nSouth: lugage (1,1)\n";
+    let (output, text) = yard.run(&["--virtual", "--events", "-", "--for", "10min"], lines);
+    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(text.contains("North/Robot001    deposited luggage 1000001"), "{text}");
+    assert!(text.contains("line 2 of the events is ignored: this fleet has sites: write for which one"), "{text}");
+    assert!(
+        text.contains("line 3 of the events is ignored: the fleet has no site `Nort`; its sites are North, South"),
+        "{text}"
+    );
+    assert!(text.contains("    South: lugage (1,1)\n           ^^^^^^\n"), "{text}");
+    let (_, text) =
+        Yard::new().run(&["--virtual", "--events", "-", "--for", "10min"], "North: luggage (3,1) to (3,4)\n");
+    assert!(text.contains("this fleet has no sites: write the event without `North:`"), "{text}");
+}
+
+#[test]
 fn a_wrong_line_is_told_with_its_number_and_the_run_goes_on() {
     let lines = "at 1s lugage (3,1) to (3,4)\n\nluggage (3,1) to (3,4)\nluggage (99,1) to (3,4)\n\x1b[2Jend\n\u{fffd}";
     let yard = Yard::new();

@@ -23,6 +23,23 @@ fn the_contribution_of_two_teams_shares_the_work() {
 }
 
 #[test]
+fn two_sites_from_one_composite_do_not_hear_each_other() {
+    let checked = saoms(&["check", "--wiring", "composites/sites"]);
+    let wiring = stdout(&checked);
+    assert!(wiring.ends_with("13 components: 0 errors, 0 warnings\n"), "{wiring}{}", stderr(&checked));
+    assert!(wiring.contains("North/ETOPIC") && wiring.contains("South/ETOPIC"), "{wiring}");
+    let run = saoms(&["run", "composites/sites", "--virtual"]);
+    assert_eq!(code(&run), 0, "{}", stderr(&run));
+    let shown = stdout(&run);
+    assert!(shown.contains("25 of 25 pieces of luggage delivered, no collision, 0 stranded"), "{shown}");
+    let delivered = |site: &str| {
+        let of_site = shown.lines().filter(|line| line.contains(&format!("{site}/Robot")));
+        of_site.filter(|line| line.contains("deposited luggage")).count()
+    };
+    assert_eq!((delivered("North"), delivered("South")), (10, 15), "{shown}");
+}
+
+#[test]
 fn each_checks_without_errors() {
     for path in shipped() {
         if path.parent().unwrap().ends_with("manual") {

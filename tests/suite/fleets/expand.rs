@@ -27,7 +27,9 @@ fn runs_the_same(fleet: &Fleet) {
 
 #[test]
 fn shipped_fleets_run_the_same_when_they_are_expanded() {
-    for path in shipped().into_iter().chain([root().join("composites/teams/teams.composite")]) {
+    let of_composites =
+        ["teams/teams.composite", "sites/sites.composite"].map(|path| root().join("composites").join(path));
+    for path in shipped().into_iter().chain(of_composites) {
         runs_the_same(&Fleet::of_file(&path));
     }
 }

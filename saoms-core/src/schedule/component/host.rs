@@ -132,11 +132,6 @@ fn stamp<'a>(shared: &'a Shared, part: &Part) -> Stamp<'a> {
     Stamp { ids: &shared.records, component: part.index, time: part.now }
 }
 
-/// The name of a topic on the bus.
-fn renamed<'a>(task: Option<&'a TaskProperties>, name: &'a str) -> &'a str {
-    task.map_or(name, |task| task.topic_rename.name(name))
-}
-
 impl Host for ComponentHost<'_> {
     fn name(&self) -> &str {
         &self.part.name
@@ -182,11 +177,11 @@ impl Host for ComponentHost<'_> {
     }
 
     fn publish(&mut self, topic: &TopicDeclaration<'_>) -> Result<u32, Failure> {
-        let task = self.may_use(topic.name, TopicUse::Publish)?;
-        let name = renamed(task, topic.name);
-        let observers = self.shared.observers.of_topic(name, topic);
+        self.may_use(topic.name, TopicUse::Publish)?;
+        let name = self.spec().topic(topic.name);
+        let observers = self.shared.observers.of_topic(&name, topic);
         let bus = &mut self.shared.lock().bus;
-        let id = bus.publisher(name, topic, &self.part.name).map_err(|mismatch| Failure::new(mismatch.to_string()))?;
+        let id = bus.publisher(&name, topic, &self.part.name).map_err(|mismatch| Failure::new(mismatch.to_string()))?;
         bus.observe(id, &observers);
         self.part.publishers.push(id);
         Ok((self.part.publishers.len() - 1) as u32)
@@ -200,10 +195,10 @@ impl Host for ComponentHost<'_> {
             )));
         };
         let mut engine = self.shared.lock();
-        let name = renamed(Some(task), topic.name);
+        let name = self.spec().topic(topic.name);
         let fresh = engine
             .bus
-            .subscribe(name, topic, &self.part.name, task.queue)
+            .subscribe(&name, topic, &self.part.name, task.queue)
             .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
         // An instance that replaces a failed one gets the events that came meanwhile.
         let same = |kept: &crate::bus::TopicReader| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);

@@ -20,7 +20,7 @@ use crate::model::{
     ComponentElement, ComponentType, Composite, Contribution, ReferenceElement, ServiceElement, WireElement,
 };
 use crate::registry::Registry;
-use crate::source::{FileId, Location};
+use crate::source::{FileId, Location, Text};
 use crate::syntax::ElementId;
 
 /// The components of a fleet in document order, those of inner composites behind the component that each implements.
@@ -51,6 +51,8 @@ pub(crate) struct Fleet<'a> {
     pub(crate) names: Vec<Option<Rc<Names>>>,
     /// The values with a fault that is reported.
     pub(crate) faulty_values: Rc<FaultyValues>,
+    /// The files of tables that are not read, since their names are expressions: each at its attribute.
+    pub(crate) wanted_tables: Vec<Text>,
     /// The rest of the elements that paths of sources may look at.
     pub(crate) elements: Rc<Budget>,
 }
@@ -116,6 +118,8 @@ pub(crate) struct Member<'a> {
     /// True if it stands for one that a fault keeps from being made: what is known of it is checked, and nothing is
     /// said of what others would share with it.
     pub(crate) is_partial: bool,
+    /// The site, with those around it; empty outside all sites.
+    pub(crate) site: SmolStr,
     /// The fault of having the name of an earlier one.
     pub(crate) repeated: Option<Faulty>,
     /// Its path, where that is more than its name.
@@ -173,6 +177,7 @@ impl<'a> Member<'a> {
             is_copy: false,
             is_absent: false,
             is_partial: false,
+            site: SmolStr::default(),
             repeated: None,
             path: None,
         }

@@ -1,6 +1,6 @@
 //! Rules of plugins and component crates over the whole fleet.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
 use saoms_api::rule::{ClassView, ComponentView, FleetView};
@@ -21,18 +21,17 @@ fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
     std::iter::once(class.class.declaration_json()).chain(class.class.extended_json()).collect()
 }
 
-/// Asks the rules about the components that are resolved; where some are not, or where their wires lead is not known,
-/// only the rules that can judge a part of a fleet.
+/// Asks the rules about the components of each site that are resolved; where some are not, or where their wires lead is
+/// not known, only the rules that can judge a part of a fleet.
 pub(crate) fn check<'s>(
     fleet: &'s Fleet<'_>,
     checks: &'s [ComponentCheck<'_>],
-    wiring: &Wiring,
-    repeated: &RepeatedValues,
+    wiring: &'s Wiring,
+    repeated: &'s RepeatedValues,
     rules: impl Iterator<Item = &'s RegisteredRule>,
     report: &mut Report<'_>,
 ) {
-    let mut parts: Vec<usize> = Vec::with_capacity(fleet.members.len());
-    let mut indices: Vec<Option<usize>> = Vec::with_capacity(fleet.members.len());
+    let mut sites: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     // One of each class is enough, and one for all whose class is not known.
     let mut missing: Vec<Option<Vec<&'s str>>> = Vec::new();
     let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
@@ -45,78 +44,126 @@ pub(crate) fn check<'s>(
     if fleet.scopes.iter().any(|scope| scope.fault.is_some()) {
         miss(&mut missing, None);
     }
-    for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
+    for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate().filter(|(_, (one, _))| one.runs()) {
         let class = fleet.class_of(place);
         // Which of two components of one name is meant is not known.
-        if member.runs() && member.repeated.is_none() && check.is_sound() && class.is_some() {
-            indices.push(Some(parts.len()));
-            parts.push(place);
-            continue;
-        }
-        indices.push(None);
-        if member.runs() {
+        if member.repeated.is_none() && check.is_sound() && class.is_some() {
+            sites.entry(&member.site).or_default().push(place);
+        } else {
             miss(&mut missing, class);
         }
     }
-    let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place)?));
-    let subject = |index: usize| {
-        let place = *parts.get(index)?;
-        let member = &fleet.members[place];
-        // Rules judge the values of the task, too.
-        let values = checks[place].given.all();
-        Some(Subject { name: member.path(), values, ..checks[place].subject(member) })
-    };
-    let Some(first) = subject(0) else { return };
     let is_whole = missing.is_empty();
-    let all = || parts.iter().filter_map(part);
-    let open = all().filter(|(place, ..)| wiring[*place].iter().any(Option::is_none));
-    open.for_each(|(.., class)| miss(&mut missing, Some(class)));
-    let wires = all().map(|(place, _, class)| {
-        let ends = class.references.iter().zip(&wiring[place]);
-        let known = ends.flat_map(|(reference, targets)| {
-            let known = targets.iter().flatten().filter_map(|provider| indices[provider.member]);
-            known.map(|index| (reference.name.as_str(), index))
-        });
-        known.collect()
-    });
-    let wires: Vec<Vec<(&str, usize)>> = wires.collect();
-    let mut classes = ClassViews::new();
-    let renamed: Vec<Vec<(&str, &str)>> = all().map(|(_, check, _)| renamed(check)).collect();
-    let views = all().zip(wires.iter().zip(&renamed)).map(|((place, check, class), (wires, renamed))| ComponentView {
-        path: fleet.members[place].path(),
-        class: class_view(&mut classes, class, check),
-        values: check.given.own(),
-        period: check.task.as_ref().map(|task| task.period),
-        starts: check.task.as_ref().is_none_or(|task| task.run_on_startup),
-        has_broker: check.task.as_ref().is_some_and(|task| task.url.is_some()),
-        renamed,
-        wires,
-    });
-    let views: Vec<ComponentView<'_>> = views.collect();
-    let view = FleetView::new(&views).without(&missing);
-    for rule in rules.filter(|rule| rule.judges_parts() || is_whole) {
-        let findings = match rule.check(&view) {
-            Ok(findings) => findings,
-            Err(failure) => {
-                let message = format!("the rule {} failed: {failure}", rule.code().name);
-                let one = Diagnostic::new(rule.code(), first.at, message).severity(Severity::Warning);
-                report.push(one.help("this is a fault of the rule, not of the fleet"));
-                continue;
+    for (place, class) in sites.values().flatten().filter_map(|place| Some((*place, fleet.class_of(*place)?))) {
+        if wiring[place].iter().any(Option::is_none) {
+            miss(&mut missing, Some(class));
+        }
+    }
+    let rules: Vec<&RegisteredRule> = rules.filter(|rule| rule.judges_parts() || is_whole).collect();
+    let facts = Facts { fleet, checks, wiring, repeated, missing };
+    let is_known: HashSet<usize> = sites.values().flatten().copied().collect();
+    for own in sites.into_values() {
+        let mut parts = own.clone();
+        // What they are wired to in other sites is seen, and judged there.
+        let mut indices: HashMap<usize, usize> = own.iter().enumerate().map(|(index, place)| (*place, index)).collect();
+        let mut next = 0;
+        while let Some(place) = parts.get(next) {
+            for provider in wiring[*place].iter().flatten().flatten().map(|provider| provider.member) {
+                if is_known.contains(&provider) && !indices.contains_key(&provider) {
+                    indices.insert(provider, parts.len());
+                    parts.push(provider);
+                }
             }
+            next += 1;
+        }
+        facts.check_site(&parts, own.len(), &indices, &rules, report);
+    }
+}
+
+/// The findings of earlier phases that rules are told of.
+struct Facts<'s, 'f> {
+    fleet: &'s Fleet<'f>,
+    checks: &'s [ComponentCheck<'f>],
+    wiring: &'s Wiring,
+    repeated: &'s RepeatedValues,
+    /// The declarations of the classes of components that are not resolved, each once.
+    missing: Vec<Option<Vec<&'s str>>>,
+}
+
+impl<'s, 'f> Facts<'s, 'f> {
+    /// Asks the rules about these components, the first `own` of which are of one site; `indices` has their places.
+    fn check_site(
+        &self,
+        parts: &[usize],
+        own: usize,
+        indices: &HashMap<usize, usize>,
+        rules: &[&'s RegisteredRule],
+        report: &mut Report<'_>,
+    ) {
+        let Self { fleet, checks, wiring, repeated, missing } = self;
+        let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place)?));
+        let subject = |index: usize| {
+            let place = *parts.get(index)?;
+            let member = &fleet.members[place];
+            // Rules judge the values of the task, too.
+            let values = checks[place].given.all();
+            Some(Subject { name: member.path(), values, ..checks[place].subject(member) })
         };
-        for finding in &findings {
-            let severity = finding.own_severity().unwrap_or(rule.code().severity);
-            let own = finding.place().component_index().and_then(subject).unwrap_or(first);
-            match finding.place().component_index().and_then(|index| parts.get(index)) {
-                Some(place) => report.about(&fleet.members[*place]),
-                None => report.about_all(),
-            }
-            let Some(one) = diagnostic(rule.code(), severity, finding, own, &subject, report) else {
-                continue;
+        let Some(first) = subject(0) else { return };
+        let all = || parts.iter().filter_map(part);
+        let wires = all().map(|(place, _, class)| {
+            let ends = class.references.iter().zip(&wiring[place]);
+            let known = ends.flat_map(|(reference, targets)| {
+                let known = targets.iter().flatten().filter_map(|provider| indices.get(&provider.member));
+                known.map(|index| (reference.name.as_str(), *index))
+            });
+            known.collect()
+        });
+        let wires: Vec<Vec<(&str, usize)>> = wires.collect();
+        let mut classes = ClassViews::new();
+        let renamed: Vec<Vec<(&str, &str)>> = all().map(|(_, check, _)| renamed(check)).collect();
+        let views =
+            all().zip(wires.iter().zip(&renamed)).map(|((place, check, class), (wires, renamed))| ComponentView {
+                path: fleet.members[place].path(),
+                class: class_view(&mut classes, class, check),
+                values: check.given.own(),
+                period: check.task.as_ref().map(|task| task.period),
+                starts: check.task.as_ref().is_none_or(|task| task.run_on_startup),
+                has_broker: check.task.as_ref().is_some_and(|task| task.url.is_some()),
+                renamed,
+                wires,
+            });
+        let views: Vec<ComponentView<'_>> = views.collect();
+        let view = FleetView::new(&views).without(missing);
+        for rule in rules {
+            let findings = match rule.check(&view) {
+                Ok(findings) => findings,
+                Err(failure) => {
+                    let message = format!("the rule {} failed: {failure}", rule.code().name);
+                    let one = Diagnostic::new(rule.code(), first.at, message).severity(Severity::Warning);
+                    report.push(one.help("this is a fault of the rule, not of the fleet"));
+                    continue;
+                }
             };
-            // A value that two components share is faulty already.
-            if !repeated.contains(one.location) {
-                report.push(one);
+            for finding in &findings {
+                let is_elsewhere =
+                    finding.place().component_index().is_some_and(|index| (own..parts.len()).contains(&index));
+                if is_elsewhere {
+                    continue;
+                }
+                let severity = finding.own_severity().unwrap_or(rule.code().severity);
+                let own = finding.place().component_index().and_then(subject).unwrap_or(first);
+                match finding.place().component_index().and_then(|index| parts.get(index)) {
+                    Some(place) => report.about(&fleet.members[*place]),
+                    None => report.about_all(),
+                }
+                let Some(one) = diagnostic(rule.code(), severity, finding, own, &subject, report) else {
+                    continue;
+                };
+                // A value that two components share is faulty already.
+                if !repeated.contains(one.location) {
+                    report.push(one);
+                }
             }
         }
     }

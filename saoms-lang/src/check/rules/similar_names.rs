@@ -7,8 +7,8 @@ use crate::diagnostic::{Candidates, nearest};
 
 /// The topics of a fleet, to be found by what they are like.
 pub(crate) struct Similar<'t> {
-    /// Those of one kind with one type of messages, in the order of their names.
-    groups: HashMap<(&'static str, &'t str), Vec<Known<'t>>>,
+    /// Those of one site and kind with one type of messages, in the order of their names.
+    groups: HashMap<Key<'t>, Vec<Known<'t>>>,
     /// The rest of the names that are looked at for all topics together: in a fleet in which each robot has topics of
     /// its own every search goes through those of all others.
     candidates: Candidates,
@@ -76,6 +76,9 @@ impl Name {
     }
 }
 
-fn key(topic: &TrafficTopic) -> (&'static str, &str) {
-    (topic.kind.name(), &topic.message)
+/// Site, kind and type of the messages of a topic.
+type Key<'t> = (&'t str, &'static str, &'t str);
+
+fn key(topic: &TrafficTopic) -> Key<'_> {
+    (&topic.site, topic.kind.name(), &topic.message)
 }

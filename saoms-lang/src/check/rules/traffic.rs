@@ -1,12 +1,13 @@
 //! The wiring report of topics: ends without a counterpart, names that are nearly the same, queues that overflow.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 use std::time::Duration;
 
 use saoms_api::host::{TopicKind, format_duration};
 
-use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic};
+use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic, on_bus};
 use crate::check::component::{ComponentCheck, Renamed};
 use crate::check::fleet::{Fleet, Member};
 use crate::check::report::Report;
@@ -80,9 +81,7 @@ struct All<'a> {
 impl All<'_> {
     /// The place from which a component has the name of a topic.
     fn at(&self, end: &TopicEnd, topic: &TrafficTopic) -> Location {
-        let place = &self.places[end.component];
-        let renamed = place.renamed.iter().find(|one| one.new == topic.name);
-        renamed.map_or(place.name, |one| one.new_at)
+        self.renamed(end, topic).map_or(self.places[end.component].name, |one| one.new_at)
     }
 
     /// `component X`, or `component X and 3 others`.
@@ -118,7 +117,23 @@ impl All<'_> {
     }
 
     fn is_renamed(&self, end: &TopicEnd, topic: &TrafficTopic) -> bool {
-        self.places[end.component].renamed.iter().any(|one| one.new == topic.name)
+        self.renamed(end, topic).is_some()
+    }
+
+    /// The pair of `topicRename` from which a component has the name of a topic.
+    fn renamed(&self, end: &TopicEnd, topic: &TrafficTopic) -> Option<&Renamed> {
+        let site = &self.assembly.components[end.component].site;
+        self.places[end.component].renamed.iter().find(|one| on_bus(site, &one.new) == topic.name)
+    }
+
+    /// The name of a topic as the `topicRename` of a component has it.
+    fn local<'t>(&self, end: &TopicEnd, topic: &'t TrafficTopic) -> Cow<'t, str> {
+        let site = &self.assembly.components[end.component].site;
+        match topic.name.strip_prefix(site.as_str()).and_then(|rest| rest.strip_prefix('/')) {
+            _ if site.is_empty() => topic.name.as_str().into(),
+            Some(inside) => inside.into(),
+            None => format!("/{}", topic.name).into(),
+        }
     }
 
     fn alone(&self, topic: &TrafficTopic, meant: &TrafficTopic, report: &mut Report<'_>) {
@@ -153,7 +168,7 @@ impl All<'_> {
         let one = Diagnostic::new(&codes::TOPIC_NEAR, at, message)
             .label(self.at(other, meant), format!("{do_not} {}", quoted(&meant.name)));
         report.push(match self.is_renamed(end, lone) {
-            true => one.replace(&lone.name, at, &meant.name),
+            true => one.replace(&self.local(end, lone), at, &self.local(end, meant)),
             false => one.help("`topicRename` gives topics other names"),
         });
     }

@@ -3,7 +3,9 @@
 use std::collections::{HashMap, HashSet};
 
 use saoms_api::host::TopicKind;
+use smol_str::SmolStr;
 
+use crate::assembly::on_bus;
 use crate::check::component::Renamed;
 use crate::check::fleet::Member;
 use crate::check::fleet::class_index::ClassIndex;
@@ -16,8 +18,9 @@ use crate::source::Location;
 #[derive(Default)]
 pub(crate) struct Topics<'a> {
     ends: HashMap<String, End<'a>>,
-    /// The classes whose topics were added under their own names: one component speaks for all others of its class.
-    plain: HashSet<usize>,
+    /// By site, the classes whose topics were added under their own names: one component speaks for all others of its
+    /// class.
+    plain: HashSet<(SmolStr, usize)>,
 }
 
 /// The component that uses a topic first.
@@ -38,7 +41,7 @@ impl<'a> Topics<'a> {
         renamed: &[Renamed],
         report: &mut Report<'_>,
     ) {
-        if renamed.is_empty() && !self.plain.insert(index) {
+        if renamed.is_empty() && !self.plain.insert((member.site.clone(), index)) {
             return;
         }
         let published = class.publishes.iter().map(|topic| ("publishes", *topic));
@@ -47,12 +50,12 @@ impl<'a> Topics<'a> {
         let subscribed = subscribed.map(|topic| ("subscribes to", topic));
         for (verb, topic) in published.chain(subscribed) {
             let renamed = renamed.iter().find(|one| one.old == topic.name);
-            let name = renamed.map_or(&topic.name, |renamed| &renamed.new);
+            let name = on_bus(&member.site, renamed.map_or(&topic.name, |renamed| &renamed.new));
             let place = renamed.map_or(member.component.name.location, |renamed| renamed.new_at);
             let end = End { component: member.path(), place, declaration: topic, verb };
-            match self.ends.get(name) {
-                None => _ = self.ends.insert(name.clone(), end),
-                Some(first) => compare(name, first, &end, report),
+            match self.ends.get(&*name) {
+                None => _ = self.ends.insert(name.into_owned(), end),
+                Some(first) => compare(&name, first, &end, report),
             }
         }
     }

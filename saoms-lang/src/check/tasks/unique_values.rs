@@ -36,10 +36,10 @@ fn uses<'u, 'r>(
 /// Collects values that components must not share.
 #[derive(Default)]
 pub(crate) struct Unique<'a> {
-    /// The first user of each value of a property with a word, which says what must have a value of its own.
-    words: HashMap<(&'a str, SmolStr), User>,
-    /// The first task with each ID, and the word of its property.
-    tasks: HashMap<SmolStr, (User, Option<&'a str>)>,
+    /// By site, the first user of each value of a property with a word, which says what must have a value of its own.
+    words: HashMap<(SmolStr, &'a str, SmolStr), User>,
+    /// By site, the first task with each ID, and the word of its property.
+    tasks: HashMap<(SmolStr, SmolStr), (User, Option<&'a str>)>,
     pub(crate) repeated: RepeatedValues,
 }
 
@@ -78,18 +78,19 @@ impl<'a> Unique<'a> {
     ) {
         // That there are two components of one name is reported.
         let is_other = |first: &User| fleet.members[first.member].path() != fleet.members[member].path();
+        let site = &fleet.members[member].site;
         for (value, place, entry) in uses(&fleet.members[member], class, given) {
             let user = User { member, place };
             let word = entry.main.unique.as_deref();
             if let Some(word) = word {
-                let first = *self.words.entry((word, value.clone())).or_insert(user);
+                let first = *self.words.entry((site.clone(), word, value.clone())).or_insert(user);
                 if is_other(&first) {
                     *self.repeated.0.entry(place).or_default() |= fleet.members[member].is_copy;
                     shared(&value, word, [first, user], entry.main, fleet, report);
                 }
             }
             if entry.is_task_id() {
-                let (first, of_first) = *self.tasks.entry(value.clone()).or_insert((user, word));
+                let (first, of_first) = *self.tasks.entry((site.clone(), value.clone())).or_insert((user, word));
                 let is_reported = word.is_some() && word == of_first;
                 if is_other(&first) && !is_reported {
                     task(&value, [first, user], fleet, report);

@@ -1,11 +1,16 @@
 //! Components of a fleet in the making, each with its name in its scope.
 
+use std::borrow::Cow;
+
+use smol_str::SmolStr;
+
 use super::Unfolding;
 use super::conditions::Presence;
 use crate::check::fleet::Member;
 use crate::check::judged::Faulty;
 use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::expression::{has_expression, render};
 use crate::model::{ComponentElement, Naming};
 use crate::syntax::Element;
 
@@ -32,6 +37,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             || instance.is_some_and(|instance| instance.partial.is_some())
             || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
         let is_partial = member.is_partial;
+        member.site = self.site(component, unit, owner);
         member.is_copy = instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy);
         let own = component.path.as_ref().unwrap_or(&component.name);
         match owner {
@@ -64,6 +70,32 @@ impl<'a> Unfolding<'a, '_, '_> {
         if let Some(naming) = Naming::of_component(component) {
             self.inner(index, naming, !is_seen);
         }
+    }
+
+    /// The site of a component: its own inside that of its `owner`, the component around it. One that is no name is
+    /// reported.
+    fn site(&mut self, component: &ComponentElement, unit: usize, owner: Option<usize>) -> SmolStr {
+        let around = owner.map(|owner| self.fleet.members[owner].site.clone()).unwrap_or_default();
+        let Some(written) = &component.site else { return around };
+        let mut own = Cow::Borrowed(written.as_str());
+        // Replicas have their texts without expressions; a component that stands for faulty ones may keep some.
+        if has_expression(written) {
+            let names = self.names(unit);
+            match render(written, &mut |name| names.value(name)) {
+                Ok(value) => own = value.into(),
+                Err(faults) => {
+                    self.faults(&names, &[(written.clone(), faults)]);
+                    return around;
+                }
+            }
+        }
+        if own.split('/').any(|name| name.is_empty() || name.contains(char::is_whitespace)) {
+            let message = format!("{} is no name of a site", quoted(&own));
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, written.location, message);
+            self.report.push(one.help("write a name without blanks, as `North`, or several with `/` between them"));
+            return around;
+        }
+        if around.is_empty() { own.into() } else { format!("{around}/{own}").into() }
     }
 
     fn repeated(&mut self, component: &ComponentElement, first: usize) {

@@ -51,6 +51,7 @@ pub(crate) fn unfold<'a>(
         faulty_values: Rc::default(),
         elements: Rc::clone(&elements),
         registry: None,
+        wanted_tables: Vec::new(),
     };
     let mut unfolding = Unfolding {
         fleet,

@@ -6,11 +6,13 @@ use std::rc::Rc;
 use super::Unfolding;
 use super::conditions::Presence;
 use super::replica_plan::{Plan, condition, first_index};
-use crate::check::judged::Faulty;
+use crate::check::judged::{Faulty, Judged};
 use crate::check::values::expression_scope::Names;
 use crate::check::values::replica::{Instance, Partial, Replica};
-use crate::expression::pattern;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::expression::{has_expression, pattern, render};
 use crate::model::{ComponentElement, Replicas, Table};
+use crate::source::Text;
 
 impl<'a> Unfolding<'a, '_, '_> {
     /// Makes what stands next in the composite at hand.
@@ -24,11 +26,13 @@ impl<'a> Unfolding<'a, '_, '_> {
             return self.member(component, component, None, presence);
         };
         let names = self.names(unit);
+        let table = self.table(replicas, &names);
         let Ok(plan) = Plan::of(
             component,
             replicas,
             document,
             &names,
+            table,
             (self.replicas_left.left(), self.lowers_attributes),
             self.report,
         ) else {
@@ -78,6 +82,30 @@ impl<'a> Unfolding<'a, '_, '_> {
             self.fleet.groups.entry((scope, pattern(&plan.component.name))).or_default().push(member);
         }
         true
+    }
+
+    /// The table of replicas. One that was not read is reported, and is wanted where its name is an expression: each
+    /// use of a composite may have its own.
+    fn table(&mut self, replicas: &'a Replicas, names: &Names) -> Judged<Option<&'a Table>> {
+        let Some(file) = &replicas.overrides else { return Ok(None) };
+        let table = if !has_expression(file) {
+            replicas.table.as_deref()
+        } else {
+            let name = render(file, &mut |name| names.value(name)).map_err(|faults| {
+                self.faults(names, &[(file.clone(), faults)]);
+                Faulty
+            })?;
+            let table = self.fleet.contribution.table(file.location.file, &name);
+            if table.is_none() {
+                self.fleet.wanted_tables.push(Text::new(name.into(), file.location));
+            }
+            table
+        };
+        // As a rule it was reported by who tried to read it.
+        if table.is_none() && !self.report.has_errors() {
+            self.report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
+        }
+        table.map(Some).ok_or(Faulty)
     }
 
     /// Looks at a component whose number of replicas is not known.

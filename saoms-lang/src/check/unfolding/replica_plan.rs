@@ -29,6 +29,7 @@ pub(crate) struct Plan<'a> {
     pub(crate) left: Range<i64>,
     /// As how many they count.
     pub(crate) cost: u64,
+    table: Option<&'a Table>,
     /// By index, the line of the table.
     rows: HashMap<i64, usize>,
 }
@@ -40,6 +41,7 @@ impl<'a> Plan<'a> {
         replicas: &'a Replicas,
         document: &Document,
         names: &Rc<Names>,
+        table: Judged<Option<&'a Table>>,
         (left, lowers_attributes): (u64, bool),
         report: &mut Report<'_>,
     ) -> Judged<Self> {
@@ -60,11 +62,6 @@ impl<'a> Plan<'a> {
             report.push(one.help("add `saoms:count=\"...\"`"));
             return Err(Faulty);
         };
-        let is_readable = replicas.overrides.is_none() || replicas.table.is_some();
-        if let (Some(file), false) = (&replicas.overrides, is_readable || report.has_errors()) {
-            // As a rule it was reported by who tried to read it.
-            report.push(Diagnostic::new(&codes::FILE_UNREADABLE, file.location, "the file was not read"));
-        }
         let count = number(written, names, report);
         let from = replicas.from.as_ref().map_or(Ok(1), |from| number(from, names, report));
         let is_named = has_index(component, names, report);
@@ -91,10 +88,12 @@ impl<'a> Plan<'a> {
             None => ("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`".to_owned()),
             Some(end) => {
                 let names = Rc::clone(names);
-                let mut plan = Self { component, names, first: from, left: from..end, cost, rows: HashMap::new() };
+                let lines = table.ok().flatten();
+                let (left, rows) = (from..end, HashMap::new());
+                let mut plan = Self { component, names, first: from, left, cost, table: lines, rows };
                 // With faults in its lines all others count.
-                replicas.table.iter().for_each(|table| plan.rows(table, report));
-                return if is_readable && is_named { Ok(plan) } else { Err(Faulty) };
+                lines.iter().for_each(|table| plan.rows(table, report));
+                return if table.is_ok() && is_named { Ok(plan) } else { Err(Faulty) };
             }
         };
         let one = Diagnostic::new(&codes::REPLICAS, written.location, message).help(help);
@@ -109,8 +108,7 @@ impl<'a> Plan<'a> {
 
     /// The row of the table for an index.
     pub(crate) fn row(&self, index: i64) -> Option<(&'a Table, usize)> {
-        let table = self.component.replicas.as_ref()?.table.as_deref()?;
-        Some((table, *self.rows.get(&index)?))
+        Some((self.table?, *self.rows.get(&index)?))
     }
 
     /// Finds the line of each replica. What is wrong with the lines is reported.

@@ -236,6 +236,7 @@ attributes! {
     COUNT = known "count" Number: "How many replicas there are of the component. Its name has to hold an expression such as `${index}` or `${index:03}`; its values and targets can.";
     FROM = known "from" Number: "The index of the first replica; 1 unless given.";
     OVERRIDES = known "overrides" Table: "A table (CSV) beside the composite: a line for each replica that differs, a column for each property that does.";
+    SITE = known "site" Text: "The site of the component and of all that is inside it: its name is put before the names of their topics, as in `North/orders`, and IDs and numbers have to differ within a site alone.";
     IF = known "if" Condition: "It is there only where this is true: a comparison of properties of the composite, as `robots > 10 and site == 'north'`.";
     ENV = known "env" Variable: "The environment variable that the value is taken from, where it is set and nothing else gives one.";
 }
@@ -247,6 +248,7 @@ pub const OWN_ATTRIBUTES: &[(&str, Known)] = &[
     ("component", COUNT),
     ("component", FROM),
     ("component", OVERRIDES),
+    ("component", SITE),
     ("component", IF),
     ("include", IF),
     ("wire", IF),

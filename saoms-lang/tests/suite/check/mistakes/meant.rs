@@ -164,9 +164,9 @@ fn a_type_of_xml_schema_without_its_prefix_is_told() {
           fix: replace `bool` with `xs:boolean` [3:27-31 "xs:boolean"]
         4:27-33 warning S2050: the type `intger` without a prefix is none of XML Schema
           fix: replace `intger` with `xs:integer` [4:27-33 "xs:integer"]
-        7:80-82 error S2045: here is the text `3`, and a whole number is expected (in `R1`, index 1)
-          5:37-38 `n3` is this
-          help: `docs/fleets.md` says what expressions are
+        7:63-83 warning S4006: `password` is given without `user` (in `R1`, index 1)
+          help: give both, or neither
+        R1 (example.Robot) ID=Text("R1") number=Integer(1) gps->
     "#]]
     .assert_eq(&with(&["int", "bool", "intger", "Customer"], schema));
     expect![[r#"

@@ -5,3 +5,4 @@ mod expanded;
 pub(crate) mod fleets;
 mod nested;
 mod several;
+mod sites;
