@@ -167,6 +167,7 @@ codes! {
     CONSTRUCTION = "S3014" Error "construction" [AbsentPart]: "The values of a component do not fit together, as its class sees it.";
     LIBRARY = "S3015" Error "library": "The library that an implementation names is not found, cannot be used, or has no such class.";
     ONLY_READ = "S3016" Error "only-read" [OutlivesExpansion]: "A fleet needs the code of a library that was found, and that nobody named. A note where it is only checked.";
+    EXPRESSION_UNREAD = "S3017" Warning "expression-unread" [OutlivesExpansion]: "A value has an expression in a component without a count, where it stands for itself.";
     // S40: tasks and topics.
     TASK_ID_SHARED = "S4001" Warning "task-id-shared" [OutlivesExpansion]: "Two tasks have one ID.";
     TOPIC_RENAME = "S4002" Error "topic-rename": "A `topicRename` is malformed or contradicts itself.";

@@ -191,6 +191,20 @@ fn worlds_with_robots_have_environments_of_their_own() {
     assert_eq!(of_rule(renamed), 0, "it hears of other luggage");
 }
 
+#[test]
+fn an_id_with_an_expression_that_nobody_reads_says_so_once() {
+    let robot = "<implementation.java class=\"saoms.Robot\"/><property name=\"ID\">Robot${row}</property>";
+    let text = format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" name=\"t\">\n\
+         <property name=\"row\">3</property><component name=\"R\">{robot}<property name=\"period\">1s</property></component>\n\
+         </composite>"
+    );
+    let found = saoms_testkit::Fleet::of_text(text).diagnostics();
+    let told = "`Robot${row}` is taken as it stands";
+    assert_eq!(found.lines().count(), 1, "{found}");
+    assert!(found.starts_with("error S3014") && found.contains(told), "{found}");
+}
+
 /// The findings about shifts with these properties, wired to these components.
 fn shifts(all: &[(&str, &str, &str)], waits: bool) -> Vec<String> {
     let mut text = "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" \

@@ -4,7 +4,7 @@ use saoms_api::host::PropertyValue;
 
 use super::conversion::{Converted, Source, Target, convert};
 use super::given_values::{PropertyValues, ValuePlace};
-use super::{Giver, given_twice, missing};
+use super::{Giver, given_twice, missing, unread};
 use crate::check::fleet::property_table::{PropertyTable, TableEntry};
 use crate::check::judged::{Faulty, Judged};
 use crate::check::parameters::Parameters;
@@ -143,6 +143,9 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         let at = ValuePlace { property: place, places: places.into(), source, written: written.map(Box::new), as_task };
         self.found.push((value, at));
         self.slots[place].is_found = true;
+        if source.is_none() && unread::check(found, self.giver, self.report) {
+            self.parameters.leave_open(self.giver.member.unit);
+        }
         Ok(())
     }
 

@@ -29,6 +29,12 @@ impl<'a> Subject<'a> {
         self.value(name).is_some_and(|(_, place)| !place.places.is_empty())
     }
 
+    /// The text at a place, where a property has one text.
+    pub(crate) fn text(&self, place: &Place) -> Option<&'a str> {
+        let whole = self.value(place.property_name()?)?.0.as_text()?;
+        place.value_part().map_or(Some(whole), |(_, part)| whole.get(part))
+    }
+
     /// The value of the property of this name, with its place.
     fn value(&self, name: &str) -> Option<(&'a PropertyValue, &'a ValuePlace)> {
         let mut all = self.values.iter().zip(self.places);

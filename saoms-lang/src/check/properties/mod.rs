@@ -7,6 +7,7 @@ pub(crate) mod findings;
 pub(crate) mod foreign;
 pub(crate) mod given_values;
 pub(crate) mod missing;
+pub(crate) mod unread;
 mod wrong_text;
 
 use crate::check::fleet::{Fleet, Kind, Member};

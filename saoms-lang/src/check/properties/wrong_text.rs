@@ -24,7 +24,11 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
         return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
     }
     let is_counter = text.trim() == INDEX || has_index && COUNTERS.contains(&text.trim());
-    let by_index = if is_counter { Some(format!("${{{INDEX}}}")) } else { as_index(text.trim()) };
+    let by_index = match has_expression(text) {
+        _ if is_counter => Some(format!("${{{INDEX}}}")),
+        true => None,
+        false => as_index(text.trim()),
+    };
     if let Some(meant) = by_index.filter(|meant| meant != text.trim()) {
         return match has_index {
             true => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),

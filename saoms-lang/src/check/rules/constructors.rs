@@ -9,9 +9,11 @@ use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
 use crate::check::options::Options;
 use crate::check::properties::findings::{Subject, diagnostic};
+use crate::check::properties::unread;
 use crate::check::report::Report;
 use crate::check::tasks::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::expression::has_expression;
 use crate::registry::PropertyDeclaration;
 use saoms_api::host::{PropertyValue, contain::contained};
 use saoms_api::{Failure, Finding};
@@ -90,6 +92,12 @@ fn findings(
         let Some(one) = one else { continue };
         // A value that replicas share is faulty already.
         if repeated.is_of_replicas(one.location) {
+            continue;
+        }
+        // The text of an expression that nobody reads is wrong for that alone.
+        if let Some(text) = subject.text(finding.place()).filter(|text| has_expression(text) && !report.has_index()) {
+            report.withdraw(&codes::EXPRESSION_UNREAD, one.location);
+            report.push(unread::diagnostic(&codes::CONSTRUCTION, text, one.location).help(one.message));
             continue;
         }
         let is_plain = one.help.is_empty() && one.suggestions.is_empty();

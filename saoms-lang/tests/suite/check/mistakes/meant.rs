@@ -280,3 +280,38 @@ fn a_property_that_a_component_does_not_give_says_which() {
     "#]]
     .assert_eq(&with("<property name=\"whom\" value=\"1\"/><property name=\"other\" value=\"1\"/>"));
 }
+
+#[test]
+fn an_expression_that_nobody_reads_is_told() {
+    let with = |title: &str| {
+        let component = "<component name=\"R\"><implementation.java class=\"example.Reader\"/>";
+        of(&format!(
+            "<property name=\"n\">3</property>\n{component}<property name=\"title\">{title}</property></component>"
+        ))
+    };
+    expect![[r#"
+        3:89-93 warning S3017: `${n}` is taken as it stands: `${...}` is for components with a `saoms:count`
+          help: write `source="$n"` for the value of the property `n`
+        R (example.Reader) title=Text("${n}")
+    "#]]
+    .assert_eq(&with("${n}"));
+    expect![[r#"
+        3:89-104 warning S3017: `reader ${n + 1}` is taken as it stands: `${...}` is for components with a `saoms:count`
+          help: give the component a `saoms:count`, or write the value itself
+        R (example.Reader) title=Text("reader ${n + 1}")
+    "#]]
+    .assert_eq(&with("reader ${n + 1}"));
+    expect![[r#"
+        3:89-97 warning S3017: `${index}` is taken as it stands: `${...}` is for components with a `saoms:count`
+          help: give the component a `saoms:count`, or write the value itself
+        R (example.Reader) title=Text("${index}")
+    "#]]
+    .assert_eq(&with("${index}"));
+    // It may mean something to the class.
+    expect![[r#"
+        2:17-18 warning S2026: the property `n` of the composite is used by no component
+          help: a component takes its value with `source="$n"`
+        R (example.Reader) title=Text("${other}")
+    "#]]
+    .assert_eq(&with("${other}"));
+}

@@ -37,6 +37,8 @@ fn replicas_have_their_index_in_names_values_and_targets() {
     "#]].assert_eq(&of(ROBOTS, &["robots=1"]));
     expect![""].assert_eq(&of(ROBOTS, &["robots=0"]));
     expect![[r#"
+        3:104-125 warning S3017: `$${index} of ${index}` is taken as it stands: `${...}` is for components with a `saoms:count`
+          help: give the component a `saoms:count`, or write the value itself
         Gps-2 (example.Gps) other->
         Gps-1 (example.Gps) other->
         x (example.Reader) title=Text("$${index} of ${index}")
