@@ -6,13 +6,12 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use saoms_api::host::one_line;
 use saoms_lang::project::{INPUT, composite_files, document};
 use saoms_tools::format::Formatted;
 
 use crate::Exit;
 use crate::arguments::parse_size;
-use crate::output::{Place, eprint, eprint_coloured, print, print_as_is, replace};
+use crate::output::{Place, displayed, eprint, eprint_coloured, print, print_as_is, replace};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -59,11 +58,11 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
         match one(path, arguments) {
             Outcome::Formatted => {}
             Outcome::Unformatted => {
-                print(&format!("{}\n", one_line(&path.display().to_string())));
+                print(&format!("{}\n", displayed(path)));
                 has_failed = true;
             }
             Outcome::NotWritten(error) => {
-                eprint(&format!("error: `{}` cannot be written: {error}\n", path.display()));
+                eprint(&format!("error: `{}` cannot be written: {error}\n", displayed(path)));
                 has_failed = true;
             }
             Outcome::Wrong(diagnostics) => {

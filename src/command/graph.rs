@@ -11,7 +11,7 @@ use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{compiled, files_read};
-use crate::output::{Asked, Outputs, eprint, eprint_coloured};
+use crate::output::{Asked, Outputs, displayed, eprint, eprint_coloured};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -52,7 +52,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
         (Some(format), Some(path)) if by_ending(path).is_some_and(|other| other != format) => {
             eprint(&format!(
                 "error: `--format` says another format than the ending of `{}`\n  = help: leave it out, or give the file another ending\n",
-                path.display()
+                displayed(path)
             ));
             return Exit::WrongInput;
         }
@@ -64,7 +64,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
                 eprint(&format!(
                     "error: the ending of `{}` says no format\n  = help: known are `.svg`, `.mmd` and `.dot`; \
                      `--format` says it for other endings\n",
-                    path.display()
+                    displayed(path)
                 ));
                 return Exit::WrongInput;
             }
@@ -89,7 +89,7 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     };
     // How many there are, a check finds: a picture asks for no more than it needs.
     if found.iter().any(|one| one.severity == Severity::Error) {
-        let names: Vec<String> = fleet.files.iter().map(|file| file.display().to_string()).collect();
+        let names: Vec<String> = fleet.files.iter().map(|file| displayed(file)).collect();
         let name = names.join(" ");
         eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows what is wrong\n"));
     }

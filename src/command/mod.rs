@@ -20,9 +20,10 @@ use std::process;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
+use saoms_api::host::is_invisible;
 
 use crate::Exit;
-use crate::output::{has_failed, printed};
+use crate::output::{eprint, has_failed, printed};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -92,6 +93,11 @@ fn parsed() -> Arguments {
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
         if error.use_stderr() {
+            let plain = error.render().to_string();
+            if plain.contains(|one| one != '\n' && is_invisible(one)) {
+                eprint(&plain);
+                process::exit(error.exit_code());
+            }
             error.exit();
         }
         // Help and version.

@@ -7,6 +7,10 @@ mod place;
 mod replace;
 mod standard;
 
+use std::path::Path;
+
+use saoms_api::host::one_line;
+
 pub(crate) use outputs::{Asked, Outputs, write_into};
 pub(crate) use place::{Place, Sink};
 pub(crate) use replace::replace;
@@ -14,6 +18,11 @@ pub(crate) use standard::{
     eprint, eprint_coloured, eprint_json, has_failed, limit_patience, print, print_as_is, print_json, printed,
     wait_for_no_reader,
 };
+
+/// A path on one line, whatever characters are in it.
+pub(crate) fn displayed(path: &Path) -> String {
+    one_line(&path.display().to_string()).into_owned()
+}
 
 /// `1 error`, `2 errors`.
 pub(crate) fn counted(number: usize, noun: &str) -> String {

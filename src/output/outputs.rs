@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use saoms_lang::project::INPUT;
 
+use super::displayed;
 use super::place::{Identity, Place};
 use super::standard::eprint;
 use crate::Exit;
@@ -110,7 +111,7 @@ impl Refused {
 impl Asked<'_> {
     /// The message about an output that cannot be written.
     pub(crate) fn unwritable(&self, error: &io::Error) -> String {
-        format!("error: the {} cannot be written to `{}`: {error}\n", self.what, self.path.display())
+        format!("error: the {} cannot be written to `{}`: {error}\n", self.what, displayed(self.path))
     }
 
     fn is_read(&self, read: &Path) -> String {
@@ -118,15 +119,15 @@ impl Asked<'_> {
         let which = match () {
             () if read == *path => ", which is read".to_owned(),
             () if read == Path::new(INPUT) => ": it is read from standard input".to_owned(),
-            () => format!(": it is `{}`, which is read", read.display()),
+            () => format!(": it is `{}`, which is read", displayed(read)),
         };
-        let path = path.display();
+        let path = displayed(path);
         format!("error: the {what} cannot be written to `{path}`{which}\n  = help: give `{option}` another file\n")
     }
 
     fn is_taken_by(&self, other: &str) -> String {
         let Asked { what, option, path, .. } = self;
-        let path = path.display();
+        let path = displayed(path);
         format!(
             "error: {other} and the {what} cannot both be written to `{path}`\n  = help: give `{option}` another file\n"
         )

@@ -5,7 +5,6 @@ mod wiring;
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use saoms_api::host::one_line;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::{Compilations, FleetOutput};
 use serde::Serialize;
@@ -14,7 +13,7 @@ use serde::ser::Serializer;
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{DiagnosticReport, project};
-use crate::output::{counted, eprint_coloured, print, print_json};
+use crate::output::{counted, displayed, eprint_coloured, print, print_json};
 use crate::plugins::{CommandClasses, usable};
 use wiring::Wiring;
 
@@ -76,7 +75,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
             eprint_coloured(&shown.human(Severity::Note));
             for (path, wiring) in &wired {
                 if *fleets > 1 {
-                    print(&format!("{}\n", one_line(&path.display().to_string())));
+                    print(&format!("{}\n", displayed(path)));
                 }
                 print(wiring);
             }

@@ -17,6 +17,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use saoms_api::extension::PictureRegistration;
+use saoms_api::host::one_line;
 use saoms_core::observe::Observer;
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, RunningFleet, Settings};
@@ -27,7 +28,7 @@ use saoms_lang::project::INPUT;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
-use crate::output::{counted, eprint, eprint_coloured, eprint_json, print_json};
+use crate::output::{counted, displayed, eprint, eprint_coloured, eprint_json, print_json};
 use console::Console;
 use ending::{Signalled, end_without_reader};
 use events::Events;
@@ -146,7 +147,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let events = arguments.events.as_deref().map(|path| (path, Events::open(path, arguments.seed)));
     let events = match events {
         Some((path, Err(error))) => {
-            let path = path.display();
+            let path = displayed(path);
             eprint(&format!(
                 "error: the events cannot be read from `{path}`: {error}\n\n1 error: nothing was started\n"
             ));
@@ -186,7 +187,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let fleet = match RunningFleet::start(assembly, settings(arguments), observers) {
         Ok(fleet) => fleet,
         Err(error) => {
-            eprint(&format!("error: {error}\n\nthe fleet did not start: nothing runs\n"));
+            let error = error.to_string();
+            eprint(&format!("error: {}\n\nthe fleet did not start: nothing runs\n", one_line(&error)));
             return Exit::Failed;
         }
     };

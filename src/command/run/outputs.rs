@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use saoms_core::observe::JournalFile;
 
 use super::RunArguments;
-use crate::output::{Asked, Outputs, Place, Sink, counted, eprint};
+use crate::output::{Asked, Outputs, Place, Sink, counted, displayed, eprint};
 
 /// The files of a run.
 pub(super) struct RunFiles {
@@ -71,7 +71,7 @@ impl Output {
     /// Writes it. A failure is told.
     pub(super) fn write(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
         if let Err(problem) = self.sink.write(write) {
-            let (what, path) = (self.what, self.path.display());
+            let (what, path) = (self.what, displayed(&self.path));
             eprint(&format!("error: the {what} could not be written to `{path}`: {problem}\n"));
             self.has_failed.store(true, Ordering::Relaxed);
         }

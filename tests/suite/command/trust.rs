@@ -148,6 +148,15 @@ fn names_neither_steer_a_terminal_nor_forge_lines() {
         let (_, stdout, stderr) = saoms(&site, arguments);
         assert_visible(arguments[0], &(stdout + &stderr));
     }
+    for arguments in [
+        &["check", "--\u{1b}[31m", file][..],
+        &["graph", file, "-o", file],
+        &["run", file, "--events", "\u{9b}\nerror[S9999]"],
+    ] {
+        let (code, stdout, stderr) = saoms(&site, arguments);
+        assert_eq!(code, 2, "{stderr}");
+        assert_visible(arguments[0], &(stdout + &stderr));
+    }
     write(folder.path(), "fleet.composite", &hostile(HOSTILE));
     let file = "fleet/fleet.composite";
     for console in ["plain", "classic"] {
