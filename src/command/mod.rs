@@ -88,6 +88,13 @@ fn parsed() -> Arguments {
             let tip = format!("to run a composite, write `saoms run {word}`");
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
+        if error.kind() == ErrorKind::UnknownArgument
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
+            && ["-o", "--output"].contains(&word.as_str())
+        {
+            let tip = "this command writes to standard output: write `> FILE` behind it".to_owned();
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
         if error.kind() == ErrorKind::ArgumentConflict {
             let tip = "one of them has no effect beside the other: leave one out".to_owned();
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));

@@ -14,7 +14,7 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  written; the names of the files are on standard output
   1  a file could not be written
-  2  a plugin cannot be used, or would be written over";
+  2  the folder is a file, or a plugin cannot be used or would be written over";
 
 /// Write the language of composites, with all classes and properties, as XML schemas for editors
 #[derive(Debug, Args)]

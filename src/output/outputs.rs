@@ -146,6 +146,17 @@ pub(crate) fn write_into(
     read: Vec<PathBuf>,
 ) -> Result<(), Refused> {
     let asked = |path| Asked { what, option: "--output", path, grows: false };
+    let refused = |why: &str| {
+        let folder = folder.display();
+        let help = "give `--output` a folder; it is made if it is not there";
+        Err(Refused::Taken(format!("error: the {what}s cannot be written to `{folder}`, {why}\n  = help: {help}\n")))
+    };
+    if folder == Path::new("-") {
+        return refused("which is standard output: they are several files");
+    }
+    if fs::metadata(folder).is_ok_and(|about| !about.is_dir()) {
+        return refused("which is a file");
+    }
     fs::create_dir_all(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
     let mut outputs = Outputs::beside(read);
     let places: Vec<Place> = texts.iter().map(|(path, _)| outputs.add(asked(path))).collect::<Result<_, _>>()?;

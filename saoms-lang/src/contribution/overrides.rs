@@ -30,14 +30,18 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
     if !KEYS.contains(&key.as_str()) {
         let one =
             report(key.location, format!("the first column is {}, and has to be `index` or `name`", quoted(&key)));
+        let moved = head.as_slice().iter().find(|column| KEYS.contains(&column.as_str()));
         diagnostics.push(match nearest(&key, KEYS) {
+            _ if let Some(moved) = moved => {
+                one.help(format!("move the column {} to the front of each line", quoted(moved)))
+            }
             Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), key.location, meant),
             None => one.help("it says which replica a line is about, the other columns are properties"),
         });
         // As the lines look.
         let has_number = lines.as_slice().first().and_then(|line| line.first()?.parse::<i64>().ok()).is_some();
         let near = nearest(&key, KEYS);
-        if near.is_none() && !has_number {
+        if moved.is_some() || near.is_none() && !has_number {
             // Nobody knows what they are about, or whether this is a table at all.
             lines = Vec::new().into_iter();
         }

@@ -171,8 +171,14 @@ impl Finder {
         let seen = self.index.names_around(folder);
         let is_meant = |one: &&Head| wanted.namespaces.as_ref().is_none_or(|all| all.contains(&one.namespace));
         let heads = if self.candidates.admit(seen.len()) { seen.heads() } else { Vec::new() };
-        let of_namespace = heads.into_iter().filter(is_meant).map(|one| one.local.as_str());
-        let near = nearest_few(&wanted.local, of_namespace, OFFERED_NAMES);
+        let of_namespace = || heads.iter().copied().filter(is_meant);
+        // The name of its file, perhaps with the ending.
+        let file = wanted.local.strip_suffix(".composite").unwrap_or(&wanted.local);
+        let is_file = |one: &&Head| one.path.file_stem().is_some_and(|stem| stem == file);
+        let near = match of_namespace().find(is_file) {
+            Some(one) => vec![one.local.as_str()],
+            None => nearest_few(&wanted.local, of_namespace().map(|one| one.local.as_str()), OFFERED_NAMES),
+        };
         let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
         let mut searched = vec![self.index.searched(folder)];
         if let Some(other) = seen.named(&wanted.local) {

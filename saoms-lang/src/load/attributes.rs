@@ -328,7 +328,7 @@ fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Elemen
         .suggest_edits(format!("replace {} with {}", quoted(attribute.name()), quoted(&whole)), edits)
 }
 
-/// Help for an attribute that may be meant as a property of a component.
+/// Help for an attribute that may be meant as a property of a component, or as a reference to another one.
 fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) -> Diagnostic {
     let (text, file) = (element.document().text(), element.document().file());
     let (start, end) = match element.local_name() {
@@ -343,14 +343,21 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
     let gap = indent.map(|indent| format!("\n{indent}{deeper}")).unwrap_or_default();
     let prefix = element.prefix().map(|prefix| format!("{prefix}:")).unwrap_or_default();
     let (name, value) = (attribute.name(), attribute.raw_value());
-    let written = format!("<{prefix}property name=\"{name}\">{value}</{prefix}property>");
+    let target = attribute.trimmed();
+    let target = target.split('/').next().unwrap_or_default();
+    let is_named = |one: Element<'_>| one.attribute("name").is_some_and(|name| name.value().trim() == target);
+    let is_reference = element.parent().is_some_and(|around| around.children().any(is_named));
+    let (what, written) = match is_reference {
+        true => ("reference", format!("<{prefix}reference name=\"{name}\" target=\"{value}\"/>")),
+        false => ("property", format!("<{prefix}property name=\"{name}\">{value}</{prefix}property>")),
+    };
     let before = text[..attribute.name_span().start as usize].trim_end().len() as u32;
     let whole = Span::new(before, attribute.value_span().end + 1).in_file(file);
     let edits = vec![
         Edit { location: whole, replacement: String::new() },
         Edit { location: Span::empty(end).in_file(file), replacement: format!("{gap}{written}") },
     ];
-    one.suggest_edits(format!("write it as a property: {}", quoted(&written)), edits)
+    one.suggest_edits(format!("write it as a {what}: {}", quoted(&written)), edits)
 }
 
 /// True if a name can start with this.

@@ -57,6 +57,11 @@ impl Loader<'_> {
             return list;
         }
         match element.attribute("promote") {
+            None if element.attribute("target").is_some() => {
+                let message = "a `reference` with a `target`, outside of the component that has it";
+                let one = Diagnostic::new(&codes::MISSING_ATTRIBUTE, element.name_location(), message);
+                self.report(one.help("move it into that component; a reference of the composite has a `promote`"));
+            }
             None => _ = self.required(element, "promote"),
             Some(attribute) => {
                 let message = format!("{} promotes nothing", quoted(element.name()));

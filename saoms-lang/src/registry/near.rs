@@ -11,11 +11,17 @@ const TELLING: usize = 4;
 /// what is spelt alike, with its package or without; what begins or ends with it. Among equals those come first that
 /// say what a class is called rather than what else it is called, and the shorter ones.
 pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>) -> Vec<&'n str> {
+    // As the compiled file, or the file of the source, is called.
+    let name = [".class", ".java", ".rs"].into_iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
     let last = simple(name);
+    let stem = last.trim_end_matches(|sign: char| sign.is_ascii_digit());
     if last.is_empty() {
         return Vec::new();
     }
-    let mut names: Vec<(&str, bool)> = names.collect();
+    // What differs in its number alone is not meant, but another one of them.
+    let is_other =
+        |known: &str| stem.len() < last.len() && known.len() == last.len() && known.starts_with(stem) && known != last;
+    let mut names: Vec<(&str, bool)> = names.filter(|(known, _)| !is_other(simple(known))).collect();
     names.sort_by_key(|(name, is_alias)| (*is_alias, name.split('.').count(), name.len()));
     let names = || names.iter().map(|(name, _)| *name);
     if let Some(same) = names().find(|known| known.eq_ignore_ascii_case(name)) {
@@ -38,11 +44,11 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
         let spelt = nearest_few(last, names().map(simple), OFFERED).into_iter();
         all = spelt.flat_map(|spelt| names().filter(move |known| simple(known) == spelt)).collect();
     }
-    if all.is_empty() && last.len() >= TELLING {
-        let part = last.to_lowercase();
+    if all.is_empty() && stem.len() >= TELLING {
+        let part = stem.to_lowercase();
         let has_part = |known: &&str| {
             let known = simple(known).to_lowercase();
-            known.starts_with(&part) || known.ends_with(&part)
+            known.starts_with(&part) || stem == last && known.ends_with(&part)
         };
         all = names().filter(has_part).collect();
     }

@@ -7,7 +7,7 @@ use super::attribute::RawAttribute;
 use super::characters::name_length;
 use super::document::{NONE, Node, Token, TokenKind};
 use super::fault::{Faults, Input};
-use super::{prolog, value};
+use super::{prolog, slips, value};
 use crate::diagnostic::codes;
 use crate::source::Span;
 
@@ -20,6 +20,8 @@ pub(super) struct Lexer<'a> {
     pub(super) faults: Faults,
     /// True if a comment or the like is never closed, so that the rest of the text is in it.
     pub(super) is_cut_short: bool,
+    /// The second version of lines in conflict, with its marks: what is from here to there is passed over.
+    second_version: (u32, u32),
     /// True if quick-xml found a document type declaration without an end: behind it, no other has one.
     has_open_doctype: bool,
 }
@@ -33,6 +35,7 @@ impl<'a> Lexer<'a> {
             attributes: Vec::new(),
             faults: Faults::default(),
             is_cut_short: false,
+            second_version: (0, 0),
             has_open_doctype: false,
         }
     }
@@ -48,7 +51,12 @@ impl<'a> Lexer<'a> {
             at = match (first, bytes.get(at as usize + 1)) {
                 (b'<', Some(b'/')) => self.end_tag(at),
                 (b'<', Some(b'!' | b'?')) => self.other_markup(at),
+                (b'<', Some(b'<')) if let Some(end) = self.conflict(at) => end,
                 (b'<', _) => self.start_tag(at),
+                _ if at > 0 && at == self.second_version.0 => {
+                    self.push(at, TokenKind::Error);
+                    self.second_version.1
+                }
                 _ => self.text(at),
             };
         }
@@ -186,10 +194,27 @@ impl<'a> Lexer<'a> {
         }
     }
 
+    /// Reads the first mark of a conflict, if there is one; gives where it ends.
+    fn conflict(&mut self, start: u32) -> Option<u32> {
+        if start < self.second_version.0 || !slips::is_conflict(self.input, start) {
+            return None;
+        }
+        let Some((fault, end, second)) = slips::conflict(self.input, start) else {
+            // Neither has any mark behind it an end.
+            self.second_version.0 = u32::MAX;
+            return None;
+        };
+        self.faults.add(|| fault);
+        self.second_version = second;
+        self.push(start, TokenKind::Error);
+        Some(end)
+    }
+
     /// Reads character data up to the next `<`.
     fn text(&mut self, start: u32) -> u32 {
         let input = self.input;
-        let end = input.find(b'<', start).unwrap_or(input.len());
+        let second = self.second_version.0;
+        let end = input.find(b'<', start).unwrap_or(input.len()).min(if start < second { second } else { u32::MAX });
         if value::trim(input.slice(start, end)).is_empty() {
             self.push(start, TokenKind::Space);
             return end;

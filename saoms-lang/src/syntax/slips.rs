@@ -21,6 +21,28 @@ impl Input<'_> {
     }
 }
 
+/// True if the first mark of a conflict of versions may be here.
+pub(super) fn is_conflict(input: Input<'_>, start: u32) -> bool {
+    let is_line = start == 0 || input.byte(start - 1) == Some(b'\n');
+    is_line && input.text[start as usize..].starts_with("<<<<<<< ")
+}
+
+/// The marks of a version control system around two versions of the same lines, of which the first starts at `start`:
+/// the fault, the end of the first mark, and the part with the second version.
+pub(super) fn conflict(input: Input<'_>, start: u32) -> Option<(Diagnostic, u32, (u32, u32))> {
+    let rest = &input.text[start as usize..];
+    let place = |mark: &str, from: usize| rest.get(from..)?.find(mark).map(|at| from + at + 1);
+    let line_end = |from: usize| from + rest[from..].find('\n').unwrap_or(rest.len() - from);
+    let middle = place("\n=======", 0)?;
+    let last = place("\n>>>>>>>", middle)?;
+    let at = |from: usize| start + from as u32;
+    let one = input
+        .fault(&codes::XML_SYNTAX, start, at(line_end(0)), "two versions of these lines, and marks of git around them")
+        .label(input.at(at(middle), at(line_end(middle))), "the other version")
+        .help("keep one version, and remove the lines with `<<<<<<<`, `=======` and `>>>>>>>`");
+    Some((one, at(line_end(0)), (at(middle), at(line_end(last)))))
+}
+
 /// The fault of a `<` without a name behind it.
 pub(super) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
     let message = match input.byte(start + 1) {

@@ -67,7 +67,7 @@ pub(crate) struct RunArguments {
     pub(crate) virtual_time: bool,
 
     /// Seed of all chance: in virtual time the same seed gives the same run
-    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
 
     /// Write the report as JSON to this file, `-` for standard output
@@ -235,6 +235,10 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
     let mut read = files_read(&compilation, files);
     read.extend(arguments.events.clone());
     compilation.output.map(|assembly| (assembly, read))
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
 fn settings(arguments: &RunArguments) -> Settings {

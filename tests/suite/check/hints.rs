@@ -47,6 +47,37 @@ fn what_was_probably_meant_is_proposed() {
         ("random", "(3,10)", "radnom", "S3014", "replace `radnom` with `random`"),
         ("on", "at 1s", "on 1s", "S3014", "replace `on` with `at`"),
         ("times", "1s luggage", "1s 10 luggage", "S3014", "replace `10` with `10 times`"),
+        (
+            "class file",
+            "\"saoms.World\"",
+            "\"saoms.World.class\"",
+            "S3001",
+            "replace `saoms.World.class` with `saoms.World`",
+        ),
+        ("number", "\"saoms.Robot\"", "\"robot.Robot999\"", "S3001", "replace `robot.Robot999` with `saoms.Robot`"),
+        ("minutes", "\"100ms\"", "\"10m\"", "S3007", "replace `10m` with `10min`"),
+        ("milliseconds", "\"100ms\"", "\"10m\"", "S3007", "replace `10m` with `10ms`"),
+        (
+            "attribute",
+            "\"Robot7\">",
+            "\"Robot7\" world=\"World\">",
+            "S1007",
+            "`<reference name=\"world\" target=\"World\"/>`",
+        ),
+        (
+            "outside",
+            "</component>\n</composite>",
+            "</component><reference name=\"world\" target=\"World\"/></composite>",
+            "S1008",
+            "move it into that component",
+        ),
+        (
+            "git",
+            "    <property name=\"ID\" value=\"Master\"/>",
+            "<<<<<<< HEAD\n<property name=\"ID\" value=\"Master\"/>\n=======\n<property name=\"ID\" value=\"M\"/>\n>>>>>>> x",
+            "S0101",
+            "keep one version, and remove the lines",
+        ),
         ("one wall", r#""saoms.World"/>"#, &map("....\n.X..\n"), "S3014", "replace `X` with `@`"),
         (
             "walls",
@@ -101,4 +132,43 @@ fn robots_of_one_id_are_told_before_those_that_are_missing() {
     let table = include_str!("../../../composites/hangar.csv");
     let told = told("one id", &[("fleet.composite", &fleet), ("hangar.csv", table)]);
     assert_hint("one id", &told, "S3013", "replace `Robot01` with `Robot01${index}`");
+}
+
+#[test]
+fn a_file_in_place_of_a_name_is_told_the_name() {
+    let (robot, others) = parts();
+    let [(_, inner), (_, outer)] = nested(&format!("{others}{robot}"), "");
+    for (test, name, meant) in [
+        ("file", "t:inner.composite", "t:inner"),
+        ("other name", "t:building", "t:inner"),
+        ("plain", "building", "t:inner"),
+    ] {
+        let outer = outer.replace("t:inner", name);
+        let file = if test == "file" { "inner.composite" } else { "building.composite" };
+        let told = told(test, &[(file, &inner), ("fleet.composite", &outer)]);
+        assert_hint(test, &told, "S2031", &format!("replace `{name}` with `{meant}`"));
+    }
+}
+
+#[test]
+fn composites_that_are_inside_of_one_another_are_checked_as_one_fleet() {
+    let (robot, others) = parts();
+    let [inner, outer] = nested(&format!("{others}{robot}"), "");
+    let files = [(inner.0, inner.1.as_str()), (outer.0, &outer.1)];
+    for checked in [&["fleet.composite", "inner.composite"], &["inner.composite", "fleet.composite"]] {
+        assert_eq!(told_of("together", &files, checked), [""; 0]);
+    }
+}
+
+#[test]
+fn a_table_whose_index_is_not_in_front_is_told_once() {
+    let table = "battery,index\n60,7\n50,13\n";
+    let told = told("column", &[("fleet.composite", HANGAR), ("hangar.csv", table)]);
+    assert_hint("column", &told, "S2047", "move the column `index` to the front of each line");
+}
+
+#[test]
+fn a_name_with_a_blank_is_not_proposed() {
+    let told = told("blank", &[("fleet.composite", &hall("name=\"World\"", "name=\"Wor ld\""))]);
+    assert!(!told.concat().contains("with `Wor ld`"), "{told:#?}");
 }

@@ -4,7 +4,7 @@ use std::fs;
 
 use saoms_lang::diagnostic::codes;
 
-use crate::support::{code, empty_folder, saoms, stderr, stdout};
+use crate::support::{code, empty_folder, saoms, saoms_in, stderr, stdout};
 
 #[test]
 fn every_code_is_explained_with_an_example() {
@@ -71,4 +71,22 @@ fn every_command_has_a_manual_page() {
     let output = saoms(&["man", "-o", "/proc/none"]);
     assert_eq!(code(&output), 1);
     assert!(stderr(&output).starts_with("error: the manual page cannot be written to `/proc/none`: "));
+}
+
+#[test]
+fn several_files_need_a_folder() {
+    let folder = empty_folder("several files");
+    fs::write(folder.join("file"), "").unwrap();
+    for (command, what) in [("man", "manual pages"), ("schema", "schemas")] {
+        for (path, why) in [("-", "which is standard output: they are several files"), ("file", "which is a file")] {
+            let output = saoms_in(&folder, &[command, "-o", path]);
+            let told = format!("error: the {what} cannot be written to `{path}`, {why}\n");
+            assert!(code(&output) == 2 && stderr(&output).starts_with(&told), "{}", stderr(&output));
+        }
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+    let output = saoms(&["expand", "composites/hall.composite", "-o", "out.composite"]);
+    assert!(stderr(&output).contains("tip: this command writes to standard output: write `> FILE` behind it"));
+    let output = saoms(&["run", "composites/hall.composite", "--seed", "abc"]);
+    assert!(stderr(&output).contains("expected a whole number from 0 to 18446744073709551615"));
 }

@@ -23,6 +23,12 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
     if let Some(meant) = meant(text.trim(), declaration) {
         return one.suggest(replacing(text, &meant), text.location, escaped(&meant));
     }
+    // Minutes or milliseconds.
+    let number = text.trim().strip_suffix('m').filter(|_| declaration.kind == PropertyKind::Duration);
+    let units = number.into_iter().flat_map(|number| ["min", "ms"].map(|unit| format!("{number}{unit}")));
+    let one = units
+        .filter(|meant| declaration.check(meant.as_str()).is_ok())
+        .fold(one, |one, meant| one.suggest(replacing(text, &meant), text.location, meant));
     let is_counter = text.trim() == INDEX || has_index && COUNTERS.contains(&text.trim());
     let by_index = match has_expression(text) {
         _ if is_counter => Some(format!("${{{INDEX}}}")),

@@ -66,10 +66,10 @@ pub(crate) fn unfold<'a>(
         parameters: Parameters::new(options, &elements).unbounded(),
     };
     let again = names::composites(asked_for, unfolding.report);
-    let included = included(contribution);
+    let used = used(contribution);
     for (place, composite) in asked_for.iter().enumerate() {
-        // It stands where it is included.
-        if !included[place] && !again.contains(&place) {
+        // It stands where it is used.
+        if !used[place] && !again.contains(&place) {
             let unit = unfolding.unit(0);
             unfolding.open(place, composite, unit, None);
             unfolding.walk();
@@ -80,30 +80,30 @@ pub(crate) fn unfold<'a>(
     fleet
 }
 
-/// The composites that another one of those asked for includes, directly or not.
-fn included(contribution: &Contribution) -> Vec<bool> {
+/// The composites that another one of those asked for includes or has inside, directly or not.
+fn used(contribution: &Contribution) -> Vec<bool> {
     let all = contribution.composites();
     let asked_for = contribution.asked_for().len();
-    let mut included = vec![false; all.len()];
+    let mut used = vec![false; all.len()];
     for start in 0..asked_for {
         let mut seen = HashSet::from([start]);
         let mut waiting = vec![start];
         while let Some(place) = waiting.pop() {
-            for include in &all[place].includes {
-                if let Some(&Link::To(inner)) = contribution.link(include.origin)
+            for naming in all[place].namings() {
+                if let Some(&Link::To(inner)) = contribution.link(naming.origin)
                     && seen.insert(inner)
                 {
-                    included[inner] = true;
+                    used[inner] = true;
                     waiting.push(inner);
                 }
             }
         }
     }
-    // A circle of includes has to start somewhere.
-    if asked_for > 0 && included[..asked_for].iter().all(|one| *one) {
-        included[0] = false;
+    // A circle has to start somewhere.
+    if asked_for > 0 && used[..asked_for].iter().all(|one| *one) {
+        used[0] = false;
     }
-    included
+    used
 }
 
 pub(crate) struct Unfolding<'a, 'r, 's> {

@@ -159,8 +159,13 @@ pub(crate) fn not_found(
             "it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file",
         );
     }
+    // Without a prefix it is taken for one of the target namespace, which had better be said.
+    let around = naming.origin.element(&composite.document);
+    let of = namespaces.as_ref().and_then(|all| all.first()).filter(|_| !name.contains(':'));
+    let prefix = of.and_then(|namespace| prefix_of(namespace, around));
     for near in &missing.near {
-        one = one.replace(name, name.location, near);
+        let meant = prefix.map_or_else(|| near.clone(), |prefix| format!("{prefix}:{near}"));
+        one = one.replace(name, name.location, &meant);
     }
     for searched in &missing.searched {
         one = one.help(searched.clone());

@@ -106,7 +106,8 @@ pub(crate) fn unknown_component(
     }
     // A reference of a composite can stand for those of all replicas.
     let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
-    let names = fleet.names(scope).filter(|name| Some(*name) != own);
+    // A name with a blank in it is reported, and can be no target.
+    let names = fleet.names(scope).filter(|name| Some(*name) != own && !name.contains(char::is_whitespace));
     let known = ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
     report.unknown(&codes::UNKNOWN_COMPONENT, at, message, name, known)
 }
