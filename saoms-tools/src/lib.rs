@@ -1,6 +1,7 @@
 //! Tools for composites beside a check and a run: pictures, one layout, the composite with all resolved, XML schemas,
 //! answers for editors.
 
+pub mod diagnostics;
 pub mod editor;
 mod element;
 pub mod expand;

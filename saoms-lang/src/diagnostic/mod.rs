@@ -9,11 +9,9 @@ pub mod codes;
 mod collector;
 mod grouping;
 mod human;
-mod json;
 mod level;
 mod meant_boolean;
 mod quoted;
-mod sarif;
 #[cfg(test)]
 mod tests;
 mod window;
@@ -23,7 +21,6 @@ pub use codes::Code;
 pub use collector::Diagnostics;
 pub(crate) use collector::HiddenNames;
 pub use human::{Human, human};
-pub use json::json;
 pub use level::{SetBy, SeverityLevel};
 pub(crate) use meant_boolean::meant_boolean;
 pub use quoted::quoted;
@@ -31,7 +28,6 @@ pub(crate) use quoted::replacing;
 use saoms_api::host::shorten;
 pub use saoms_api::host::{nearest_equal, nearest_few};
 pub use saoms_api::rule::{Severity, nearest};
-pub use sarif::{Sarif, sarif};
 
 use crate::source::Location;
 

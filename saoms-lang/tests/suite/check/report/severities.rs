@@ -1,8 +1,8 @@
 //! Severities that composites and the command line set.
 
 use expect_test::expect;
-use saoms_lang::diagnostic::{json, sarif};
 use saoms_lang::project::Project;
+use saoms_tools::diagnostics::{json, sarif};
 use serde_json::Value;
 
 use crate::check::classes::registry;

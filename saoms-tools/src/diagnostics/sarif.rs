@@ -1,10 +1,9 @@
 //! Diagnostics for code scanning: SARIF.
 
+use saoms_lang::diagnostic::{Code, Diagnostic, Edit, Suggestion, codes};
+use saoms_lang::source::{FileId, Location, Sources};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-
-use super::{Code, Diagnostic, Edit, Suggestion, codes};
-use crate::source::{FileId, Location, Sources};
 
 /// A log in the Static Analysis Results Interchange Format (OASIS SARIF 2.1.0), as code scanning services and editors
 /// read it: one run, with every code as a rule and each suggestion as a fix.

@@ -1,9 +1,8 @@
 //! Diagnostics for machines.
 
+use saoms_lang::diagnostic::Diagnostic;
+use saoms_lang::source::{Location, Sources};
 use serde_json::{Value, json};
-
-use super::Diagnostic;
-use crate::source::{Location, Sources};
 
 /// An object for each diagnostic, with 1-based lines and columns in Unicode scalars, ends exclusive.
 ///
