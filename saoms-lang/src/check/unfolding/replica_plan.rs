@@ -137,7 +137,10 @@ impl<'a> Plan<'a> {
             };
             let Some(index) = found else {
                 let is_possible = if is_by_name { self.is_possible(&row.key) } else { is_index(row) };
-                let message = format!("there is no replica {}", quoted(&row.key));
+                let message = match row.key.is_empty() {
+                    true => "this row does not say which replica it is about".to_owned(),
+                    false => format!("there is no replica {}", quoted(&row.key)),
+                };
                 let one = match is_by_name {
                     true if is_possible => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
                         .help("there would be one if `saoms:count` were larger"),

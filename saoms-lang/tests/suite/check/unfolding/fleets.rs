@@ -285,6 +285,12 @@ fn tables_say_what_differs() {
         R04 [("ID", Text("R4")), ("number", Integer(4))] 100ms
     "#]]
     .assert_eq(&found("name,number\r\nR03,30\r\n\r\n"));
+    // Empty rows, as spreadsheets leave them, say nothing; one with a value has to say about whom.
+    expect![[r#"
+        robots.csv:4:1-1 error S2047: this row does not say which replica it is about
+          help: the indices go from 1 to 4
+    "#]]
+    .assert_eq(&found("index,colour\n\n,\n,red\n,\n"));
     expect![[r#"
         robots.csv:3:1-2 error S2047: a line with 2 values, and there are 3 columns
           help: a column that says nothing about a replica is an empty value: end the line with its comma
