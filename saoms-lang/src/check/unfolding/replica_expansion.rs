@@ -69,6 +69,8 @@ impl<'a> Unfolding<'a, '_, '_> {
         let (made, is_faulty, presence) = self.made(plan.component, &instance, plan.row(index));
         if is_faulty && index == plan.first {
             self.partial(plan.component, index, &plan.names, presence);
+            // In how many others it is.
+            plan.left.clone().for_each(|other| _ = self.made(plan.component, &plan.instance(other), plan.row(other)));
             return false;
         }
         if is_faulty || self.is_beyond(plan.component) {

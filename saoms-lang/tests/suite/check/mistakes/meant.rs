@@ -68,7 +68,7 @@ fn the_index_is_meant_by_what_looks_like_it() {
         3:25-26 error S3007: property `number`: `i` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1, and in 1 more)
           help: `number`: The number of the robot
           fix: replace `i` with `${index}` [3:25-26 "${index}"]
-        3:27-30 error S2045: the composite has no property `idx` (in `R1`, index 1)
+        3:27-30 error S2045: the composite has no property `idx` (in `R1`, index 1, and in 1 more)
           fix: replace `idx` with `index` [3:27-30 "index"]
     "#]].assert_eq(&said);
     // Not where nothing is counted.

@@ -23,7 +23,7 @@ fn robot(attributes: &str, id: &str) -> String {
 fn a_faulty_expression_hides_nothing_else() {
     let by_id = of(&robot("name=\"R${index}\" saoms:count=\"3\"", "R${inde}"));
     expect![[r#"
-        3:24-28 error S2045: the composite has no property `inde` (in `R1`, index 1)
+        3:24-28 error S2045: the composite has no property `inde` (in `R1`, index 1, and in 2 more)
           fix: replace `inde` with `index` [3:24-28 "index"]
         3:64-68 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R1`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
@@ -67,7 +67,7 @@ fn a_faulty_expression_hides_nothing_else() {
     "#]].assert_eq(&by_table);
     let by_name = of(&robot("name=\"R${inde}\" saoms:count=\"3\"", "R${index}"));
     expect![[r#"
-        2:21-25 error S2045: the composite has no property `inde` (in `R${inde}`, index 1)
+        2:21-25 error S2045: the composite has no property `inde` (in `R${inde}`, index 1, and in 2 more)
           fix: replace `inde` with `index` [2:21-25 "index"]
         3:65-69 error S3007: property `period`: `100x` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h) (in `R${inde}`, index 1)
           help: `period`: From one due execution to the next; a number without a unit is in ms
@@ -119,7 +119,7 @@ fn halls(attributes: &str, property: &str) -> String {
 fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     let by_value = halls("", "<property name=\"count\">${indx}</property>");
     expect![[r#"
-        3:26-30 error S2045: the composite has no property `indx` (in `Hall1`, index 1)
+        3:26-30 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:26-30 "index"]
         hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
@@ -135,7 +135,7 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     "#]].assert_eq(&by_value);
     let by_source = halls("", "<property name=\"count\" source=\"$n${indx}\"/>");
     expect![[r#"
-        3:36-40 error S2045: the composite has no property `indx` (in `Hall1`, index 1)
+        3:36-40 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:36-40 "index"]
         hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
@@ -151,7 +151,7 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     "#]].assert_eq(&by_source);
     let by_name = halls("", "<property name=\"coun${indx}\">1</property>");
     expect![[r#"
-        3:23-27 error S2045: the composite has no property `indx` (in `Hall1`, index 1)
+        3:23-27 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:23-27 "index"]
         hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`

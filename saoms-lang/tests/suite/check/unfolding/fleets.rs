@@ -162,7 +162,7 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
         7:42-46 error S2045: here is the text `north`, and a whole number is expected
           2:23-28 `site` is this
           help: `docs/fleets.md` says what expressions are
-        8:21-26 error S2045: the composite has no property `inedx` (in `F${inedx}`, index 1)
+        8:21-26 error S2045: the composite has no property `inedx` (in `F${inedx}`, index 1, and in 1 more)
           fix: replace `inedx` with `index` [8:21-26 "index"]
         9:18-27 error S3006: component `G-1` lacks the property `number` (index -1)
           help: add `<property name="number">...</property>`: a whole number from 1 to 99
