@@ -30,8 +30,8 @@ impl Map {
     /// assert!(map.is_free(Block::new(2, 1)) && !map.is_free(Block::new(2, 0)));
     ///
     /// let faults = Map::read("..@\n.x.\n....").unwrap_err();
-    /// assert_eq!(faults[0].bytes, 5..6);
-    /// assert_eq!(faults[1].message, "found 4 blocks in this row, expected 3 as in the others");
+    /// assert_eq!(faults[0].message, "found 4 blocks in this row, expected 3 as in the others");
+    /// assert_eq!(faults[1].bytes, 5..6);
     /// ```
     ///
     /// # Errors
