@@ -196,14 +196,11 @@ impl<'a> Lexer<'a> {
 
     /// Reads the first mark of a conflict, if there is one; gives where it ends.
     fn conflict(&mut self, start: u32) -> Option<u32> {
-        if start < self.second_version.0 || !slips::is_conflict(self.input, start) {
+        // In the first version, and where one has no end, others mean nothing.
+        if start < self.second_version.0 {
             return None;
         }
-        let Some((fault, end, second)) = slips::conflict(self.input, start) else {
-            // Neither has any mark behind it an end.
-            self.second_version.0 = u32::MAX;
-            return None;
-        };
+        let (fault, end, second) = slips::conflict(self.input, start)?;
         self.faults.add(|| fault);
         self.second_version = second;
         self.push(start, TokenKind::Error);

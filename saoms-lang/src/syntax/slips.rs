@@ -21,26 +21,21 @@ impl Input<'_> {
     }
 }
 
-/// True if the first mark of a conflict of versions may be here.
-pub(super) fn is_conflict(input: Input<'_>, start: u32) -> bool {
-    let is_line = start == 0 || input.byte(start - 1) == Some(b'\n');
-    is_line && input.text[start as usize..].starts_with("<<<<<<< ")
-}
-
-/// The marks of a version control system around two versions of the same lines, of which the first starts at `start`:
-/// the fault, the end of the first mark, and the part with the second version.
+/// The marks of git around two versions of the same lines, of which the first starts at `start`: the fault, the end of
+/// the first mark, and the part with the second version; behind everything where there is none.
 pub(super) fn conflict(input: Input<'_>, start: u32) -> Option<(Diagnostic, u32, (u32, u32))> {
     let rest = &input.text[start as usize..];
-    let place = |mark: &str, from: usize| rest.get(from..)?.find(mark).map(|at| from + at + 1);
-    let line_end = |from: usize| from + rest[from..].find('\n').unwrap_or(rest.len() - from);
-    let middle = place("\n=======", 0)?;
-    let last = place("\n>>>>>>>", middle)?;
-    let at = |from: usize| start + from as u32;
+    let is_line = start == 0 || input.byte(start - 1) == Some(b'\n');
+    rest.strip_prefix("<<<<<<< ").filter(|_| is_line)?;
+    let place = |mark: &str, from: usize| rest[from..].find(mark).map(|at| from + at + 1);
+    let line_end = |from: usize| input.find(b'\n', start + from as u32).unwrap_or(input.len());
     let one = input
-        .fault(&codes::XML_SYNTAX, start, at(line_end(0)), "two versions of these lines, and marks of git around them")
-        .label(input.at(at(middle), at(line_end(middle))), "the other version")
+        .fault(&codes::XML_SYNTAX, start, line_end(0), "two versions of these lines, and marks of git around them")
         .help("keep one version, and remove the lines with `<<<<<<<`, `=======` and `>>>>>>>`");
-    Some((one, at(line_end(0)), (at(middle), at(line_end(last)))))
+    let second = place("\n=======", 0).and_then(|middle| Some((middle, place("\n>>>>>>>", middle)?)));
+    let Some((middle, last)) = second else { return Some((one, line_end(0), (u32::MAX, u32::MAX))) };
+    let at = start + middle as u32;
+    Some((one.label(input.at(at, line_end(middle)), "the other version"), line_end(0), (at, line_end(last))))
 }
 
 /// The fault of a `<` without a name behind it.

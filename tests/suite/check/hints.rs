@@ -72,6 +72,13 @@ fn what_was_probably_meant_is_proposed() {
             "move it into that component",
         ),
         (
+            "git open",
+            "    <property name=\"ID\" value=\"Master\"/>",
+            "<<<<<<< HEAD\n<property name=\"ID\" value=\"Master\"/>",
+            "S0101",
+            "keep one version",
+        ),
+        (
             "git",
             "    <property name=\"ID\" value=\"Master\"/>",
             "<<<<<<< HEAD\n<property name=\"ID\" value=\"Master\"/>\n=======\n<property name=\"ID\" value=\"M\"/>\n>>>>>>> x",
