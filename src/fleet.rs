@@ -4,10 +4,10 @@ use std::env;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
-use saoms_lang::diagnostic::{Diagnostic, Human, Severity};
+use saoms_lang::diagnostic::{Diagnostic, Severity};
 use saoms_lang::project::{Compilation, Compilations, INPUT, Project};
 use saoms_lang::source::Sources;
-use saoms_tools::diagnostics::{Sarif, json, sarif};
+use saoms_tools::diagnostics::{Human, Sarif, json, sarif};
 use serde::Serialize;
 use serde_json::Value;
 

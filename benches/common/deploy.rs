@@ -8,9 +8,10 @@ use saoms_components as _;
 use saoms_core::report::{RunReport, RunStatus};
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
-use saoms_lang::diagnostic::{Human, Severity};
+use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
+use saoms_tools::diagnostics::Human;
 
 use super::Outcome;
 

@@ -10,6 +10,7 @@ use saoms_core::schedule::Settings;
 use saoms_lang::project::{ClassPath, Classes, Compilation, Project};
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{FileId, SourceFile};
+use saoms_tools::diagnostics::human_of;
 
 use crate::expected::{Checked, Found};
 use crate::run::{Log, Run};
@@ -130,12 +131,12 @@ impl Fleet {
     #[expect(clippy::panic, reason = "a test whose fleet has errors has failed")]
     pub fn expanded(&self) -> String {
         let found = self.compiled();
-        saoms_tools::expand::expanded(&found).unwrap_or_else(|| panic!("{}", found.text()))
+        saoms_tools::expand::expanded(&found).unwrap_or_else(|| panic!("{}", human_of(&found)))
     }
 
     /// Diagnostics as they are shown to people, each with an excerpt of the text.
     pub fn shown(&self) -> String {
-        self.compiled().text()
+        human_of(&self.compiled())
     }
 
     /// Runs the fleet in virtual time, until it ends by itself or the time is over. Same seed, same run.
@@ -155,7 +156,7 @@ impl Fleet {
     #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
     pub fn run_with(&self, seed: u64, limit: Duration, observer: Arc<dyn Observer>) -> RunReport {
         let mut found = self.compiled();
-        let Some(assembly) = found.output.take() else { panic!("{}", found.text()) };
+        let Some(assembly) = found.output.take() else { panic!("{}", human_of(&found)) };
         let settings = Settings { limit: Some(limit), ..Settings::simulated(seed) };
         match saoms_core::schedule::RunningFleet::start(assembly, settings, vec![observer]) {
             Ok(fleet) => fleet.run_to_end(),

@@ -6,7 +6,8 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use saoms_lang::project::{INPUT, composite_files, document};
+use saoms_lang::project::{INPUT, Refused, composite_files, document};
+use saoms_tools::diagnostics::human;
 use saoms_tools::format::Formatted;
 
 use crate::Exit;
@@ -49,7 +50,7 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     let (mut is_wrong, mut has_failed) = (false, false);
     let (mut files, refused) = composite_files(&arguments.files, arguments.allow_outside);
     if let Some(refused) = refused {
-        eprint_coloured(&refused.text(io::stderr().is_terminal()));
+        eprint_coloured(&shown(&refused));
         is_wrong = true;
     }
     let mut seen = HashSet::with_capacity(files.len());
@@ -94,7 +95,7 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
     let is_input = path == Path::new(INPUT);
     let document = match document(path, arguments.max_size) {
         Ok(document) => document,
-        Err(refused) => return Outcome::Wrong(refused.text(io::stderr().is_terminal())),
+        Err(refused) => return Outcome::Wrong(shown(&refused)),
     };
     let formatted = Formatted { document: &document, width: arguments.width };
     let is_same = is_same(&formatted, document.text());
@@ -128,4 +129,9 @@ fn is_same(shown: &impl Display, text: &str) -> bool {
     }
     let mut rest = Rest(text);
     fmt::Write::write_fmt(&mut rest, format_args!("{shown}")).is_ok() && rest.0.is_empty()
+}
+
+/// The reasons why files are refused, as people read them.
+fn shown(refused: &Refused) -> String {
+    human(&refused.diagnostics, &refused.sources, io::stderr().is_terminal())
 }

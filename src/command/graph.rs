@@ -4,8 +4,9 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use saoms_lang::diagnostic::{Diagnostic, Human, Severity};
+use saoms_lang::diagnostic::{Diagnostic, Severity};
 use saoms_lang::project::{INPUT, SET, SEVERITY};
+use saoms_tools::diagnostics::Human;
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 
 use crate::Exit;

@@ -7,10 +7,9 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use saoms_components as _;
-use saoms_lang::diagnostic::human;
 use saoms_lang::project::{Compilation, Project};
 use saoms_lang::registry::Registry;
-use saoms_tools::diagnostics::json;
+use saoms_tools::diagnostics::{human, json};
 use saoms_tools::graph::{Diagram, Picture, dot, mermaid, svg};
 use tempfile::TempDir;
 

@@ -7,20 +7,16 @@
 mod candidates;
 pub mod codes;
 mod collector;
-mod grouping;
-mod human;
 mod level;
 mod meant_boolean;
 mod quoted;
 #[cfg(test)]
 mod tests;
-mod window;
 
 pub(crate) use candidates::Candidates;
 pub use codes::Code;
 pub use collector::Diagnostics;
 pub(crate) use collector::HiddenNames;
-pub use human::{Human, human};
 pub use level::{SetBy, SeverityLevel};
 pub(crate) use meant_boolean::meant_boolean;
 pub use quoted::quoted;

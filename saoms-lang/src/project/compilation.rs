@@ -2,7 +2,7 @@
 
 use super::PluginFault;
 use crate::assembly::Assembly;
-use crate::diagnostic::{Diagnostic, Human, Severity};
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::{Composite, Contribution};
 use crate::registry::Registry;
 use crate::source::Sources;
@@ -38,10 +38,5 @@ impl<T> Compilation<T> {
     /// True if one of the diagnostics is an error.
     pub fn has_errors(&self) -> bool {
         self.reported().any(|one| one.severity == Severity::Error)
-    }
-
-    /// The diagnostics as people read them, without colours.
-    pub fn text(&self) -> String {
-        Human::of(self.reported(), &self.sources, false).to_string()
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::read;
 use crate::contribution::{composites_below, root};
-use crate::diagnostic::{Diagnostic, Diagnostics, human};
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{OpenTexts, Sources};
 use crate::syntax::{self, Document, Parse};
 
@@ -15,13 +15,6 @@ pub struct Refused {
     pub diagnostics: Vec<Diagnostic>,
     /// The texts that were read.
     pub sources: Sources,
-}
-
-impl Refused {
-    /// The diagnostics as people read them.
-    pub fn text(&self, colour: bool) -> String {
-        human(&self.diagnostics, &self.sources, colour)
-    }
 }
 
 /// The document of a file of at most `max_size` bytes, or of standard input where the path is [`INPUT`](super::INPUT).

@@ -14,7 +14,7 @@ fn codes(project: &Project) -> Vec<String> {
 fn a_project_without_a_fault_compiles_to_an_assembly() {
     let project = Project::new().text("a", format!("{HEAD} name=\"a\"/>"));
     let compilation = project.compile(&Registry::new());
-    assert!(compilation.output.is_some(), "{}", compilation.text());
+    assert!(compilation.output.is_some(), "{:?}", compilation.diagnostics);
     assert!(!compilation.has_errors());
     assert_eq!(compilation.first().unwrap().name, "a");
 }
@@ -49,7 +49,7 @@ fn other_texts_can_be_named() {
     assert!(project.compile(&Registry::new()).has_errors());
     let project = project.other_text("b", format!("{HEAD} name=\"b\"/>"));
     let compilation = project.compile(&Registry::new());
-    assert!(!compilation.has_errors(), "{}", compilation.text());
+    assert!(!compilation.has_errors(), "{:?}", compilation.diagnostics);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use saoms_lang::diagnostic::{Diagnostic, Edit, codes};
 use saoms_lang::project::Compilation;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::FileId;
+use saoms_tools::diagnostics::human_of;
 use saoms_tools::expand::expanded;
 
 use super::input::{Input, Settings, kind, kinds};
@@ -22,14 +23,14 @@ const GIVEN: Settings = |project| project.assume_classes(true).wiring(true).set_
 /// is suggested mends what is wrong.
 pub(crate) fn holds(input: &Input, registry: &Registry) {
     let fleet = examined(input, KNOWN, registry);
-    assert_eq!(fleet.output.is_none(), fleet.has_errors(), "{}", fleet.text());
+    assert_eq!(fleet.output.is_none(), fleet.has_errors(), "{}", human_of(&fleet));
     draw(&input.counted(KNOWN, registry), registry);
     mended(input, &fleet, KNOWN, registry);
     if let Some(assembly) = &fleet.output {
         written_out(input, &fleet, assembly, registry);
     }
     let fleet = examined(input, GIVEN, registry);
-    assert!(fleet.output.is_none() || !fleet.has_errors(), "{}", fleet.text());
+    assert!(fleet.output.is_none() || !fleet.has_errors(), "{}", human_of(&fleet));
     mended(input, &fleet, GIVEN, registry);
 }
 
@@ -51,7 +52,7 @@ fn without<'k>(some: &'k [String], others: &[String]) -> Vec<&'k String> {
 fn written_out(input: &Input, fleet: &Compilation, assembly: &Assembly, registry: &Registry) {
     let text = expanded(fleet).unwrap();
     let alone = Input::Text(text.clone()).compiled(KNOWN, registry);
-    assert!(alone.output.is_some(), "{}{input:#?}{text}", alone.text());
+    assert!(alone.output.is_some(), "{}{input:#?}{text}", human_of(&alone));
     let Some(other) = &alone.output else { return };
     assert_eq!(facts(assembly), facts(other), "{input:#?}{text}");
     assert_eq!(Some(text), expanded(&alone), "{input:#?}");
@@ -97,10 +98,10 @@ fn mended(input: &Input, fleet: &Compilation, settings: Settings, registry: &Reg
             alike.filter(|next| !is_further(next)).count()
         };
         let here = fleet.diagnostics.iter().filter(|next| kind(next) == kind(one) && start(next) <= start(one));
-        assert!(alike(&after) < here.count(), "{}{}", context(), after.text());
+        assert!(alike(&after) < here.count(), "{}{}", context(), human_of(&after));
         return;
     }
-    assert!(number(&after) < number(fleet), "{}{}", context(), after.text());
+    assert!(number(&after) < number(fleet), "{}{}", context(), human_of(&after));
 }
 
 /// A text after edits, which must not overlap.

@@ -11,7 +11,7 @@ use saoms_api::Time;
 use saoms_core::journal::read as read_journal;
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::check::Occurrences;
-use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes, human};
+use saoms_lang::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use saoms_lang::expression::{
     ExpressionError, ExpressionFault, ExpressionValue, boolean, has_expression, integer, names, parse, pattern, render,
 };
@@ -21,7 +21,7 @@ use saoms_lang::project::Compilation;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{FileId, Location, Sources};
 use saoms_lang::syntax::{self, Document};
-use saoms_tools::diagnostics::{json, sarif};
+use saoms_tools::diagnostics::{human, json, sarif};
 use saoms_tools::format::format;
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
 

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use saoms_components as _;
 use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
+use saoms_tools::diagnostics::human_of;
 
 use crate::support::{root, saoms, stdout};
 
@@ -32,7 +33,7 @@ fn blocks<'p>(page: &'p str, language: &str) -> Vec<&'p str> {
 fn faults(text: &str) -> (String, Vec<&'static str>) {
     let project = Project::new().in_memory().text("page.composite", text);
     let compilation = project.compile(&Registry::linked().unwrap());
-    (compilation.text(), compilation.reported().map(|one| one.code.id).collect())
+    (human_of(&compilation), compilation.reported().map(|one| one.code.id).collect())
 }
 
 /// A part of a composite as a whole one.

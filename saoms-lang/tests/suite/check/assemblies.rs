@@ -9,6 +9,7 @@ use saoms_api::Failure;
 use saoms_api::host::{DynComponent, PropertyValue, Registration, SmolStr};
 use saoms_lang::project::Project;
 use saoms_lang::registry::Provider;
+use saoms_tools::diagnostics::human_of;
 
 use crate::check::classes::{Gps, registry};
 use crate::check::support::{fleet, fleet_1_0, run, shown};
@@ -189,6 +190,6 @@ fn values_have_the_types_that_a_library_declares() {
     );
     let task = assembly.components[0].task.as_ref().unwrap();
     assert_eq!((task.id.as_str(), task.period.as_millis(), task.use_jms), ("007", 250, false));
-    assert!(timer("seven", "1001").text().contains("property `wait`: `1001` is out of range"));
-    assert!(timer("seven", "1000").text().contains("property `ID`: `seven` is not a whole number"));
+    assert!(human_of(&timer("seven", "1001")).contains("property `wait`: `1001` is out of range"));
+    assert!(human_of(&timer("seven", "1000")).contains("property `ID`: `seven` is not a whole number"));
 }

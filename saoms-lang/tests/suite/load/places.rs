@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 
-use saoms_lang::diagnostic::{codes, human};
+use saoms_lang::diagnostic::codes;
 use saoms_lang::model::{Composite, Contract, ImplementationKind, Part, Property, ReferenceElement, ServiceElement};
 use saoms_lang::source::{Location, Span, Text};
 use saoms_lang::syntax;
-use saoms_tools::diagnostics::json;
+use saoms_tools::diagnostics::{human, json};
 
 use crate::load::support::loaded;
 

@@ -1,6 +1,7 @@
 //! Laws of editors: what has to hold whatever the text.
 
-use saoms_lang::diagnostic::{Diagnostic, Severity, human};
+use crate::diagnostics::human;
+use saoms_lang::diagnostic::{Diagnostic, Severity};
 use saoms_lang::project::Project;
 use saoms_lang::source::{OpenTexts, Sources};
 

@@ -12,11 +12,12 @@ use expect_test::expect_file;
 use saoms_api::Failure;
 use saoms_api::host::{DynComponent, PropertyValue, SmolStr};
 use saoms_core::plugin::Search;
-use saoms_lang::diagnostic::{Code, Diagnostic, Diagnostics, codes, human};
+use saoms_lang::diagnostic::{Code, Diagnostic, Diagnostics, codes};
 use saoms_lang::load::MAX_SIZE;
 use saoms_lang::project::{ClassPath, Classes, Compilation, Project, read};
 use saoms_lang::registry::{Provider, Registry};
 use saoms_lang::source::Sources;
+use saoms_tools::diagnostics::human;
 
 use crate::check::classes::registry;
 

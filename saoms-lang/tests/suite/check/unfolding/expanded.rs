@@ -4,6 +4,7 @@ use expect_test::expect;
 use proptest::prelude::*;
 use saoms_lang::assembly::Assembly;
 use saoms_lang::project::Project;
+use saoms_tools::diagnostics::human_of;
 use saoms_tools::expand::expanded;
 
 use crate::check::classes::registry;
@@ -15,7 +16,7 @@ fn expand(texts: &[&str]) -> (Assembly, String) {
     let project = texts[1..].iter().fold(project, |project, text| project.other_text("t", *text));
     let compilation = project.compile(&registry());
     let Some(text) = expanded(&compilation) else {
-        panic!("{}\n{}", compilation.text(), texts.join("\n"));
+        panic!("{}\n{}", human_of(&compilation), texts.join("\n"));
     };
     (compilation.output.unwrap(), text)
 }

@@ -5,6 +5,7 @@ use std::fs;
 use expect_test::expect;
 use saoms_lang::assembly::Traffic;
 use saoms_lang::project::Project;
+use saoms_tools::diagnostics::human_of;
 
 use crate::check::classes::registry;
 use crate::check::support::{nested, outcome, part, told};
@@ -146,7 +147,7 @@ fn each_use_of_a_composite_has_its_own_table() {
     write("south.csv", "index,speed\n2,1.5\n");
     let compiled = || Project::new().file(folder.path().join("fleet.composite")).compile(&registry());
     let speeds = |found: saoms_lang::project::Compilation| {
-        let text = found.text();
+        let text = human_of(&found);
         let assembly = found.output.unwrap_or_else(|| panic!("{text}"));
         let speed = |one: &saoms_lang::assembly::ComponentSpec| {
             let value = one.values.iter().find(|(name, _)| name == "speed");

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use saoms_api::host::Visible;
 
-use crate::source::{LineColumn, SourceFile, Span};
+use saoms_lang::source::{LineColumn, SourceFile, Span};
 
 /// Marks at most this many lines apart share a picture.
 const TOGETHER: u32 = 12;

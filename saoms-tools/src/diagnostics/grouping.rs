@@ -4,8 +4,8 @@
 use std::collections::HashMap;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 
-use super::{Diagnostic, Severity};
-use crate::source::{FileId, Sources};
+use saoms_lang::diagnostic::{Diagnostic, Severity};
+use saoms_lang::source::{FileId, Sources};
 
 /// Fewer that are alike are shown one by one.
 const MANY: usize = 5;

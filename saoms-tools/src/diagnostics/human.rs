@@ -8,13 +8,19 @@ use saoms_api::host::one_line;
 
 use super::grouping::grouped;
 use super::window::{Mark, Window, windows};
-use super::{Diagnostic, Severity};
-use crate::source::{FileId, Sources};
+use saoms_lang::diagnostic::{Diagnostic, Severity};
+use saoms_lang::project::Compilation;
+use saoms_lang::source::{FileId, Sources};
 
 /// All diagnostics as text, one after the other, an empty line between two. Beside the code stands the rule of the SCA
 /// specification, where there is one. Many that are alike are shown once, with the lines of the others.
 pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool) -> String {
     Human::of(diagnostics, sources, colour).to_string()
+}
+
+/// The diagnostics of a compilation as people read them, without colours.
+pub fn human_of<T>(compilation: &Compilation<T>) -> String {
+    Human::of(compilation.reported(), &compilation.sources, false).to_string()
 }
 
 /// Diagnostics for people, made while they are written: those of a thousand files are long.
