@@ -134,7 +134,7 @@ impl Diagnostic {
     #[must_use]
     pub fn other(self, location: Location, text: impl Into<String>) -> Self {
         match location == self.location {
-            true => self.help("both come from here: what has to differ comes from outside, by a property or an index"),
+            true => self.help("both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`"),
             false => self.label(location, text),
         }
     }

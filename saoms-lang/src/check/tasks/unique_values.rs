@@ -120,7 +120,7 @@ fn shared(
     let one = Diagnostic::new(&codes::NOT_UNIQUE, user.place, message);
     let one = one.help(format!("every {word} needs its own"));
     let own = later.component.properties.iter().filter_map(Property::only_text);
-    let is_own = own.clone().any(|text| text.location == user.place);
+    let is_own = earlier.scope == later.scope && own.clone().any(|text| text.location == user.place);
     report.push(match first.place == user.place {
         // Of replicas, whose expression is not different for each.
         true if later.instance.is_some() && is_own && report.has_expression_at(user.place) => {

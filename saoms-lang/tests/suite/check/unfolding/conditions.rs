@@ -121,7 +121,7 @@ fn includes_and_composites_can_be_absent() {
     expect![[r#"
         more:3:85-86 error S3013: components `N` and `In/N` have the same `ID` `N`
           help: every robot needs its own
-          help: both come from here: what has to differ comes from outside, by a property or an index
+          help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
     "#]]
     .assert_eq(&outcome(
         &[&fleet(inside), &more.replace("<wire source=\"M/other\" target=\"Nobody\"/>", "")],

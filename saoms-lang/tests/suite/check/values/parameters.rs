@@ -197,7 +197,7 @@ fn values_from_outside_are_of_the_type_of_the_property() {
           help: change the value, or the type
         inner:3:88-89 error S3013: components `A/R` and `B/R` have the same `ID` `R`
           help: every robot needs its own
-          help: both come from here: what has to differ comes from outside, by a property or an index
+          help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
     "#]]
     .assert_eq(&outcome(&[&outer, &part("inner", "", &typed)], &[]));
 }
