@@ -284,6 +284,7 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
             ),
         };
         let shown = String::from_utf8_lossy(&bytes).into_owned();
+        let help = format!("{help}; until then nothing of the file is checked");
         Box::new(Wrong { code: &codes::FILE_ENCODING, shown, at: at as u32, message, help })
     })
 }

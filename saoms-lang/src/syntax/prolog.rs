@@ -89,7 +89,8 @@ pub(super) fn kind(rest: &str) -> Option<TokenKind> {
 pub(super) fn broken(input: Input<'_>, start: u32) -> Diagnostic {
     let rest = &input.text[start as usize..];
     let unclosed = |len: usize, what: &str| {
-        input.ended(&codes::XML_UNCLOSED, start, start + len as u32, format!("this {what} is never closed"))
+        let one = input.ended(&codes::XML_UNCLOSED, start, start + len as u32, format!("this {what} is never closed"));
+        one.help("the rest of the file is inside it, and is not checked")
     };
     if starts_doctype(rest) {
         return doctype(input, start, start + 9);

@@ -48,12 +48,13 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     says(
         b"<?xml version='1.0' encoding = \"ISO-8859-1\"?>\n<a>caf\xe9</a>",
         "2:7 [\u{fffd}] error S0007 the file is declared to be in `ISO-8859-1`, and UTF-8 is expected\n\
-         convert it: `iconv -f ISO-8859-1 -t UTF-8 DIR/f.composite`",
+         convert it: `iconv -f ISO-8859-1 -t UTF-8 DIR/f.composite`; until then nothing of the file is checked",
     );
     says(
         b"<a>caf\xe9</a>",
         "1:7 [\u{fffd}] error S0007 the byte 0xE9 here is no UTF-8\n\
-         if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 DIR/f.composite`",
+         if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 DIR/f.composite`; until then \
+         nothing of the file is checked",
     );
 }
 

@@ -272,3 +272,11 @@ fn a_fault_before_a_forbidden_character_comes_first() {
     assert!(fault(&far).contains("501:1 [\u{2}]"));
     tree("<a>\u{7f}\u{fffd}\u{e000}\u{10ffff}\u{ef}</a>");
 }
+
+#[test]
+fn where_reading_stops_is_said() {
+    for text in ["<a><!-- x </a>", "<a><![CDATA[ x </a>", "<a><?p x </a>"] {
+        let faults = super::parse(super::FileId(0), &super::Arc::new(text.into())).faults;
+        assert_eq!(faults[0].help, ["the rest of the file is inside it, and is not checked"], "{text}");
+    }
+}
