@@ -36,9 +36,10 @@ fn the_robot_of_the_manual_has_its_number_and_its_charger() {
 #[test]
 fn rules_over_fleets_take_it_for_a_robot() {
     let text = std::fs::read_to_string("fleet.composite").unwrap();
-    let text = text.replace("value=\"Robot2\"", "value=\"Other1\"").replace("at 1s luggage (3,1)", "at 1s breakdown 7");
-    let found = Fleet::of_text(text.replace(" to (8,2)", "")).diagnostics();
+    let found = Fleet::of_text(text.replace("value=\"Robot2\"", "value=\"Other1\"")).diagnostics();
     assert!(found.contains("both have the number 1"), "{found}");
+    let text = text.replace("at 1s luggage (3,1)", "at 1s breakdown 7").replace(" to (8,2)", "");
+    let found = Fleet::of_text(text).diagnostics();
     assert!(found.contains("error S5005") && found.contains("the fleet has no robot 7"), "{found}");
 }
 

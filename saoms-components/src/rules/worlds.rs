@@ -1,6 +1,6 @@
 //! Rule: the robots of two worlds hear of the same luggage.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
@@ -8,6 +8,7 @@ use saoms_api::{Finding, Place};
 use super::map::luggage;
 use super::robots::{by_world, robots};
 use crate::messages::ENVIRONMENT;
+use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -27,7 +28,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let components = fleet.components();
     let topic = |index: usize| components[index].topic(ENVIRONMENT.name());
     let robots = robots(fleet);
-    let worlds: BTreeSet<usize> = by_world(&robots).into_iter().map(|(world, _)| world).collect();
+    // What stands between robots and their world, such as a drive, hears of no luggage.
+    let all: HashSet<usize> = fleet.indices::<World>().collect();
+    let worlds: BTreeSet<usize> =
+        by_world(&robots).into_iter().map(|(world, _)| world).filter(|world| all.contains(world)).collect();
     if worlds.len() < 2 {
         return Vec::new();
     }
