@@ -67,10 +67,7 @@ impl RobotProperties {
         match digits.parse() {
             Ok(number @ 1..) => Ok(number),
             _ => {
-                let message = format!(
-                    "found the ID `{id}` without a number from 1 to {} at its end, and no property `number`: expected one of them",
-                    u32::MAX
-                );
+                let message = "this robot has no number: give it `number`, or an ID that ends in 1 or more";
                 Err(Finding::new(Place::property("ID"), message).into())
             }
         }

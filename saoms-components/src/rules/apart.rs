@@ -26,7 +26,7 @@ pub(super) static RULE: FleetRule = FleetRule {
 /// may have their own names of those with warnings: a robot that is alone with its name is in none.
 const SHARED: [(&str, Severity, &str); 3] = [
     (POSITION.name(), Severity::Error, "they do not know where it is and collide with it"),
-    (CRITICAL_SITUATION.name(), Severity::Warning, "if it breaks down, nobody takes its luggage over"),
+    (CRITICAL_SITUATION.name(), Severity::Warning, "if it breaks down, no other robot takes over its luggage"),
     (ROBOT_LIST.name(), Severity::Warning, "they do not know of its state"),
 ];
 

@@ -9,7 +9,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5014",
         name: "map-size",
-        meaning: "A world has a map, and a `width` or `height` that is not the map's: the map counts.",
+        meaning: "A world has a map, and a `width` or `height` that is not the map's: the size of the map is used.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -28,7 +28,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             if said == drawn || values.iter().all(|(given, _)| given != name) {
                 continue;
             }
-            let message = format!("`{name}` is {said}, and the map has {drawn} {what}: the map counts");
+            let message = format!("`{name}` is {said}, but the map has {drawn} {what}: the size of the map is used");
             findings.push(
                 Finding::new(Place::property(name).in_component(area.index), message)
                     .label(Place::property("map").in_component(area.index), "the map")

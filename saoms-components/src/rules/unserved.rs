@@ -15,7 +15,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",
-        meaning: "Nothing comes of a scenario: nobody passes its events on, no robot is there, or all of them are \
+        meaning: "A scenario has no effect: no component passes its events on, there is no robot, or all robots are \
             classic ones that sleep, and none is woken.",
         severity: Severity::Warning,
         rule: None,
@@ -76,7 +76,7 @@ fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_woken: bool)
     {
         return Some((
             first,
-            "nobody passes the events of this scenario on to the robots",
+            "no component passes the events of this scenario on to the robots",
             "add a `saoms.MasterEnvironment`",
         ));
     }
@@ -92,7 +92,7 @@ fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_woken: bool)
         let is_none = fleet.indices::<Robot>().next().is_none();
         return is_none.then_some((
             first,
-            "no robot is there to bring the luggage of this scenario",
+            "there is no robot to bring the luggage of this scenario",
             "add a `saoms.Robot`",
         ));
     }
@@ -111,7 +111,7 @@ fn airplanes<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents) -> Option<Mistake<
     let first = has.airplanes.as_ref()?;
     fleet.all::<MasterRobot>().next().is_none().then_some((
         first,
-        "nobody reacts to the landings and take-offs of this scenario",
+        "no component reacts to the landings and take-offs of this scenario",
         "add a `saoms.MasterRobot`, which awakes robots for them",
     ))
 }

@@ -68,7 +68,7 @@ impl Setting {
         let found = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
         let Some((name, value)) = found else {
             let message = match text.find('=') {
-                None => format!("{} sets nothing: there is no `=`", quoted(text)),
+                None => format!("{} is not a setting: `=` is missing", quoted(text)),
                 Some(_) => "there is no name before the `=`".to_owned(),
             };
             let place = Span::new(0, text.len() as u32).in_file(file);
@@ -122,7 +122,7 @@ impl Variable {
             // What no variable can be called has none.
             let Some(value) = get(named).filter(|_| !named.contains(['=', '\0'])) else { continue };
             let Ok(value) = value.into_string() else {
-                let message = format!("the environment variable {} is no text in UTF-8", quoted(named));
+                let message = format!("the environment variable {} is not text in UTF-8", quoted(named));
                 let one = Diagnostic::new(&codes::SETTING_MALFORMED, named.location, message);
                 diagnostics.push(one.help("the value of a property is a text in UTF-8"));
                 continue;

@@ -39,7 +39,8 @@ impl Finder {
             if !is_near && holds_others(root) {
                 continue;
             }
-            let message = format!("the contribution has nothing of the namespace {}", quoted(namespace));
+            let message =
+                format!("the contribution has no composite or definition in the namespace {}", quoted(namespace));
             diagnostics.push(with_nearest(entry, message, namespace, own.iter().map(String::as_str)));
         }
         let around = self.around.get_or_insert_default();

@@ -88,7 +88,7 @@ impl Finder {
         let first = all.iter().filter(|(path, _)| is_called_so(path));
         let others = all.iter().filter(|(path, _)| !is_called_so(path));
         let shown = |(path, reason): &(PathBuf, String)| {
-            format!("{} is no composite: {reason}", quoted(&path.display().to_string()))
+            format!("{} is not a composite: {reason}", quoted(&path.display().to_string()))
         };
         first.chain(others).take(OFFERED_NAMES).map(shown).collect()
     }

@@ -28,8 +28,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
     let mut key = head.next()?;
     let report = |at: Location, message: String| Diagnostic::new(&codes::OVERRIDES, at, message);
     if !KEYS.contains(&key.as_str()) {
-        let one =
-            report(key.location, format!("the first column is {}, and has to be `index` or `name`", quoted(&key)));
+        let one = report(key.location, format!("the first column is {}, expected `index` or `name`", quoted(&key)));
         let moved = head.as_slice().iter().find(|column| KEYS.contains(&column.as_str()));
         diagnostics.push(match nearest(&key, KEYS) {
             _ if let Some(moved) = moved => {
@@ -58,7 +57,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         } else if let Some(first) = first.insert(name, name.location) {
             *is_usable = false;
             let one = report(name.location, format!("there are two columns {}", quoted(name)));
-            diagnostics.push(one.label(first, "the first").help("make one of them"));
+            diagnostics.push(one.label(first, "the first").help("merge them into one"));
         }
     }
     let mut rows = Vec::new();
@@ -74,7 +73,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
             let one = report(at, format!("a line with {values}, and there are {columns}"));
             diagnostics.push(one.help(match (of.contains([';', '\t']), count > properties.len()) {
                 (true, _) => "the values of a line stand between commas",
-                (_, true) => "a value that holds a comma stands between two `\"`",
+                (_, true) => "a value that contains a comma is written between two `\"`",
                 _ => "a column that says nothing about a replica is an empty value: end the line with its comma",
             }));
             if !of.contains([';', '\t']) {
@@ -100,7 +99,7 @@ fn separated(file: FileId, text: &str) -> Option<Diagnostic> {
     let place = Span::new((start + at) as u32, (start + at + separator.len()) as u32).in_file(file);
     let message = format!("the values of this table stand between {shown}, and have to stand between commas");
     let one = Diagnostic::new(&codes::OVERRIDES, place, message);
-    Some(one.help("save it as comma-separated values; a value that holds a comma stands between two `\"`"))
+    Some(one.help("save it as comma-separated values; a value that contains a comma is written between two `\"`"))
 }
 
 fn many(count: usize, what: &str) -> String {

@@ -81,31 +81,31 @@ fn wrong(root: Element<'_>) -> Option<Diagnostic> {
             "" => "no namespace".to_owned(),
             namespace => format!("the namespace {}", quoted(namespace)),
         };
-        let one = fault(at, format!("`values` is in {found}, and has to be in one of SCA"));
+        let one = fault(at, format!("`values` is in {found}, expected one of SCA"));
         return Some(one.help(format!("that of {} is `{}`", Version::ALL[0].label(), Version::ALL[0].namespace())));
     }
     if let Some(span) = root.text_span() {
-        let one = fault(span.in_file(at.file), "text in `values`, which holds elements".to_owned());
+        let one = fault(span.in_file(at.file), "unexpected text in `values`: it contains elements only".to_owned());
         return Some(one.help("write each value as `<value>...</value>`"));
     }
     let Some(first) = root.children().next() else {
         return Some(
-            fault(at, "`values` holds no value".to_owned()).help("write each value as `<value>...</value>` in it"),
+            fault(at, "`values` contains no value".to_owned()).help("write each value as `<value>...</value>` in it"),
         );
     };
     let is_slip = |one: &Element<'_>| one.namespace() == root.namespace() && !is_value(*one);
     if let Some(other) = root.children().find(is_slip) {
         let (name, at) = (other.local_name(), other.name_location());
-        let one = fault(at, format!("{} cannot stand in `values`", quoted(other.name())));
+        let one = fault(at, format!("{} is not allowed in `values`", quoted(other.name())));
         return Some(match nearest(name, ["value"]) {
             Some(meant) => {
                 let edits = renaming(other, other.prefix(), meant);
                 one.suggest_edits(format!("replace {} with `value`", quoted(name)), edits)
             }
-            None => one.help("it holds `value`, or elements of another namespace"),
+            None => one.help("it can contain `value`, or elements of another namespace"),
         });
     }
     let other = root.children().find(|one| is_value(*one) != is_value(first))?;
-    let one = fault(other.name_location(), "`values` holds both `value` and other elements".to_owned());
+    let one = fault(other.name_location(), "`values` contains both `value` and other elements".to_owned());
     Some(one.label(first.name_location(), "the first of the others").help("write all of them in one way"))
 }

@@ -62,39 +62,39 @@ codes! {
     FILE_UNREADABLE = "S0003" Error "file-unreadable": "The file exists and cannot be read.";
     FILE_TOO_LARGE = "S0004" Error "file-too-large": "The file is past the size limit.";
     FILE_EMPTY = "S0005" Error "file-empty": "The file holds nothing, or nothing but white space.";
-    FILE_BINARY = "S0006" Error "file-binary": "The file is no text.";
+    FILE_BINARY = "S0006" Error "file-binary": "The file is not text.";
     FILE_ENCODING = "S0007" Error "file-encoding": "The file is not in UTF-8.";
-    TOO_MANY = "S0008" Warning "too-many": "Further diagnostics of one kind in one file are counted, not shown: as bad as those of that kind are.";
+    TOO_MANY = "S0008" Warning "too-many": "Further diagnostics with one code in one file are counted, not shown; the severity is that of those.";
     FILE_OUTSIDE = "S0009" Error "file-outside": "A composite names a file outside its folder and its contribution.";
     // S01: XML 1.0 and its namespaces. The first of a file ends the reading of it.
     XML_SYNTAX = "S0101" Error "xml-syntax": "The file is not well-formed XML.";
     XML_TAG_MISMATCH = "S0102" Error "xml-tag-mismatch": "An end tag closes another element than the one that is open.";
     XML_UNCLOSED = "S0103" Error "xml-unclosed": "An element, a comment, a tag or a quote is never closed.";
-    XML_OUTSIDE_ROOT = "S0104" Error "xml-outside-root": "Something stands beside the one element that a file has to be.";
+    XML_OUTSIDE_ROOT = "S0104" Error "xml-outside-root": "There is something beside the root element, of which a file has one.";
     XML_ATTRIBUTE = "S0105" Error "xml-attribute": "An attribute is written wrongly.";
     XML_DUPLICATE_ATTRIBUTE = "S0106" Error "xml-duplicate-attribute": "An element has one attribute twice.";
-    XML_NAME = "S0107" Error "xml-name": "The name of an element, an attribute or an instruction is no XML name.";
+    XML_NAME = "S0107" Error "xml-name": "The name of an element, an attribute or an instruction is not an XML name.";
     XML_CHARACTER = "S0108" Error "xml-character": "A character that XML does not allow.";
     XML_ENTITY = "S0109" Error "xml-entity": "A reference is malformed, or to something other than a character or one of the five predefined entities.";
     XML_DOCTYPE = "S0110" Error "xml-doctype": "Document type declarations are refused.";
     XML_DECLARATION = "S0111" Error "xml-declaration": "The XML declaration is malformed or not at the very start.";
-    XML_PREFIX = "S0112" Error "xml-prefix": "A prefix is bound to no namespace, or a binding is not allowed.";
+    XML_PREFIX = "S0112" Error "xml-prefix": "A prefix is not declared, or its declaration is not allowed.";
     // S10: the vocabulary of SCA.
-    ROOT = "S1001" Error "root": "The root element is no composite.";
+    ROOT = "S1001" Error "root": "The root element is not a composite.";
     NAMESPACE = "S1002" Error "namespace" ("ASM13001"): "The root element is in none of the namespaces of SCA.";
     OTHER_VERSION = "S1003" Error "other-version" ("ASM13001"): "An element is of another version of SCA than the composite it is in.";
     UNKNOWN_ELEMENT = "S1004" Error "unknown-element" ("ASM13001"): "An element of SCA, or of SAOMS, that does not exist.";
-    MISPLACED_ELEMENT = "S1005" Error "misplaced-element" ("ASM13001"): "An element that cannot stand where it stands.";
+    MISPLACED_ELEMENT = "S1005" Error "misplaced-element" ("ASM13001"): "An element is not allowed where it is.";
     REPEATED_ELEMENT = "S1006" Error "repeated-element" ("ASM13001"): "An element that can be given once is given again.";
     UNKNOWN_ATTRIBUTE = "S1007" Error "unknown-attribute" ("ASM13001") [Judgement]: "An attribute that the element does not have.";
-    MISSING_ATTRIBUTE = "S1008" Error "missing-attribute" ("ASM13001"): "An attribute that the element has to have is not given.";
+    MISSING_ATTRIBUTE = "S1008" Error "missing-attribute" ("ASM13001"): "A required attribute is missing.";
     MISSING_TARGET_NAMESPACE = "S1009" Error "missing-target-namespace" ("ASM13001") [Judgement, OutlivesExpansion]: "A composite has no target namespace.";
     MISSING_IMPLEMENTATION = "S1010" Error "missing-implementation" ("ASM13001") [AbsentPart]: "A component has no implementation.";
     ATTRIBUTE_VALUE = "S1011" Error "attribute-value" ("ASM13001"): "The value of an attribute is of the wrong form.";
-    MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001") [Judgement]: "There is text where none belongs.";
-    NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and what is in it is passed over.";
+    MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001") [Judgement]: "There is text in an element that contains elements only.";
+    NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and its elements and attributes are ignored.";
     NEWER_ATTRIBUTE = "S1014" Warning "newer-attribute": "A file of SCA 1.0 has an attribute of SCA 1.1.";
-    FOREIGN_ELEMENT = "S1015" Warning "foreign-element": "An element has a name of SCA and the namespace of something else, or is one of XInclude: it is passed over.";
+    FOREIGN_ELEMENT = "S1015" Warning "foreign-element": "An element has a name of SCA and the namespace of something else, or is one of XInclude: it is ignored.";
     // S20: names, composite properties, services, references and wires.
     COMPOSITE_REPEATED = "S2001" Error "composite-repeated" ("ASM60001") [Judgement]: "Two composites of one namespace have one name.";
     COMPONENT_REPEATED = "S2002" Error "component-repeated" ("ASM50001"): "Two components have one name.";
@@ -104,7 +104,7 @@ codes! {
     UNKNOWN_REFERENCE = "S2006" Error "unknown-reference" ("ASM50008"): "A component has a reference that its class, composite or component type does not have.";
     INTERFACE_DIFFERS = "S2007" Error "interface-differs": "The interface of a service or a reference is not that of the class.";
     MULTIPLICITY_WIDER = "S2008" Error "multiplicity-wider" ("ASM50009"): "The multiplicity of a reference allows what the class does not.";
-    BINDING_NOT_SERVED = "S2009" Warning "binding-not-served": "A service or a reference has a binding that is not served.";
+    BINDING_NOT_SERVED = "S2009" Warning "binding-not-served": "A service or a reference has a binding that is not supported.";
     URI_MALFORMED = "S2010" Error "uri-malformed": "A target, a source of a wire or a promotion has the wrong form.";
     UNKNOWN_COMPONENT = "S2011" Error "unknown-component" [AbsentComponent]: "A target, a wire or a promotion names a component that does not exist.";
     UNKNOWN_TARGET_SERVICE = "S2012" Error "unknown-target-service" ("ASM60047") [AbsentName]: "A target names a service that the component does not have.";
@@ -112,15 +112,15 @@ codes! {
     TARGET_AMBIGUOUS = "S2014" Error "target-ambiguous" ("ASM60048"): "A target names a component with several fitting services.";
     WIRE_INTERFACE = "S2015" Error "wire-interface" ("ASM60043"): "A reference is wired to a service with another interface.";
     UNKNOWN_WIRE_SOURCE = "S2016" Error "unknown-wire-source" [AbsentName]: "A wire starts from a reference that the component does not have.";
-    TOO_MANY_TARGETS = "S2017" Error "too-many-targets": "A reference has more targets than it takes.";
+    TOO_MANY_TARGETS = "S2017" Error "too-many-targets": "A reference has more targets than it allows.";
     UNWIRED = "S2018" Error "unwired" [OutlivesExpansion, AbsentName]: "A reference that needs a target has none. In SCA 1.0 files a warning.";
     AUTOWIRE_AMBIGUOUS = "S2019" Error "autowire-ambiguous" ("ASM60025"): "Autowire finds several services for a reference.";
     CALL_CYCLE = "S2020" Error "call-cycle" [Judgement, OutlivesExpansion]: "Components are wired so that a call comes back to its caller.";
-    UNKNOWN_PROMOTED = "S2021" Error "unknown-promoted" [AbsentName]: "A composite promotes what is not there.";
+    UNKNOWN_PROMOTED = "S2021" Error "unknown-promoted" [AbsentName]: "A composite promotes a service or a reference that does not exist.";
     PROMOTED_UNWIRED = "S2022" Warning "promoted-unwired" [AbsentName]: "A composite that runs by itself promotes a reference, and nothing wires it.";
-    SOURCE_MALFORMED = "S2023" Error "source-malformed": "The `source` of a property leads to no value.";
+    SOURCE_MALFORMED = "S2023" Error "source-malformed": "The `source` of a property does not name a value.";
     UNKNOWN_SOURCE = "S2024" Error "unknown-source" [AbsentName]: "The `source` of a property names a composite property that does not exist.";
-    COMPOSITE_PROPERTY_MISSING = "S2025" Error "composite-property-missing" ("ASM60034") [AbsentName]: "A composite property that has to have a value has none.";
+    COMPOSITE_PROPERTY_MISSING = "S2025" Error "composite-property-missing" ("ASM60034") [AbsentName]: "A composite property needs a value and has none.";
     UNUSED_PROPERTY = "S2026" Warning "unused-property" [WithoutEffect, AbsentName]: "A composite property is used by no component.";
     SETTING_MALFORMED = "S2027" Error "setting-malformed": "An option that sets a composite property has no name or no `=`.";
     SETTING_REPEATED = "S2028" Error "setting-repeated": "One composite property is set twice.";
@@ -130,7 +130,7 @@ codes! {
     COMPOSITE_CIRCLE = "S2032" Error "composite-circle": "A composite includes itself or is implemented by itself, directly or through others.";
     INCLUDED_TWICE = "S2033" Error "included-twice" ("ASM60031") [Judgement]: "A composite is included twice in one composite.";
     INCLUDE_LOCAL = "S2034" Error "include-local" ("ASM60041") [Judgement]: "A composite that is `local` is included in one that is not.";
-    FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites or replicas come to more components or wires, or sources to more values, than a fleet can have; or paths of sources look at too many elements.";
+    FLEET_TOO_LARGE = "S2035" Error "fleet-too-large": "Composites in composites or replicas make more components or wires, or sources more values, than a fleet can have; or paths of sources look at too many elements.";
     PROMOTED_MULTIPLICITY = "S2036" Error "promoted-multiplicity" ("ASM60011") [Judgement]: "A composite's reference allows numbers of targets that a reference it promotes does not.";
     PROMOTED_FIXED = "S2037" Error "promoted-fixed" ("ASM50042") [Judgement]: "A reference for one target that must not be overridden is promoted.";
     WIRED_BY_IMPLEMENTATION = "S2038" Error "wired-by-implementation" ("ASM50013"): "A reference that its implementation wires has a target. In SCA 1.0 files a warning, and where the target comes from outside.";
@@ -139,17 +139,17 @@ codes! {
     SERVICE_BINDING_URI = "S2041" Warning "service-binding-uri" ("ASM90005") [Judgement]: "A service's binding of SCA has a URI.";
     COMPOSITE_VALUE_TYPE = "S2042" Error "composite-value-type" ("ASM50027") [Judgement]: "The value of a composite's property is not of its type.";
     COMPONENT_TYPE_REPEATED = "S2043" Error "component-type-repeated" [Judgement]: "A component type has two services, references or properties of one name. In SCA 1.0 files a warning.";
-    COMPONENT_TYPE_MISSING = "S2044" Error "component-type-missing" ("ASM40001") [Judgement]: "An implementation that says nothing by itself has no component type beside it.";
+    COMPONENT_TYPE_MISSING = "S2044" Error "component-type-missing" ("ASM40001") [Judgement]: "An implementation that does not declare its services has no component type beside it.";
     EXPRESSION = "S2045" Error "expression": "An expression of a replica or a condition is malformed, or has no value.";
-    REPLICAS = "S2046" Error "replicas" [AbsentPart]: "What is said about the replicas of a component contradicts itself.";
+    REPLICAS = "S2046" Error "replicas" [AbsentPart]: "The attributes for the replicas of a component contradict each other.";
     OVERRIDES = "S2047" Error "overrides": "A table of overrides is malformed, or is about replicas that do not exist.";
-    SEVERITY = "S2048" Error "severity": "A severity is set of a code that does not exist, to none, or twice.";
-    SEVERITY_UNUSED = "S2049" Warning "severity-unused" [AbsentName]: "A composite lowers a severity, and there is nothing that it changes; or an option sets one, and a composite another.";
+    SEVERITY = "S2048" Error "severity": "A severity is set for a code that does not exist, to a level that does not exist, or twice.";
+    SEVERITY_UNUSED = "S2049" Warning "severity-unused" [AbsentName]: "Setting a severity has no effect: there is no diagnostic with this code, or a composite sets another one than the option.";
     UNKNOWN_TYPE = "S2050" Error "unknown-type" [Judgement]: "A property has a type that XML Schema does not have.";
-    DEPLOYABLE_NOT_FOUND = "S2051" Error "deployable-not-found" [AbsentComposite]: "A contribution calls a composite deployable that it does not have.";
-    VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not hold them as SCA asks for.";
+    DEPLOYABLE_NOT_FOUND = "S2051" Error "deployable-not-found" [AbsentComposite]: "A contribution lists a deployable composite that it does not have.";
+    VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not have the form that SCA requires.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways that exclude each other.";
-    EXCHANGE = "S2059" Warning "exchange" [AbsentComposite]: "A contribution exports a namespace of which it has nothing, or imports one that those around it do not export.";
+    EXCHANGE = "S2059" Warning "exchange" [AbsentComposite]: "A contribution exports a namespace in which it has nothing, or imports one that those around it do not export.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has an implementation of a kind that cannot run here.";
@@ -164,10 +164,10 @@ codes! {
     MANY_VALUES = "S3011" Error "many-values" ("ASM50032"): "A property that takes one value is given several.";
     VALUE_IN_TWO_WAYS = "S3012" Error "value-in-two-ways" ("ASM50033"): "A property is given a value in two ways at once.";
     NOT_UNIQUE = "S3013" Error "not-unique" [Judgement, OutlivesExpansion]: "Two components share a value that each needs for itself.";
-    CONSTRUCTION = "S3014" Error "construction" [AbsentPart]: "The values of a component do not fit together, as its class sees it.";
+    CONSTRUCTION = "S3014" Error "construction" [AbsentPart]: "The class of a component rejects its values.";
     LIBRARY = "S3015" Error "library": "The library that an implementation names is not found, cannot be used, or has no such class.";
-    ONLY_READ = "S3016" Error "only-read" [OutlivesExpansion]: "A fleet needs the code of a library that was found, and that nobody named. A note where it is only checked.";
-    EXPRESSION_UNREAD = "S3017" Warning "expression-unread" [OutlivesExpansion]: "A value has an expression in a component without a count, where it stands for itself.";
+    ONLY_READ = "S3016" Error "only-read" [OutlivesExpansion]: "A fleet needs the code of a library that was found, but that no option names. A note where it is only checked.";
+    EXPRESSION_UNREAD = "S3017" Warning "expression-unread" [OutlivesExpansion]: "A value has an expression in a component without a count, where it is not evaluated.";
     // S40: tasks and topics.
     TASK_ID_SHARED = "S4001" Warning "task-id-shared" [OutlivesExpansion]: "Two tasks have one ID.";
     TOPIC_RENAME = "S4002" Error "topic-rename": "A `topicRename` is malformed or contradicts itself.";
@@ -175,25 +175,25 @@ codes! {
     USE_JMS = "S4004" Error "use-jms": "A component that publishes or subscribes has `useJMS` set to false.";
     BROKER_URL = "S4005" Error "broker-url": "The address of a message broker is malformed.";
     CREDENTIALS = "S4006" Warning "credentials" [OutlivesExpansion, AbsentPart]: "An account at a message broker is incomplete or not used.";
-    DEADLINE = "S4007" Warning "deadline" [OutlivesExpansion]: "A deadline is behind the next execution.";
-    RESTART_UNUSED = "S4008" Warning "restart-unused" [OutlivesExpansion, WithoutEffect]: "A setting of restarts has no effect, since there are none.";
+    DEADLINE = "S4007" Warning "deadline" [OutlivesExpansion]: "A deadline is longer than the period.";
+    RESTART_UNUSED = "S4008" Warning "restart-unused" [OutlivesExpansion, WithoutEffect]: "A setting of restarts has no effect: the component is never restarted.";
     TOPIC_MISMATCH = "S4009" Error "topic-mismatch": "Two components use one topic for different messages, or in different ways.";
-    TOPIC_UNREAD = "S4010" Note "topic-unread" [OfWiring, AbsentName]: "A topic is published that nobody reads. Told by `saoms check --wiring`.";
-    TOPIC_UNWRITTEN = "S4011" Warning "topic-unwritten" [OfWiring, AbsentName]: "A topic is read that nobody publishes. Told by `saoms check --wiring`.";
-    TOPIC_NEAR = "S4012" Warning "topic-near" [OfWiring, AbsentName]: "A topic has one end or one user alone, and there is another one with nearly its name. Told by `saoms check --wiring`.";
-    QUEUE = "S4013" Note "queue" [OfWiring]: "More messages can come between two executions of a reader than its queue takes. Told by `saoms check --wiring`.";
-    READER_FASTER = "S4014" Note "reader-faster" [OfWiring]: "A topic is read more often than anybody publishes it. Told by `saoms check --wiring`.";
+    TOPIC_UNREAD = "S4010" Note "topic-unread" [OfWiring, AbsentName]: "A topic is published that no component reads. Reported by `saoms check --wiring`.";
+    TOPIC_UNWRITTEN = "S4011" Warning "topic-unwritten" [OfWiring, AbsentName]: "A topic is read that no component publishes. Reported by `saoms check --wiring`.";
+    TOPIC_NEAR = "S4012" Warning "topic-near" [OfWiring, AbsentName]: "A topic has only publishers, only readers or one user, and another topic has nearly its name. Reported by `saoms check --wiring`.";
+    QUEUE = "S4013" Note "queue" [OfWiring]: "More messages can arrive between two executions of a reader than its queue holds. Reported by `saoms check --wiring`.";
+    READER_FASTER = "S4014" Note "reader-faster" [OfWiring]: "A topic is read more often than it is published. Reported by `saoms check --wiring`.";
     // S45: the loops of components.
-    UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A loop is named that the component does not have.";
+    UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "One loop of a component is given twice.";
-    LOOP_CONTRADICTION = "S4503" Error "loop-contradiction": "What is said about a loop contradicts itself.";
+    LOOP_CONTRADICTION = "S4503" Error "loop-contradiction": "The attributes of a loop contradict each other.";
     LOOP_ORDER = "S4504" Error "loop-order": "The order of loops goes in a circle, or refers to a loop that is removed.";
     LOOP_KNOWLEDGE = "S4505" Error "loop-knowledge": "A loop works on a knowledge that the component does not have.";
     UNKNOWN_ENTRY = "S4506" Error "unknown-entry": "A loop senses or effects an entry that the component does not have.";
     EFFECTOR_CLASH = "S4507" Error "effector-clash": "Two loops of a component change one effector.";
     ENTRY_REPEATED = "S4508" Error "entry-repeated": "A loop adds an entry that is there already.";
     LOOP_REFERENCE = "S4509" Error "loop-reference": "A loop has a reference of the same name as another one of the component, with another interface.";
-    LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "A loop is named, and nothing is said that changes it.";
+    LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "An element for a loop changes nothing.";
 }
 
 /// The natures of a code of this table; `None` for that of a rule of a crate of components.

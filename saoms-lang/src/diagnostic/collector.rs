@@ -212,7 +212,7 @@ impl Diagnostics {
         for count in self.counts.values() {
             if let Some(place) = count.beyond {
                 let Code { id, name, .. } = count.code;
-                let message = format!("{} more of the kind {id} ({name})", count.number - count.kept);
+                let message = format!("{} more of {id} ({name}), not shown", count.number - count.kept);
                 let mut more = Diagnostic::new(&codes::TOO_MANY, place, message);
                 // Those that were not kept are as the last that was.
                 let is_kept = |one: &&Diagnostic| one.code.id == *id && one.location.file == place.file;

@@ -41,16 +41,14 @@ pub fn boolean(expression: &Expression, lookup: &mut Lookup<'_>) -> Result<bool,
 fn number(value: ExpressionValue, of: &Expression) -> Result<i64, ExpressionFault> {
     match value {
         ExpressionValue::Integer(number) => Ok(number),
-        other => {
-            Err(ExpressionError::new(format!("here is {other}, and a whole number is expected")).at(of.at.clone()))
-        }
+        other => Err(ExpressionError::new(format!("found {other}, expected a whole number")).at(of.at.clone())),
     }
 }
 
 fn condition(value: ExpressionValue, of: &Expression) -> Result<bool, ExpressionFault> {
     match value {
         ExpressionValue::Boolean(value) => Ok(value),
-        other => Err(ExpressionError::new(format!("here is {other}, and a condition is expected"))
+        other => Err(ExpressionError::new(format!("found {other}, expected a condition"))
             .help("compare it with something, as in `robots > 10`")
             .at(of.at.clone())),
     }
@@ -109,7 +107,7 @@ fn two(
             if std::mem::discriminant(&left) != std::mem::discriminant(&other) {
                 let message = format!("{left} cannot be compared with {other}");
                 return Err(ExpressionError::new(message)
-                    .help("texts stand between two `'`, numbers and `true` and `false` do not")
+                    .help("texts are written between two `'`, numbers, `true` and `false` without")
                     .at(whole.at.clone()));
             }
             Ok(ExpressionValue::Boolean((left == other) == (operator == "==")))
@@ -127,7 +125,7 @@ fn unquoted(fault: ExpressionFault, text: &ExpressionValue, of: &Expression) -> 
         return fault;
     };
     let also = fault.problem.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
-    let help = format!("a text stands between two `'`, as {}{also}", quoted(&format!("'{name}'")));
+    let help = format!("a text is written between two `'`, as {}{also}", quoted(&format!("'{name}'")));
     ExpressionFault { problem: fault.problem.help(help), ..fault }
 }
 
@@ -144,7 +142,10 @@ fn calculated(
         ">" => return Ok(ExpressionValue::Boolean(one > other)),
         ">=" => return Ok(ExpressionValue::Boolean(one >= other)),
         "/" | "%" if other == 0 => {
-            let message = format!("{} is divided by zero", quoted(&one.to_string()));
+            let message = match right.node {
+                Node::Value(_) => "division by zero".to_owned(),
+                _ => format!("division by zero: {} is 0", quoted(&right.divisor)),
+            };
             let problem = ExpressionError { is_arithmetic: true, ..ExpressionError::new(message) };
             return Err(problem.at(right.at.clone()));
         }

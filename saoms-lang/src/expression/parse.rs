@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use smol_str::SmolStr;
+
 use super::token::{Placed, Token, tokens};
 use super::{ExpressionError, ExpressionFault, ExpressionValue};
 use crate::diagnostic::quoted;
@@ -12,6 +14,8 @@ use crate::limits::{EXPRESSION_DEPTH, EXPRESSION_OPERATORS};
 pub struct Expression {
     pub(super) at: Range<usize>,
     pub(super) node: Node,
+    /// The text of a divisor, for the fault that it is zero; empty for others.
+    pub(super) divisor: SmolStr,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,6 +29,10 @@ pub(super) enum Node {
 }
 
 impl Expression {
+    fn new(at: Range<usize>, node: Node) -> Self {
+        Self { at, node, divisor: SmolStr::default() }
+    }
+
     /// The names in it, each with its bytes.
     pub fn names(&self) -> Vec<(&str, Range<usize>)> {
         let mut all = Vec::new();
@@ -56,7 +64,7 @@ pub fn parse(text: &str) -> Result<Expression, ExpressionFault> {
 /// Reads the expression in `text[start..]` up to its end or to a `:`; and where that is.
 pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize), ExpressionFault> {
     let (tokens, end) = tokens(text, start)?;
-    let mut parser = Parser { tokens: &tokens, next: 0, end, operators: 0, depth: 0 };
+    let mut parser = Parser { text, tokens: &tokens, next: 0, end, operators: 0, depth: 0 };
     let whole = parser.level(0)?;
     match tokens.get(parser.next) {
         None => Ok((whole, end)),
@@ -75,6 +83,7 @@ const LEVELS: [&[&str]; 5] = [&["or"], &["and"], &["==", "!=", "<", "<=", ">", "
 const COMPARISON: usize = 2;
 
 struct Parser<'t> {
+    text: &'t str,
     tokens: &'t [Placed],
     next: usize,
     end: usize,
@@ -109,13 +118,18 @@ impl Parser<'_> {
             }
             is_comparison = level == COMPARISON;
             self.next += 1;
-            let right = self.level(level + 1)?;
+            let mut right = self.level(level + 1)?;
+            if matches!(operator, "/" | "%") {
+                let text = &self.text[right.at.clone()];
+                let inside = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));
+                right.divisor = inside.unwrap_or(text).trim().into();
+            }
             let at = left.at.start..right.at.end;
             self.operators += 1;
             if self.operators > EXPRESSION_OPERATORS {
                 return Err(ExpressionError::new("the expression is too long").at(at));
             }
-            left = Expression { at, node: Node::Two(Box::new(left), operator, Box::new(right)) };
+            left = Expression::new(at, Node::Two(Box::new(left), operator, Box::new(right)));
         }
         Ok(left)
     }
@@ -135,7 +149,7 @@ impl Parser<'_> {
         self.deeper(start.clone())?;
         let inner = self.level(level)?;
         self.depth -= 1;
-        Ok(Expression { at: start.start..inner.at.end, node: make(Box::new(inner)) })
+        Ok(Expression::new(start.start..inner.at.end, make(Box::new(inner))))
     }
 
     fn deeper(&mut self, at: Range<usize>) -> Result<(), ExpressionFault> {
@@ -189,6 +203,6 @@ impl Parser<'_> {
             }
         };
         self.next += 1;
-        Ok(Expression { at: at.clone(), node })
+        Ok(Expression::new(at.clone(), node))
     }
 }

@@ -17,7 +17,7 @@ fn lookup(name: &str) -> Result<ExpressionValue, ExpressionError> {
 /// The value of an expression, or its fault with the bytes that it is in.
 fn of(text: &str) -> String {
     let value = parse(text).and_then(|one| match integer(&one, &mut lookup) {
-        Err(fault) if fault.problem.message.contains("a whole number is expected") => {
+        Err(fault) if fault.problem.message.contains("expected a whole number") => {
             boolean(&one, &mut lookup).map(|value| value.to_string())
         }
         number => number.map(|number| number.to_string()),
@@ -40,18 +40,19 @@ fn numbers_are_calculated_as_people_do() {
         ("- -3", "3"),
         ("9223372036854775807 + 1", "[9223372036854775807 + 1] the number is too large: beyond 64 bits"),
         ("9223372036854775808", "[9223372036854775808] `9223372036854775808` is too large"),
-        ("1 / (index - 7)", "[(index - 7)] `1` is divided by zero"),
-        ("1.5 * 2", "[1.5] `1.5` is no whole number"),
+        ("1 / (index - 7)", "[(index - 7)] division by zero: `index - 7` is 0"),
+        ("1 % 0", "[0] division by zero"),
+        ("1.5 * 2", "[1.5] `1.5` is not a whole number"),
         ("", "[] an expression is expected"),
         ("2 *", "[*] something is missing after this"),
         ("* 2", "[*] something is missing before `*`"),
         ("(1 + 2", "[(] `(` is never closed"),
         ("1 2", "[2] an operator is expected before this"),
-        ("$index", "[$] names stand for themselves here -> "),
+        ("$index", "[$] write the property's name without `$` in an expression -> "),
         ("inedx + 1", "[inedx] no `inedx`"),
         ("2 * ( inedx )", "[inedx] no `inedx`"),
-        ("(site ) + 1", "[(site )] here is the text `north`, and a whole number is expected"),
-        ("site + 1", "[site] here is the text `north`, and a whole number is expected"),
+        ("(site ) + 1", "[(site )] found the text `north`, expected a whole number"),
+        ("site + 1", "[site] found the text `north`, expected a whole number"),
     ] {
         assert_eq!(of(text), value, "{text}");
     }
@@ -66,14 +67,14 @@ fn conditions_are_typed() {
         ("index % 2 == 1", "true"),
         ("simulated == false", "false"),
         ("robots == 0 or 100 / robots == 2", "true"),
-        ("robots != 0 and 1 / (robots - 40) > 3", "[(robots - 40)] `1` is divided by zero"),
+        ("robots != 0 and 1 / (robots - 40) > 3", "[(robots - 40)] division by zero: `robots - 40` is 0"),
         ("robots == 0 and 1 / (robots - 40) > 3", "false"),
-        ("robots == 0 and site > 3", "[site] here is the text `north`, and a whole number is expected"),
+        ("robots == 0 and site > 3", "[site] found the text `north`, expected a whole number"),
         ("site == 3", "[site == 3] the text `north` cannot be compared with the number 3"),
         ("robots = 3", "[=] there is no `=` -> =="),
         ("simulated && true", "[&&] there is no `&&` -> and"),
         ("1 < robots < 50", "[<] two comparisons in a row"),
-        ("site", "[site] here is the text `north`, and a condition is expected"),
+        ("site", "[site] found the text `north`, expected a condition"),
         ("site == 'north", "['north] a text that does not end"),
     ] {
         assert_eq!(of(text), value, "{text}");

@@ -82,7 +82,7 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), E
         } else if first == '\'' || first == '"' {
             let Some(length) = rest[1..].find(first) else {
                 return Err(ExpressionError::new("a text that does not end")
-                    .help("a text stands between two `'`")
+                    .help("a text is written between two `'`")
                     .at(at..text.len()));
             };
             (Token::Text(rest[1..=length].to_owned()), length + 2)
@@ -106,7 +106,7 @@ fn number(rest: &str, at: usize) -> Result<(Token, usize), ExpressionFault> {
     let behind = &rest[length..];
     if let Some(digits) = behind.strip_prefix('.') {
         let all = length + 1 + digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
-        let message = format!("{} is no whole number", quoted(&rest[..all]));
+        let message = format!("{} is not a whole number", quoted(&rest[..all]));
         return Err(ExpressionError::new(message).help("expressions calculate with whole numbers").at(at..at + all));
     }
     match rest[..length].parse() {
@@ -121,13 +121,12 @@ fn odd(rest: &str, first: char, at: usize) -> ExpressionFault {
         return problem.at(at..at + written.len());
     }
     if let Some(inside) = rest.strip_prefix("${").and_then(|rest| rest.split_once('}')).map(|(inside, _)| inside) {
-        let problem =
-            ExpressionError::new("an expression stands here by itself, without `${` and `}`").instead(inside.trim());
+        let problem = ExpressionError::new("write the expression here without `${` and `}`").instead(inside.trim());
         return problem.at(at..at + inside.len() + 3);
     }
     if first == '$' {
-        let problem = ExpressionError::new("names stand for themselves here").instead("");
-        return problem.help("write the name without `$`").at(at..at + 1);
+        let problem = ExpressionError::new("write the property's name without `$` in an expression").instead("");
+        return problem.at(at..at + 1);
     }
     let shown = quoted(first.encode_utf8(&mut [0; 4]));
     ExpressionError::new(format!("{shown} means nothing here")).at(at..at + first.len_utf8())

@@ -54,7 +54,7 @@ impl Loader<'_> {
         for word in attribute.words().take(LIST_WORDS) {
             let Some((prefix, local)) = word.split_once(':') else { continue };
             if is_local_name(prefix) && !local.starts_with('/') && element.resolve_prefix(prefix).is_none() {
-                let message = format!("the prefix {} of {} is bound to no namespace", quoted(prefix), quoted(&word));
+                let message = format!("the prefix {} of {} is not declared", quoted(prefix), quoted(&word));
                 let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, word.location, message).severity(Severity::Warning);
                 let help = format!("declare it in the root element: `xmlns:{prefix}=\"...\"`, or correct it");
                 self.report(one.help(help));
@@ -72,7 +72,7 @@ impl Loader<'_> {
         let (name, of) = (quoted(known.name), quoted(element.name()));
         let message = format!("{name} of {of} is an attribute of SCA 1.1, and this file is of SCA 1.0");
         let one = Diagnostic::new(&codes::NEWER_ATTRIBUTE, attribute.name_location(), message)
-            .help("it counts here, and other programs do not know it: let the file be one of SCA 1.1");
+            .help("SAOMS reads it, other programs may not: change the file to SCA 1.1");
         let inside = "or write the value as text inside";
         self.report(if known.name == "value" { one.help(inside) } else { one });
     }
@@ -237,7 +237,7 @@ impl Loader<'_> {
             true => "has a colon in it",
             false => "does not start with a letter or `_`",
         };
-        let message = format!("{} {why}: it is no name of XML", quoted(name));
+        let message = format!("{} {why}: it is not an XML name", quoted(name));
         let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message);
         self.report(one.severity(Severity::Warning).help("other programs refuse it"));
     }
@@ -250,7 +250,7 @@ impl Loader<'_> {
             "true" | "1" => true,
             "false" | "0" => false,
             other => {
-                let message = format!("{} is {} and has to be `true` or `false`", quoted(name), quoted(other));
+                let message = format!("{} is {}, expected `true` or `false`", quoted(name), quoted(other));
                 self.value_fault(attribute, message, meant_boolean(other));
                 return None;
             }
@@ -272,7 +272,7 @@ impl Loader<'_> {
             "n" => Some("0..n"),
             other => names.into_iter().find(|name| *name == other),
         };
-        let message = format!("`multiplicity` is {} and has to be `0..1`, `1..1`, `0..n` or `1..n`", quoted(&text));
+        let message = format!("`multiplicity` is {}, expected `0..1`, `1..1`, `0..n` or `1..n`", quoted(&text));
         self.value_fault(attribute, message, meant);
         None
     }

@@ -107,10 +107,10 @@ impl Loader<'_> {
             _ if !is_of_sca() || self.meant_namespace(namespace, element.document()).is_some() => return,
             _ => {
                 let prefix = element.document().root().prefix().map_or_else(String::new, |prefix| format!("{prefix}:"));
-                format!("write {} if it is meant to be of SCA", quoted(&format!("<{prefix}{local}>")))
+                format!("write {} if you mean the element of SCA", quoted(&format!("<{prefix}{local}>")))
             }
         };
-        let message = format!("{} is of the namespace {} and is passed over", quoted(name), quoted(namespace));
+        let message = format!("{} is ignored: its namespace {} is not that of SCA", quoted(name), quoted(namespace));
         self.report(Diagnostic::new(&codes::FOREIGN_ELEMENT, element.name_location(), message).help(help));
     }
 
@@ -155,12 +155,12 @@ impl Loader<'_> {
                 None => quoted(child),
             });
             match names.collect::<Vec<_>>().join(", ") {
-                none if none.is_empty() => format!("{place} holds no elements of SCA"),
-                names => format!("{place} can hold {names}"),
+                none if none.is_empty() => format!("{place} contains no elements of SCA"),
+                names => format!("{place} can contain {names}"),
             }
         };
         if is_misplaced {
-            let message = format!("{} cannot stand in {place}", quoted(element.name()));
+            let message = format!("{} is not allowed in {place}", quoted(element.name()));
             let one = Diagnostic::new(code, location, message);
             if name == "implementation.composite" && vocabulary::children(parent).any(|one| one == "include") {
                 self.report(renamed(one, element, "include"));
@@ -261,7 +261,7 @@ impl Loader<'_> {
     pub(super) fn no_text(&mut self, element: Element<'_>) {
         let Some(span) = element.text_span().filter(|_| !element.has_damaged_content()) else { return };
         let location = span.in_file(element.document().file());
-        let message = format!("text in {}, which holds no text", quoted(element.name()));
+        let message = format!("unexpected text in {}: it contains elements only", quoted(element.name()));
         let one = Diagnostic::new(&codes::MISPLACED_TEXT, location, message);
         let is_of = |kind: &str| element.local_name().starts_with(kind);
         self.report(if is_of("implementation.") && element.attribute("class").is_none() {

@@ -110,7 +110,7 @@ impl Loader<'_> {
         let attribute = element.attribute_in(SAOMS_NAMESPACE, "path")?;
         let path = attribute.trimmed();
         if path.split('/').any(|name| name.is_empty() || name.contains(char::is_whitespace)) {
-            let message = format!("{} is no path of a component", quoted(&path));
+            let message = format!("{} is not a path of a component", quoted(&path));
             let location = if path.is_empty() { attribute.location() } else { path.location };
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, location, message);
             self.report(one.help("a path is names with `/` between them, as `hall/Robot001`"));

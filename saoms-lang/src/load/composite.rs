@@ -141,7 +141,7 @@ impl Loader<'_> {
             "ignore" | "off" | "none" | "suppress" => Some("allow"),
             other => nearest(other, names),
         };
-        let message = format!("`level` is {} and has to be `allow`, `note`, `warning` or `error`", quoted(&text));
+        let message = format!("`level` is {}, expected `allow`, `note`, `warning` or `error`", quoted(&text));
         if let Some(attribute) = element.attribute("level") {
             self.value_fault(attribute, message, meant);
         }

@@ -244,7 +244,7 @@ impl Description {
         } else if namespace.is_none() {
             let why = match what.split_once(':') {
                 Some((prefix, _)) if child.resolve_prefix(prefix).is_none() => {
-                    format!("the prefix {} is bound to no namespace", quoted(prefix))
+                    format!("the prefix {} is not declared", quoted(prefix))
                 }
                 _ => format!("{} does not say its namespace", quoted(what)),
             };

@@ -83,7 +83,7 @@ impl Loader<'_> {
         }
         let attribute = element.attribute_in(SAOMS_NAMESPACE, "env")?;
         let message = format!(
-            "{} is no name of an environment variable: it has letters, digits and `_`, and no digit first",
+            "{} is not a name of an environment variable: use letters, digits and `_`, and no digit first",
             quoted(&named)
         );
         self.value_fault(attribute, message, None);

@@ -158,12 +158,12 @@ impl Failure {
         let not_there = "there is no such file".to_owned();
         let (code, message, help) = match self {
             Self::Directory => {
-                let message = "a directory, where a file is expected".to_owned();
+                let message = "found a directory, expected a file".to_owned();
                 (&codes::FILE_IS_DIRECTORY, message, inside(path, expected.ending))
             }
             Self::Irregular => {
-                let message = "the file cannot be read: it is no regular file".to_owned();
-                let help = "a pipe or a device may have no end: name a file that holds the text";
+                let message = "the file cannot be read: it is not a regular file".to_owned();
+                let help = "a pipe or a device may have no end: name a file that contains the text";
                 (&codes::FILE_UNREADABLE, message, Some(help.to_owned()))
             }
             Self::TooLarge(size) => {
@@ -258,11 +258,11 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
         |code, message: String, help: String| Box::new(Wrong { code, shown: String::new(), at: 0, message, help });
     let convert = |name: &str| format!("convert it: `iconv -f {name} -t UTF-8 {}`", path.display());
     if let Some(name) = encoding::by_its_bytes(&bytes) {
-        let message = format!("the file is in {name}, and UTF-8 is expected");
+        let message = format!("the file is in {name}, expected UTF-8");
         return Err(whole(&codes::FILE_ENCODING, message, convert(name)));
     }
     if let Some(what) = encoding::of_another_kind(&bytes) {
-        let message = format!("the file is {what}, and no {}", expected.kind);
+        let message = format!("the file is {what}, not {}", expected.kind);
         return Err(whole(&codes::FILE_BINARY, message, expected.help.to_owned()));
     }
     if let Some(at) = memchr::memchr(0, &bytes) {
@@ -275,11 +275,9 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
         let declared = encoding::declared(&bytes).filter(|name| !name.eq_ignore_ascii_case("UTF-8"));
         let byte = bytes.get(at).copied().unwrap_or_default();
         let (message, help) = match declared {
-            Some(name) => {
-                (format!("the file is declared to be in {}, and UTF-8 is expected", quoted(&name)), convert(&name))
-            }
+            Some(name) => (format!("the file is declared to be in {}, expected UTF-8", quoted(&name)), convert(&name)),
             None => (
-                format!("the byte 0x{byte:02X} here is no UTF-8"),
+                format!("the byte 0x{byte:02X} is not valid UTF-8"),
                 format!("if the file is in Windows-1252 or Latin-1, {}", convert("WINDOWS-1252")),
             ),
         };

@@ -52,8 +52,7 @@ impl Loader<'_> {
         for (written, meant) in near {
             let Some(first) = declared.get(written).filter(|_| used.contains(written)) else { continue };
             let at = first.value_span().in_file(document.file());
-            let message =
-                format!("what is in the namespace {} is passed over: it is nearly {}", quoted(written), quoted(meant));
+            let message = format!("unknown namespace {}: did you mean {}?", quoted(written), quoted(meant));
             let one = Diagnostic::new(&codes::NAMESPACE_NEAR, at, message);
             let mut one = one.mend(format!("replace it with {}", quoted(meant)), meant);
             if let Some((_, name)) = self.passed_over.as_ref().filter(|(namespace, _)| namespace == written) {
@@ -73,7 +72,7 @@ impl Loader<'_> {
 }
 
 fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
-    let message = format!("the root element is {} and has to be `composite`", quoted(root.name()));
+    let message = format!("the root element is {}, expected `composite`", quoted(root.name()));
     let location = root.name_location();
     let mut one = Diagnostic::new(&codes::ROOT, location, message);
     let local = root.local_name();
@@ -103,14 +102,14 @@ fn wrong_namespace(root: Element<'_>) -> Diagnostic {
     let namespace = root.namespace();
     if namespace.is_empty() {
         let version = Version::Oasis200912;
-        let message = "`composite` is in no namespace, and so it is no composite of SCA";
+        let message = "`composite` is in no namespace, so it is not a composite of SCA";
         let place = Span::empty(root.name_span().end).in_file(root.document().file());
         let declaration = format!("xmlns=\"{}\"", version.namespace());
         return Diagnostic::new(&codes::NAMESPACE, root.name_location(), message)
             .help(format!("it has to be in {}", namespaces()))
             .suggest(format!("insert {}", quoted(&declaration)), place, format!(" {declaration}"));
     }
-    let message = format!("{} is no namespace of SCA", quoted(namespace));
+    let message = format!("{} is not a namespace of SCA", quoted(namespace));
     let location = declaration(root).unwrap_or_else(|| root.name_location());
     let one = Diagnostic::new(&codes::NAMESPACE, location, message)
         .help(format!("the namespace of a composite is {}", namespaces()));
@@ -157,11 +156,11 @@ pub(super) fn of_another_kind(
     }
     let found = quoted(root.name());
     let message = if root.local_name() != expected {
-        format!("the root element is {found} and has to be {} of SCA", quoted(expected))
+        format!("the root element is {found}, expected {} of SCA", quoted(expected))
     } else if root.namespace().is_empty() {
-        format!("{found} is in no namespace, and has to be in one of SCA")
+        format!("{found} is in no namespace, expected one of SCA")
     } else {
-        format!("{found} is in the namespace {}, and has to be in one of SCA", quoted(root.namespace()))
+        format!("{found} is in the namespace {}, expected one of SCA", quoted(root.namespace()))
     };
     let one = Diagnostic::new(&codes::ROOT, root.name_location(), message).help(help);
     diagnostics.push(match root.local_name() == expected {

@@ -118,7 +118,7 @@ impl<'a> Lexer<'a> {
                         let message = format!("{} is misplaced in an end tag", input.shown(close));
                         let end = input.character_end(close);
                         let one = input.fault(&codes::XML_SYNTAX, close, end, message);
-                        one.help("an end tag holds nothing but the name of the element")
+                        one.help("an end tag contains only the name of the element")
                     });
                 }
                 let rest = &input.bytes()[close as usize..];

@@ -18,7 +18,7 @@ pub(super) fn instruction(input: Input<'_>, start: u32, end: u32) -> Option<Diag
         if start == first {
             return declaration(input, start + 5, end - 2);
         }
-        let message = "the XML declaration stands at the very start of a file, and only there";
+        let message = "the XML declaration is not at the very start of the file";
         let one = input.fault(&codes::XML_DECLARATION, start, end, message);
         if !input.slice(first, start).trim().is_empty() {
             return Some(one);
@@ -132,7 +132,7 @@ fn declaration(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
         }
         let item = at + (text.len() - trimmed.len()) as u32;
         let Some((name_len, value, len)) = pseudo_attribute(trimmed) else {
-            return fault(item, end, "this is no declaration of version, encoding or standalone".to_owned());
+            return fault(item, end, "this is not a declaration of version, encoding or standalone".to_owned());
         };
         let name = &trimmed[..name_len];
         let position = expected.iter().position(|known| *known == name);
@@ -151,7 +151,7 @@ fn declaration(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
         };
         if !ok {
             let value_end = item + len as u32 - 1;
-            let message = format!("{} is no value of {name} in an XML declaration", quoted(value));
+            let message = format!("{} is not a value of {name} in an XML declaration", quoted(value));
             return fault(value_end - value.len() as u32, value_end, message);
         }
         at = item + len as u32;

@@ -37,13 +37,13 @@ fn unknown(input: Input<'_>, span: Span) -> Diagnostic {
     let written = input.piece(span);
     let (whole, inside) = (quoted(written), &written[1..written.len() - 1]);
     if inside.starts_with('#') {
-        let message = format!("{whole} is no character that XML allows");
+        let message = format!("{whole} is not a character that XML allows");
         let help = "a character reference is `&#` and a decimal, or `&#x` and a hexadecimal number, then `;`";
         return input.fault(&codes::XML_ENTITY, span.start, span.end, message).help(help);
     }
-    let message = format!("{whole} is no entity that is known here");
+    let message = format!("unknown entity {whole}");
     let one = input.fault(&codes::XML_ENTITY, span.start, span.end, message).help(
-        "known are `&lt;`, `&gt;`, `&amp;`, `&apos;` and `&quot;`; others are refused, as are declarations of them",
+        "the known entities are `&lt;`, `&gt;`, `&amp;`, `&apos;` and `&quot;`; no others can be declared or used",
     );
     match nearest(inside, PREDEFINED) {
         Some(meant) => one.mend(format!("replace {whole} with `&{meant};`"), format!("&{meant};")),

@@ -187,7 +187,7 @@ impl<'a> Resolver<'a> {
     /// The fault of an unbound prefix, and the namespace that is meant. A declaration would stand at `root_end`.
     fn unbound(&mut self, prefix: &str, start: u32, root_end: u32) -> (Diagnostic, Option<u32>) {
         let end = start + prefix.len() as u32;
-        let message = format!("the prefix {} is bound to no namespace", quoted(prefix));
+        let message = format!("the prefix {} is not declared", quoted(prefix));
         let one = self.input.fault(&codes::XML_PREFIX, start, end, message);
         if let Some((_, uri)) = USUAL.iter().find(|(usual, _)| *usual == prefix) {
             let declaration = format!("xmlns:{prefix}=\"{uri}\"");

@@ -68,7 +68,7 @@ pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Op
         let description = if meant.is_empty() { "remove it" } else { "replace it with a blank" };
         return Some(one.mend(description, meant));
     }
-    let message = format!("{} is no name for an {what}", quoted(name));
+    let message = format!("{} is not a valid name for an {what}", quoted(name));
     let help = if name.contains(':') {
         "a name has at most one colon, with a prefix before and a name behind it"
     } else {
@@ -86,7 +86,7 @@ pub(super) fn odd_space(name: &str) -> Option<(usize, char)> {
 /// The fault of a start tag, of the element at `name`, whose `>` is missing at `at`, before the text of the element.
 pub(super) fn text_in_tag(input: Input<'_>, name: Span, at: u32) -> Diagnostic {
     let shown = quoted(input.piece(name));
-    let message = format!("the start tag of {shown} is not closed before the text");
+    let message = format!("the start tag of {shown} has no `>` before the text");
     let one = input.fault(&codes::XML_UNCLOSED, name.start, name.end, message);
     let place = input.at(at, at);
     one.label(place, "the tag ends here").suggest("insert `>`", place, ">")
@@ -115,7 +115,7 @@ pub(super) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32,
 /// The fault of the second of two quotes, at `at`.
 pub(super) fn doubled_quote(input: Input<'_>, at: u32) -> Diagnostic {
     let shown = input.shown(at);
-    let one = input.fault(&codes::XML_ATTRIBUTE, at, at + 1, format!("{shown} stands here twice"));
+    let one = input.fault(&codes::XML_ATTRIBUTE, at, at + 1, format!("{shown} is here twice"));
     one.mend(format!("remove {shown}"), "")
 }
 
@@ -129,7 +129,7 @@ pub(super) fn curly_quotes(input: Input<'_>, at: u32) -> Option<(Diagnostic, Spa
     let is_closed = CURLY.contains(&last) || matches!(last, '"' | '\'');
     let end = at + (first.len_utf8() + length + if is_closed { last.len_utf8() } else { 0 }) as u32;
     let shown = quoted(first.encode_utf8(&mut [0; 4]));
-    let message = format!("{shown} is no quote of XML: values stand between two `\"`");
+    let message = format!("{shown} is not a quote of XML: values are written between two `\"`");
     let one = input.fault(&codes::XML_ATTRIBUTE, at, end, message);
     let straight = format!("\"{}\"", &inside[..length]);
     let start = at + first.len_utf8() as u32;
@@ -201,7 +201,7 @@ pub(super) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -
         let end = quote_at + 1 + inside.len() as u32;
         let message = format!("the value of {name} is not closed");
         let one = input.fault(&codes::XML_ATTRIBUTE, quote_at, end, message);
-        let one = one.label(input.at(at, at + 1), "`<` cannot stand in a value");
+        let one = one.label(input.at(at, at + 1), "`<` is not allowed in a value");
         let other = inside.ends_with(['"', '\'']);
         let place = input.at(end - u32::from(other), end);
         let description = match other {
@@ -275,7 +275,7 @@ pub(super) fn open_before(input: Input<'_>, quote_at: u32, end: u32) -> Option<(
     let (before, name) = next.rsplit_once([' ', '\t', '\r', '\n'])?;
     let before = before.trim_end();
     let end = quote_at + 1 + before.len() as u32;
-    let message = format!("this value is not closed before {}", quoted(name));
+    let message = format!("this value has no closing quote before {}", quoted(name));
     let one = input.fault(&codes::XML_ATTRIBUTE, quote_at, end, message);
     let quote = input.slice(quote_at, quote_at + 1);
     let place = input.at(end, end);

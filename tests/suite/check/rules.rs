@@ -307,7 +307,7 @@ fn only_what_no_full_battery_can_do_is_out_of_reach() {
     assert!(with_scenario(&map, "at 1s luggage (0,0) to (20,1)").is_empty());
     let far = with_scenario(&map, "at 1s luggage (21,1) to (0,0)");
     assert_eq!(far.len(), 1);
-    assert!(far[0].starts_with("error S5006 no robot can bring luggage from (21,1): 21 moves"), "{far:?}");
+    assert!(far[0].starts_with("error S5006 no robot can bring luggage from (21,1): it is 21 moves"), "{far:?}");
     let range = with_scenario(&map, "at 1s luggage (0,0) to (1,0)..(30,2)");
     let part = "warning S5006 no robot can bring luggage to 32 of the 90 free blocks here: (20,0) is ";
     assert!(range.len() == 1 && range[0].starts_with(part), "{range:?}");
@@ -353,13 +353,16 @@ fn scenarios_of_which_nothing_comes_are_told() {
     let landing = [("scenario", "at 1s landing 2; at 2s luggage (1,0) to (4,0)")];
     let robot = ("Robot2", "saoms.Robot", &[][..], false);
     let sleep = "warning S5008 all robots sleep, and none is woken to bring the luggage of this scenario";
-    assert_eq!(with(&luggage, &[robot]), ["warning S5008 nobody passes the events of this scenario on to the robots"]);
-    assert_eq!(with(&luggage, &[MASTER]), ["warning S5008 no robot is there to bring the luggage of this scenario"]);
+    assert_eq!(
+        with(&luggage, &[robot]),
+        ["warning S5008 no component passes the events of this scenario on to the robots"]
+    );
+    assert_eq!(with(&luggage, &[MASTER]), ["warning S5008 there is no robot to bring the luggage of this scenario"]);
     assert_eq!(with(&luggage, &[MASTER, KEEPER, SLEEPER]), [sleep]);
     assert_eq!(with(&landing, &[MASTER, SLEEPER]), [sleep], "nobody listens to landings");
     assert_eq!(
         with(&landing, &[MASTER, robot]),
-        ["warning S5008 nobody reacts to the landings and take-offs of this scenario"]
+        ["warning S5008 no component reacts to the landings and take-offs of this scenario"]
     );
     assert!(with(&landing, &[MASTER, KEEPER, SLEEPER]).is_empty());
     assert!(with(&luggage, &[MASTER, SLEEPER, robot]).is_empty());

@@ -88,8 +88,8 @@ fn sides_beside_a_map_are_its_own() {
     assert_eq!(
         with("9", "11"),
         [
-            "warning S5014 `width` is 9, and the map has 4 columns: the map counts",
-            "warning S5014 `height` is 11, and the map has 2 rows: the map counts",
+            "warning S5014 `width` is 9, but the map has 4 columns: the size of the map is used",
+            "warning S5014 `height` is 11, but the map has 2 rows: the size of the map is used",
         ]
     );
 }
@@ -200,7 +200,7 @@ fn an_id_with_an_expression_that_nobody_reads_says_so_once() {
          </composite>"
     );
     let found = saoms_testkit::Fleet::of_text(text).diagnostics();
-    let told = "`Robot${row}` is taken as it stands";
+    let told = "`${...}` in `Robot${row}` is not evaluated";
     assert_eq!(found.lines().count(), 1, "{found}");
     assert!(found.starts_with("error S3014") && found.contains(told), "{found}");
 }

@@ -72,7 +72,7 @@ fn a_made_composite_runs() {
     let renamed = "<property name=\"topicRename\">COLLISIONTOPIC,crashes</property></component>";
     fs::write(&path, composite.replace("</component>", renamed)).unwrap();
     let checked = text(&saoms_in(folder.path(), &check));
-    assert!(checked.contains("topic `crashes`, which nobody reads"), "{checked}");
+    assert!(checked.contains("topic `crashes`, which no component reads"), "{checked}");
 }
 
 #[test]

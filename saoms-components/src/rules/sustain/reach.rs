@@ -25,12 +25,12 @@ pub(super) fn out_of_reach(
         let (cut, all, first) = missed.count(area, spot.value, &mut ways.budget)?;
         let (nearest, most) = (ways.nearest(ranges, first)?, ways.most(ranges));
         let where_to = match spot.value.block() {
-            Some(block) => format!("{block}: "),
+            Some(block) => format!("{block}: it is "),
             None => format!("{cut} of the {all} free blocks here: {first} is "),
         };
         let message = format!(
-            "no robot can bring luggage {verb} {where_to}{nearest} moves from the nearest charger, and a full battery \
-             lasts for {most} and back"
+            "no robot can bring luggage {verb} {where_to}{nearest} moves from the nearest charger; a full battery \
+             allows {most}, there and back"
         );
         let severity = if cut == all { Severity::Error } else { Severity::Warning };
         Some(Finding::new(piece.place(spot), message).severity(severity).help(HELP))

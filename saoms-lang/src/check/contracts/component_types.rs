@@ -40,11 +40,14 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         } else if let Some(implementation) = &member.component.implementation
             && fleet.contribution.lacks_component_type(implementation.origin)
         {
-            let message = format!("nothing describes what component {} offers", quoted(&member.component.name));
+            let message = format!(
+                "the services, references and properties of component {} are unknown",
+                quoted(&member.component.name)
+            );
             let one = Diagnostic::new(&codes::COMPONENT_TYPE_MISSING, implementation.tag(), message);
             let kind = implementation.origin.element(&member.composite.document).local_name();
             report.push(one.help(format!(
-                "{} does not say it by itself: write a file of its name that ends with `.componentType`",
+                "{} does not declare them: write a component type, a file of its name that ends with `.componentType`",
                 quoted(kind)
             )));
         }

@@ -22,10 +22,10 @@ pub(crate) fn check(reference: &ReferenceElement, own: Multiplicity, whose: &str
         return;
     }
     let message = format!(
-        "the multiplicity of {} is {} in {whose}: {} does not narrow it",
+        "the multiplicity {} of {} is wider than {} in {whose}",
+        quoted(given.value.name()),
         quoted(&reference.name),
-        quoted(own.name()),
-        quoted(given.value.name())
+        quoted(own.name())
     );
     let one = Diagnostic::new(&codes::MULTIPLICITY_WIDER, given.location, message);
     let narrower = Multiplicity::ALL.into_iter().filter(|one| one.narrows(own));

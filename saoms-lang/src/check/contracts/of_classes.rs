@@ -59,7 +59,7 @@ fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
             }
         }
         if fleet.class_of(member).is_some() {
-            bindings(&service.contract().bindings, "the service can be called within the program alone", report);
+            bindings(&service.contract().bindings, "the service can be called only inside this program", report);
         }
     }
 }
@@ -138,7 +138,7 @@ fn bindings(bindings: &[Binding], so: &str, report: &mut Report<'_>) {
         if binding.is_sca && binding.kind == "sca" {
             continue;
         }
-        let message = format!("{} is not served: {so}", quoted(&format!("binding.{}", binding.kind)));
+        let message = format!("{} is not supported: {so}", quoted(&format!("binding.{}", binding.kind)));
         let one = Diagnostic::new(&codes::BINDING_NOT_SERVED, binding.tag(), message);
         report.push(one.help("remove it; other machines are reached through topics and the `url` of a message broker"));
     }

@@ -134,9 +134,9 @@ fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
         let given = attributes.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?.location)));
         let properties = one.properties.first().map(|property| ("properties", property.tag()));
         let Some((what, at)) = given.chain(properties).next() else { return true };
-        let message = format!("the loop {} is removed, and {what} given", quoted(&one.name));
+        let message = format!("the loop {} is removed, but has {what}", quoted(&one.name));
         let one = Diagnostic::new(code, at, message).label(remove.location, "removed here");
-        report.push(one.help("what is removed has no class, no place and no properties"));
+        report.push(one.help("a removed loop has no class, place or properties"));
         return false;
     }
     if let (Some(before), Some(after)) = (&one.before, &one.after) {
@@ -154,7 +154,7 @@ fn unchanged(one: &LoopElement, report: &mut Report<'_>) {
     if says_something || !one.properties.is_empty() || one.is_misread {
         return;
     }
-    let message = format!("this changes nothing: the component has the loop {} by its class", quoted(&one.name));
+    let message = format!("this has no effect: the component has the loop {} from its class", quoted(&one.name));
     let one = Diagnostic::new(&codes::LOOP_UNCHANGED, one.tag(), message);
     report.push(one.help("remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties"));
 }

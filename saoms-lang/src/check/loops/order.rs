@@ -39,10 +39,11 @@ pub(super) fn sort<'a>(
             _ => continue,
         };
         if let Some(removal) = removed.get(target.as_str()) {
-            let message = format!("the loop {} stands beside {}, which is removed", quoted(&one.name), quoted(target));
+            let message =
+                format!("the loop {} is placed beside {}, which is removed", quoted(&one.name), quoted(target));
             let one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message);
             let one = one.label(removal.name.location, "removed here");
-            report.push(one.help("let it stand beside another loop, or keep that one"));
+            report.push(one.help("place it beside another loop, or keep that one"));
             is_sound = false;
         } else if !known.contains(target.as_str()) {
             // One that is given and wrong is reported already.
@@ -68,17 +69,17 @@ pub(super) fn sort<'a>(
     if let Some((last, others)) = stuck.split_last() {
         let target = moved[last.name.as_str()];
         let message = match others {
-            [] => format!("the loop {} stands beside itself", quoted(&last.name)),
+            [] => format!("the loop {} is placed beside itself", quoted(&last.name)),
             _ => {
                 let names = list(stuck.iter().map(|one| one.name.as_str()));
                 format!("the order of the loops {names} goes in a circle")
             }
         };
         let mut one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message)
-            .help("let one of them stand beside a loop that is not moved");
+            .help("place one of them before or after a loop that is not moved");
         for other in others.iter().take(MOST_SHOWN) {
             let target = moved[other.name.as_str()];
-            one = one.label(target.location, format!("{} stands beside {}", quoted(&other.name), quoted(target)));
+            one = one.label(target.location, format!("{} is placed beside {}", quoted(&other.name), quoted(target)));
         }
         report.push(one);
         return false;

@@ -304,8 +304,8 @@ impl<'a> Parameters<'a> {
         .find(|(budget, cost, ..)| !budget.spend(*cost as u64));
         let Some((budget, _, most, has)) = exceeded else { return Ok(whole) };
         if budget.is_to_report() {
-            let message = format!("sources come to more than {most}");
-            let help = format!("each component that {has}: is this what is meant?");
+            let message = format!("sources make more than {most}");
+            let help = format!("each component that {has}: use fewer");
             report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message).help(help));
         }
         Err(Faulty)

@@ -75,7 +75,7 @@ impl Parameters<'_> {
     pub(super) fn missing(&self, unit: usize, property: &Property, assumes: bool) -> Diagnostic {
         let name = &property.name;
         let Some(owner) = self.units[unit].owner else {
-            let message = format!("the property {} of the composite has to be given a value", quoted(name));
+            let message = format!("the property {} of the composite needs a value", quoted(name));
             let one = Diagnostic::new(&codes::COMPOSITE_PROPERTY_MISSING, name.location, message)
                 .help(from_outside(property));
             // Where classes are taken as given, so is the component that this composite may implement.

@@ -151,11 +151,11 @@ impl<'a> Parameters<'a> {
         unit.source = Some(Faulty);
         if source.contains(['$', '(']) {
             let fault = braced(source).unwrap_or_else(|| {
-                PathFault::unknown(0..source.len(), format!("{} is no path from a property", quoted(source)))
+                PathFault::unknown(0..source.len(), format!("{} is not a path from a property", quoted(source)))
             });
             return self.malformed(source, 0, fault, report);
         }
-        let message = format!("{} names no property of the composite", quoted(source));
+        let message = format!("{} does not name a property of the composite", quoted(source));
         let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
             .help("write `$name`, or `$name/part` for a part of a complex property");
         if unit.by_name.contains_key(source.as_str()) {

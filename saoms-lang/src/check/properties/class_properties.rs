@@ -198,7 +198,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
 fn many_of_one(property: &Property, entry: &TableEntry<'_>, report: &mut Report<'_>) {
     let Some(many) = property.many().filter(|many| many.value && !entry.main.many) else { return };
     let name = quoted(&property.name);
-    let message = format!("the property {name} takes one value, and is said here to take several");
+    let message = format!("the property {name} allows one value, but is declared here to allow several");
     let one = Diagnostic::new(&codes::MANY_VALUES, many.location, message);
     report.push(one.help("remove `many`"));
 }

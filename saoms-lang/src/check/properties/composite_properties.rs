@@ -79,7 +79,7 @@ fn several(
     report: &mut Report<'_>,
 ) {
     let (name, count) = (quoted(&property.name), property.values().len());
-    let message = format!("the property {name} takes one value, and here are {count}");
+    let message = format!("the property {name} allows one value, found {count}");
     let mut one = Diagnostic::new(&codes::MANY_VALUES, second.tag(), message).label(first.tag(), "the first");
     if !std::ptr::eq(property, declared) {
         one = one.label(declared.name.location, "declared here, without `many=\"true\"`");

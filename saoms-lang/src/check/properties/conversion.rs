@@ -93,7 +93,7 @@ pub(crate) fn convert(raw: &Raw<'_>, target: Target<'_>, report: &mut Report<'_>
         return Some(Converted::of(values, |values| PropertyValue::Many(values.into())));
     }
     if let [first, second, ..] = &pieces[..] {
-        let message = format!("the property {} takes one value, and here are {}", target.quoted(), pieces.len());
+        let message = format!("the property {} allows one value, found {}", target.quoted(), pieces.len());
         let one = Diagnostic::new(&codes::MANY_VALUES, second.location(), message);
         tell(one.label(first.location(), "the first"), target, report);
         return None;

@@ -29,7 +29,7 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
         }
     };
     let one = match stands_for(giver, table) {
-        Some(lacking) => one.help(format!("{} is lacking: it may be what is meant", quoted(lacking))),
+        Some(lacking) => one.help(format!("{} is missing: you may mean it", quoted(lacking))),
         None => one,
     };
     report.push(match is_task {

@@ -30,7 +30,7 @@ pub(crate) fn check(found: &Raw<'_>, giver: &Giver<'_, '_>, report: &mut Report<
 
 /// The fault of a value with an expression that stands for itself.
 pub(crate) fn diagnostic(code: &'static Code, text: &str, at: Location) -> Diagnostic {
-    let message = format!("{} is taken as it stands: `${{...}}` is for components with a `saoms:count`", quoted(text));
+    let message = format!("`${{...}}` in {} is not evaluated: the component has no `saoms:count`", quoted(text));
     let one = Diagnostic::new(code, at, message);
     let inside = text.strip_prefix("${").and_then(|rest| rest.strip_suffix('}')).map(str::trim);
     match inside.filter(|name| *name != INDEX && crate::expression::is_name(name)) {

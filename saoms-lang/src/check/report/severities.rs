@@ -216,9 +216,10 @@ impl Severities {
         let in_files = self.rules.iter().filter(|rule| !matches!(rule.scope, Scope::Option));
         let unused = in_files.filter(|rule| !rule.is_used && rule.set.level != SeverityLevel::Set(Severity::Error));
         for rule in unused.filter(|rule| wiring || !codes::is_of_wiring(&rule.code)) {
-            let message = format!("there is no {} here that could be set to `{}`", rule.code, rule.set.level.name());
+            let message =
+                format!("setting {0} to `{1}` has no effect: there is no {0} here", rule.code, rule.set.level.name());
             let one = Diagnostic::new(&codes::SEVERITY_UNUSED, rule.set.at, message);
-            diagnostics.push(one.help("remove it, or it hides what somebody adds later"));
+            diagnostics.push(one.help("remove it: it would hide a later fault"));
         }
     }
 
@@ -231,7 +232,8 @@ impl Severities {
                 |rule: &&Rule| rule.code == option.code && rule.is_used && rule.set.level != option.set.level;
             let Some(by) = self.rules.iter().find(is_other) else { continue };
             let (code, asked, level) = (&option.code, option.set.level.name(), by.set.level.name());
-            let message = format!("{code} is not set to `{asked}`: a composite sets it to `{level}`, and counts first");
+            let message =
+                format!("{code} is not set to `{asked}`: a composite sets it to `{level}`, which takes precedence");
             let one = Diagnostic::new(&codes::SEVERITY_UNUSED, option.set.at, message);
             // One for all fleets is stricter than what one of them gives a reason for.
             let is_stricter = option.set.level.hides() < by.set.level.hides();

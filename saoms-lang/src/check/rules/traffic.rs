@@ -142,8 +142,8 @@ impl All<'_> {
         users.sort_by_key(|end| end.component);
         users.dedup_by_key(|end| end.component);
         let hear = match users.len() {
-            1 => "hears nobody but itself",
-            _ => "hear nobody but each other",
+            1 => "hears only itself",
+            _ => "hear only each other",
         };
         let message =
             format!("{} {hear} on topic {}: others use {}", self.who(&users), quoted(&topic.name), quoted(&meant.name));
@@ -159,7 +159,7 @@ impl All<'_> {
         };
         let (Some(end), Some(other)) = (ends.first(), others.first()) else { return };
         let message = format!(
-            "{} topic {}, which nobody {do_not}: there is {}",
+            "{} topic {}, which no component {do_not}: there is {}",
             self.who_does(ends, does),
             quoted(&lone.name),
             quoted(&meant.name)
@@ -180,7 +180,8 @@ impl All<'_> {
             false => (&codes::TOPIC_UNREAD, "publishes", &topic.writers, "reads"),
         };
         let Some(end) = ends.first() else { return };
-        let message = format!("{} topic {}, which nobody {missing}", self.who_does(ends, does), quoted(&topic.name));
+        let message =
+            format!("{} topic {}, which no component {missing}", self.who_does(ends, does), quoted(&topic.name));
         let one = Diagnostic::new(code, self.at(end, topic), message);
         let kind = topic.kind.name();
         report.push(one.help(format!("it is {} {kind} topic of {}", article(kind), quoted(&topic.message))));
@@ -216,7 +217,7 @@ impl All<'_> {
             {
                 let burst = pace.burst(period);
                 let message = format!(
-                    "up to {burst} messages of topic {} can come between two executions of {}, and {} find room",
+                    "up to {burst} messages of topic {} can arrive between two executions of {}, and the queue holds {}",
                     quoted(&topic.name),
                     self.who(&readers),
                     queue
@@ -229,10 +230,10 @@ impl All<'_> {
                 let one = Diagnostic::new(&codes::QUEUE, at, message);
                 report.push(
                     one.help(format!(
-                        "{writers} it{in_all}: so many come where each sends one in each execution, and fewer as a rule"
+                        "{writers} it{in_all}: there are so many if each sends one per execution, usually there are fewer"
                     ))
                     .help(format!(
-                        "where a run says that messages were lost, give the readers a `queue` of {burst}, or a shorter `period`"
+                        "if a run reports lost messages, give the readers a `queue` of {burst}, or a shorter `period`"
                     )),
                 );
             }
@@ -240,7 +241,7 @@ impl All<'_> {
                 && let Some(readers) = alike.remove(&period)
             {
                 let message = format!(
-                    "{} topic {} every {}, and nobody publishes it more often than every {}",
+                    "{} topic {} every {}, but no component publishes it more often than every {}",
                     self.who_does(&readers, "reads"),
                     quoted(&topic.name),
                     format_duration(period),

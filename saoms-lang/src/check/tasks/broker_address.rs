@@ -18,7 +18,7 @@ pub(crate) struct AddressFault {
 pub(crate) fn fault(text: &str) -> Option<AddressFault> {
     let at = |at: Range<usize>, message: String| Some(AddressFault { at, message, instead: None });
     if let Some(scheme) = text.find("://") {
-        let message = format!("`{}` is more than host and port", &text[..scheme + 3]);
+        let message = format!("found `{}` before host and port", &text[..scheme + 3]);
         return Some(AddressFault { at: 0..scheme + 3, message, instead: Some(String::new()) });
     }
     let bracket = text.starts_with('[').then(|| text.find(']')).flatten();
@@ -35,10 +35,10 @@ pub(crate) fn fault(text: &str) -> Option<AddressFault> {
     }
     if let Some(address) = host.strip_prefix('[') {
         if address.strip_suffix(']').is_none_or(|address| address.parse::<Ipv6Addr>().is_err()) {
-            return at(0..colon, format!("`{host}` is no IPv6 address"));
+            return at(0..colon, format!("`{host}` is not an IPv6 address"));
         }
     } else if host.contains(':') {
-        let message = format!("`{host}` is no host: an IPv6 address stands in brackets");
+        let message = format!("`{host}` is not a host: an IPv6 address is written in brackets");
         let instead = host.parse::<Ipv6Addr>().is_ok().then(|| format!("[{host}]"));
         return Some(AddressFault { at: 0..colon, message, instead });
     } else if let Some(found) = host.find(|c: char| !(c.is_ascii_alphanumeric() || "-._".contains(c))) {
@@ -53,7 +53,7 @@ pub(crate) fn fault(text: &str) -> Option<AddressFault> {
         Ok(1..) if digits => None,
         _ if port.is_empty() => at(colon..text.len(), "there is no port".to_owned()),
         _ if digits => at(colon + 1..text.len(), format!("port {port} is outside 1 to 65535")),
-        _ => at(colon + 1..text.len(), format!("`{port}` is no port")),
+        _ => at(colon + 1..text.len(), format!("`{port}` is not a port")),
     }
 }
 

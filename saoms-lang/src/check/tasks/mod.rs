@@ -101,7 +101,7 @@ impl Task<'_, '_> {
         {
             let shown = |duration| saoms_api::host::format_duration(duration);
             let message = format!(
-                "the deadline of {} is behind the period of {}: the next execution is due before it",
+                "the deadline of {} is longer than the period of {}: the next execution is due before it",
                 shown(deadline),
                 shown(properties.period)
             );
@@ -147,16 +147,17 @@ impl Task<'_, '_> {
 fn check_url(url: &Text, report: &mut Report<'_>) {
     let Some(fault) = broker_address::fault(url) else {
         if !broker_address::is_loopback(url) {
-            let message = format!("messages do not leave this program yet: {} is not connected to", quoted(url));
+            let message =
+                format!("message brokers are not supported yet: this program does not connect to {}", quoted(url));
             report.push(
                 Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message)
-                    .help("the topics are served inside the program: let it run the whole fleet"),
+                    .help("topics work inside one program only: run the whole fleet in it"),
             );
         }
         return;
     };
     let at = report.part(url, fault.at);
-    let message = format!("{} is no address of a message broker: {}", quoted(url), fault.message);
+    let message = format!("{} is not an address of a message broker: {}", quoted(url), fault.message);
     let one = Diagnostic::new(&codes::BROKER_URL, at, message)
         .help("an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535");
     report.push(match fault.instead {

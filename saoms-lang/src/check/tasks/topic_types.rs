@@ -97,7 +97,7 @@ fn compare(name: &str, first: &End<'_>, second: &End<'_>, report: &mut Report<'_
         Diagnostic::new(&codes::TOPIC_MISMATCH, second.place, message)
             .label(first.place, format!("{} it as {}", first.verb.trim_end_matches(" to"), difference.0))
             .help(
-                "all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart",
+                "a topic has one kind and one type of messages for all components; give one of them another topic with `topicRename`",
             ),
     );
 }

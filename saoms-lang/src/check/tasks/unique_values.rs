@@ -124,7 +124,7 @@ fn shared(
     report.push(match first.place == user.place {
         // Of replicas, whose expression is not different for each.
         true if later.instance.is_some() && is_own && report.has_expression_at(user.place) => {
-            one.help("what stands here comes to the same for several replicas: `${index}` is different for each")
+            one.help("this value is the same for several replicas: `${index}` is different for each")
         }
         // Of replicas.
         true if later.instance.is_some() && is_own => {

@@ -61,9 +61,9 @@ impl<'a> Unfolding<'a, '_, '_> {
         }
         let message = match is_too_deep {
             true => format!("composites are inside each other more than {COMPOSITE_DEPTH} deep"),
-            false => format!("inner composites come to more than {COMPONENTS} components"),
+            false => format!("inner composites make more than {COMPONENTS} components"),
         };
-        let help = "a composite inside a composite multiplies: is this what is meant?";
+        let help = "a composite inside a composite multiplies the components: use fewer";
         self.too_large(naming.name.location, message, help);
         true
     }
@@ -97,7 +97,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             names.push(format!("{} more", circle.len() - SHOWN));
         }
         names.push(names[0].clone());
-        let message = format!("composites hold each other in a circle: {}", names.join(" -> "));
+        let message = format!("composites contain each other in a circle: {}", names.join(" -> "));
         let mut one = Diagnostic::new(&codes::COMPOSITE_CIRCLE, naming.name.location, message)
             .help("a composite cannot be a part of itself: remove one of these");
         for by in self.open[start + 1..].iter().filter_map(|open| open.by).take(8) {

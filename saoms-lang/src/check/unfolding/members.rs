@@ -90,7 +90,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             }
         }
         if own.split('/').any(|name| name.is_empty() || name.contains(char::is_whitespace)) {
-            let message = format!("{} is no name of a site", quoted(&own));
+            let message = format!("{} is not a name of a site", quoted(&own));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, written.location, message);
             self.report.push(one.help("write a name without blanks, as `North`, or several with `/` between them"));
             return around;

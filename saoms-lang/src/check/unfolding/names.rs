@@ -74,7 +74,7 @@ pub(crate) fn loose(naming: Naming<'_>, around: &Composite, found: &Composite) -
             format!("{} without a prefix is in the default namespace, which is that of SCA", quoted(local))
         }
         "" => format!("{} without a prefix is in the namespace {}", quoted(local), quoted(default)),
-        prefix => format!("the prefix {} is bound to no namespace", quoted(prefix)),
+        prefix => format!("the prefix {} is not declared", quoted(prefix)),
     };
     let namespace = found.namespace();
     let taken = match namespace {
@@ -152,7 +152,7 @@ pub(crate) fn not_found(
     }
     if namespaces.is_none() {
         let prefix = name.split(':').next().unwrap_or_default();
-        one = one.help(format!("the prefix {} is bound to no namespace", quoted(prefix)));
+        one = one.help(format!("the prefix {} is not declared", quoted(prefix)));
     }
     if local.ends_with(".composite") {
         one = one.help(
@@ -171,7 +171,7 @@ pub(crate) fn not_found(
         one = one.help(searched.clone());
     }
     if missing.searched.is_empty() {
-        one = one.help("name the file of the composite beside this one");
+        one = one.help("give the file of that composite, too, beside this one");
     }
     one
 }

@@ -169,7 +169,7 @@ impl<'a> Plan<'a> {
                 Some(first) => {
                     let message = format!("there are two lines about the replica {}", quoted(&row.key));
                     let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
-                    report.push(one.label(table.rows[*first].key.location, "the first").help("make one of them"));
+                    report.push(one.label(table.rows[*first].key.location, "the first").help("merge them into one"));
                 }
             }
         }

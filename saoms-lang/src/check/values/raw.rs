@@ -195,7 +195,7 @@ pub(crate) fn beside_source(property: &Property, source: &Text, document: &Docum
     let message = format!("the property {} is given a value beside its `source`", quoted(&property.name));
     let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message).severity(Severity::Warning);
     let one = Diagnostic { rule: None, ..one };
-    report.push(one.label(source.location, "this counts").help("this value counts for nothing: keep one of them"));
+    report.push(one.label(source.location, "this counts").help("this value is ignored: keep one of them"));
 }
 
 /// The values of XML in a file.

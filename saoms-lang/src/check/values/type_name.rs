@@ -100,7 +100,7 @@ fn unbound(of: &Text, (prefix, local): (&str, &str), document: &Document, report
     if !report.is_first_unbound(document.file(), prefix) {
         return;
     }
-    let message = format!("the prefix {} of this type is bound to no namespace", quoted(prefix));
+    let message = format!("the prefix {} of this type is not declared", quoted(prefix));
     let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message).severity(Severity::Warning);
     if !BUILT_IN_TYPES.contains(&local) {
         return report.push(one.help(format!("declare it: `xmlns:{prefix}=\"...\"`")));

@@ -92,7 +92,7 @@ pub(crate) fn check_match(own: Typed<'_>, other: Typed<'_>, source: Option<Locat
     }
     let (at, whose, help, rule) = match source {
         None => {
-            let help = "leave `type` out: that of the declaration holds";
+            let help = "leave `type` out: that of the declaration is used";
             (here.location, "where it is declared", help, "ASM50036")
         }
         Some(at) => (at, "where its value comes from", "give both one type", "ASM50038"),

@@ -165,12 +165,12 @@ fn widened(
 ) -> Diagnostic {
     let message = match narrower {
         [Narrower { place: (member, name), takes, .. }] => format!(
-            "{} promotes reference {} of component {}, which takes {}: {} does not narrow it",
+            "the multiplicity {} of {} is wider than {} of the promoted reference {} of component {}",
+            quoted(outer.name()),
             quoted(&by.name),
-            quoted(name),
-            quoted(&fleet.members[*member].component.name),
             quoted(takes.name()),
-            quoted(outer.name())
+            quoted(name),
+            quoted(&fleet.members[*member].component.name)
         ),
         _ => {
             let named =

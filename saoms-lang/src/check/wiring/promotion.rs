@@ -150,7 +150,7 @@ fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
 
 fn unwired(reference: &ReferenceElement, report: &mut Report<'_>) {
     let message =
-        format!("reference {} of the composite is wired to nothing: calls through it fail", quoted(&reference.name));
+        format!("reference {} of the composite is wired to no service: calls through it fail", quoted(&reference.name));
     let at = if reference.name.is_empty() { reference.tag() } else { reference.name.location };
     let one = Diagnostic::new(&codes::PROMOTED_UNWIRED, at, message);
     report.push(one.help("the composite runs by itself, and nothing around it can wire its references"));

@@ -25,7 +25,7 @@ impl<'f> Wires<'f, '_> {
     ) {
         let &[first, second, ..] = places else { return };
         let message = format!(
-            "reference {} of component {} takes one target, and here are {}",
+            "reference {} of component {} allows one target, found {}",
             quoted(name),
             quoted(&self.fleet.members[member].component.name),
             places.len()
@@ -43,9 +43,9 @@ impl<'f> Wires<'f, '_> {
         let one = one.label(first, "the first");
         report.push(match self.wire_instead((member, name), first, second) {
             _ if is_again => one.help("they lead to one service: keep one of them"),
-            true => one.help(
-                "keep one of them, or write `replace=\"true\"` at the wire, which counts in place of the `target` then",
-            ),
+            true => {
+                one.help("keep one of them, or write `replace=\"true\"` at the wire, which then replaces the `target`")
+            }
             false => one.help("keep one of them"),
         });
     }

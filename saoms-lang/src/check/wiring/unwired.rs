@@ -71,7 +71,7 @@ impl Wires<'_, '_> {
             return is_unknown;
         }
         let (interface, component) = (&declared.interface.name, &own.component.name);
-        let message = format!("reference {} of component {} leads to no service", quoted(name), quoted(component));
+        let message = format!("reference {} of component {} is wired to no service", quoted(name), quoted(component));
         let is_1_1 = own.composite.version.is_1_1();
         // One that is there and empty was reported by the loader.
         if let Some(target) = empty.and_then(|element| element.attribute("target")) {

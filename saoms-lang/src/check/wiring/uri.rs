@@ -166,8 +166,8 @@ pub(crate) fn has_room(budget: &Budget, text: &Text, scope: usize, fleet: &Fleet
     let Some(group) = fleet.group(scope, parts(text).0) else { return true };
     let has_room = budget.spend(group.len() as u64);
     if !has_room && budget.is_to_report() {
-        let message = format!("groups of replicas come to more than {WIRE_ENDS} ends of wires");
-        let help = "each replica of a group that calls a group has a wire to each of that: is this what is meant?";
+        let message = format!("groups of replicas make more than {WIRE_ENDS} ends of wires");
+        let help = "each replica of a group that calls a group has a wire to each of that: use fewer";
         report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message).help(help));
     }
     has_room

@@ -17,7 +17,7 @@ fn an_element_of_endless_attributes_takes_no_time() {
     let attributes: String = (0..50_000).map(|number| format!(" a{number}=''")).collect();
     let text = format!("<composite xmlns='{OSOA}'{attributes} name='c' targetNamespace='u'/>");
     let (composite, faults) = loaded(&text);
-    assert!(composite.is_some() && faults.contains("49000 more of the kind S1007 (unknown-attribute)"));
+    assert!(composite.is_some() && faults.contains("49000 more of S1007 (unknown-attribute), not shown"));
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn depth_is_no_matter_wherever_it_is() {
     let composite = composite.unwrap();
     assert_eq!(composite.components.len(), 2);
     assert_eq!(composite.components[0].properties[0].content().len(), 1);
-    assert!(faults.starts_with("1:") && faults.contains("`component` cannot stand in `component`"), "{faults}");
+    assert!(faults.starts_with("1:") && faults.contains("`component` is not allowed in `component`"), "{faults}");
 }
 
 #[test]

@@ -55,22 +55,22 @@ fn each_slip_is_told() {
         3 [&] error S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
         4 [</properti>] error S0102 `</properti>` found where `</property>` is expected | replace it with `</property>`
         5 [true] error S0105 the value of `many` is not in quotes | put it in quotes
-        6 [&nbsp;] error S0109 `&nbsp;` is no entity that is known here
+        6 [&nbsp;] error S0109 unknown entity `&nbsp;`
         7 [name] error S0106 the attribute `name` is given twice | remove the second `name`
-        8 [“x.A”] error S0105 `“` is no quote of XML: values stand between two `"` | replace it with `"x.A"`
-        9 [xsi] error S0112 the prefix `xsi` is bound to no namespace | declare it in the root element: `xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"`
+        8 [“x.A”] error S0105 `“` is not a quote of XML: values are written between two `"` | replace it with `"x.A"`
+        9 [xsi] error S0112 the prefix `xsi` is not declared | declare it in the root element: `xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"`
         10 [v] error S0105 white space is missing between two attributes | insert a blank
         11 [name] error S0105 the attribute `name` has no value | insert `=`
         12 [:] error S0105 `:` stands between `name` and its value, and not `=` | replace `:` with `=`
         13 [,] error S0101 `,` is misplaced in the start tag of `property` | remove `,`
-        14 ['six] error S0105 this value is not closed before `value` | close it with `'`
-        15 [foo] error S0112 the prefix `foo` is bound to no namespace
+        14 ['six] error S0105 this value has no closing quote before `value` | close it with `'`
+        15 [foo] error S0112 the prefix `foo` is not declared
         16 [<] error S0105 `<` in the value of `value` | replace `<` with `&lt;`
         17 [&] error S0101 `&` is misplaced in the start tag of `property`
         18 [wiredByImpl] error S0105 the attribute `wiredByImpl` has no value
         19 [valeu] error S1007 `property` has no attribute `valeu` | replace `valeu` with `value`
-        20 [ja] error S1011 `autowire` is `ja` and has to be `true` or `false`
-        21 [foo] error S0112 the prefix `foo` is bound to no namespace
+        20 [ja] error S1011 `autowire` is `ja`, expected `true` or `false`
+        21 [foo] error S0112 the prefix `foo` is not declared
         22 [</componnt>] error S0102 `</componnt>` found where `</component>` is expected | replace it with `</component>`
     "#]].assert_eq(&(all.join("\n") + "\n"));
 }

@@ -170,13 +170,13 @@ fn the_whole_vocabulary_is_in_the_model_with_its_places() {
 fn a_root_that_is_no_composite_is_told_what_it_has_to_be() {
     faults(
         &format!("<Composite xmlns='{OSOA}' name='c' targetNamespace='u'/>"),
-        "1:2 [Composite] error S1001 the root element is `Composite` and has to be `composite` \
+        "1:2 [Composite] error S1001 the root element is `Composite`, expected `composite` \
          | replace `Composite` with `composite`",
     );
-    faults("<project/>", "1:2 [project] error S1001 the root element is `project` and has to be `composite`");
+    faults("<project/>", "1:2 [project] error S1001 the root element is `project`, expected `composite`");
     faults(
         &format!("<componentType xmlns='{OASIS}'/>"),
-        "1:2 [componentType] error S1001 the root element is `componentType` and has to be `composite`",
+        "1:2 [componentType] error S1001 the root element is `componentType`, expected `composite`",
     );
     assert!(loaded("<project/>").0.is_none());
 }
@@ -186,18 +186,18 @@ fn a_wrong_namespace_is_found_where_it_is_written_and_the_rest_is_read() {
     faults(
         "<composite name='c' targetNamespace='u'><component/></composite>",
         "
-1:2 [composite] error S1002 `composite` is in no namespace, and so it is no composite of SCA | insert `xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"`
+1:2 [composite] error S1002 `composite` is in no namespace, so it is not a composite of SCA | insert `xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"`
 1:42 [component] error S1008 `component` needs the attribute `name`
 1:42 [component] warning S1010 a component has no implementation",
     );
     faults(
         "<s:composite xmlns:x='u' xmlns:s='http://www.osoa.org/xmlns/sca/1.1' name='c' targetNamespace='u'/>",
-        "1:35 [http://www.osoa.org/xmlns/sca/1.1] error S1002 `http://www.osoa.org/xmlns/sca/1.1` is no namespace of SCA \
+        "1:35 [http://www.osoa.org/xmlns/sca/1.1] error S1002 `http://www.osoa.org/xmlns/sca/1.1` is not a namespace of SCA \
          | replace it with `http://www.osoa.org/xmlns/sca/1.0`",
     );
     faults(
         "<composite xmlns='urn:mine' name='c' targetNamespace='u'/>",
-        "1:19 [urn:mine] error S1002 `urn:mine` is no namespace of SCA",
+        "1:19 [urn:mine] error S1002 `urn:mine` is not a namespace of SCA",
     );
     let mut diagnostics = Diagnostics::new();
     let mut sources = Sources::new();
@@ -315,25 +315,25 @@ fn what_cannot_be_is_found_at_its_place() {
     faults_1_0(
         &format!("<component name='a'>oops{JAVA}<property>1</property></component>more"),
         "
-2:21 [oops] error S1012 text in `component`, which holds no text
+2:21 [oops] error S1012 unexpected text in `component`: it contains elements only
 2:60 [property] error S1008 `property` needs the attribute `name`
-2:93 [more] error S1012 text in `composite`, which holds no text",
+2:93 [more] error S1012 unexpected text in `composite`: it contains elements only",
     );
     faults_1_0(
         "<component name='a'><implementation.java>x.Y</implementation.java></component>",
         "
-2:42 [x.Y] error S1012 text in `implementation.java`, which holds no text",
+2:42 [x.Y] error S1012 unexpected text in `implementation.java`: it contains elements only",
     );
     faults_1_0(
         &format!("<component name='a'>{JAVA}<component name='b'/></component><value/><interface.java/>"),
         "
-2:56 [component] error S1005 `component` cannot stand in `component`
-2:89 [value] error S1005 `value` cannot stand in `composite`
-2:97 [interface.java] error S1005 `interface.java` cannot stand in `composite`",
+2:56 [component] error S1005 `component` is not allowed in `component`
+2:89 [value] error S1005 `value` is not allowed in `composite`
+2:97 [interface.java] error S1005 `interface.java` is not allowed in `composite`",
     );
     faults_1_0(
         &format!("<component name='a'>{JAVA}<property name='p'>1<component name='b'/></property></component>"),
-        "2:76 [component] error S1005 `component` cannot stand in `property`",
+        "2:76 [component] error S1005 `component` is not allowed in `property`",
     );
     faults_1_1(
         &format!("<component name='a'>{JAVA}<property name='p'>1<value>2</value></property></component>"),
@@ -348,8 +348,8 @@ fn what_cannot_be_is_found_at_its_place() {
     faults_1_0(
         &format!("<component name='a' autowire='yes'>{JAVA}<reference name='r' multiplicity='0..*'/></component>"),
         "
-2:31 [yes] error S1011 `autowire` is `yes` and has to be `true` or `false` | replace it with `true`
-2:104 [0..*] error S1011 `multiplicity` is `0..*` and has to be `0..1`, `1..1`, `0..n` or `1..n` | replace it with `0..n`",
+2:31 [yes] error S1011 `autowire` is `yes`, expected `true` or `false` | replace it with `true`
+2:104 [0..*] error S1011 `multiplicity` is `0..*`, expected `0..1`, `1..1`, `0..n` or `1..n` | replace it with `0..n`",
     );
     faults_1_0(
         "<service name='s'/><reference name='r' promote=''/>",

@@ -37,22 +37,22 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     says(b"<a>\0</a>", "1:1 [] error S0006 the file is binary: byte 3 is zero\na composite is an XML text in UTF-8");
     says(
         b"PK\x03\x04....",
-        "1:1 [] error S0006 the file is a ZIP or JAR archive, and no XML text\na composite is an XML text in UTF-8",
+        "1:1 [] error S0006 the file is a ZIP or JAR archive, not XML text\na composite is an XML text in UTF-8",
     );
     let utf16: Vec<u8> = "\u{feff}<a/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
     let converted = "convert it: `iconv -f UTF-16LE -t UTF-8 DIR/f.composite`";
-    says(&utf16, &format!("1:1 [] error S0007 the file is in UTF-16LE, and UTF-8 is expected\n{converted}"));
-    says(&utf16[2..], &format!("1:1 [] error S0007 the file is in UTF-16LE, and UTF-8 is expected\n{converted}"));
+    says(&utf16, &format!("1:1 [] error S0007 the file is in UTF-16LE, expected UTF-8\n{converted}"));
+    says(&utf16[2..], &format!("1:1 [] error S0007 the file is in UTF-16LE, expected UTF-8\n{converted}"));
     assert!(reading(b"\xfe\xff\0<\0a", MAX_SIZE).contains("UTF-16BE"));
     assert!(reading(b"\0\0\0<\0\0\0a", MAX_SIZE).contains("UTF-32BE"));
     says(
         b"<?xml version='1.0' encoding = \"ISO-8859-1\"?>\n<a>caf\xe9</a>",
-        "2:7 [\u{fffd}] error S0007 the file is declared to be in `ISO-8859-1`, and UTF-8 is expected\n\
+        "2:7 [\u{fffd}] error S0007 the file is declared to be in `ISO-8859-1`, expected UTF-8\n\
          convert it: `iconv -f ISO-8859-1 -t UTF-8 DIR/f.composite`; until then nothing of the file is checked",
     );
     says(
         b"<a>caf\xe9</a>",
-        "1:7 [\u{fffd}] error S0007 the byte 0xE9 here is no UTF-8\n\
+        "1:7 [\u{fffd}] error S0007 the byte 0xE9 is not valid UTF-8\n\
          if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 DIR/f.composite`; until then \
          nothing of the file is checked",
     );
@@ -88,7 +88,7 @@ fn a_file_that_is_not_there_has_neighbours() {
     assert_eq!(shown("xyz"), format!("{missing}the folder has `DIR/airport.composite`, `DIR/airport2.composite`"));
     assert_eq!(shown("sup/a"), format!("{missing}there is no directory `DIR/sup` either"));
     assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file and no directory"));
-    let directory = "1:1 [] error S0002 a directory, where a file is expected\n";
+    let directory = "1:1 [] error S0002 found a directory, expected a file\n";
     assert_eq!(shown("sub"), directory);
     assert_eq!(shown(""), format!("{directory}it has `DIR/airport.composite`, `DIR/airport2.composite`"));
 }

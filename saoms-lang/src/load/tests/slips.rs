@@ -13,7 +13,7 @@ fn a_namespace_that_is_nearly_one_of_ours_is_told() {
     };
     let ours = |written: &str| {
         format!(
-            "1:1 [{written}] warning S1013 what is in the namespace `{written}` is passed over: it is nearly `urn:saoms:1` \
+            "1:1 [{written}] warning S1013 unknown namespace `{written}`: did you mean `urn:saoms:1`? \
              | replace it with `urn:saoms:1`"
         )
     };
@@ -31,7 +31,7 @@ fn a_namespace_that_is_nearly_one_of_ours_is_told() {
         &format!("xmlns:x='{slip}'"),
         "x:note=''",
         &format!(
-            "1:1 [{slip}] warning S1013 what is in the namespace `{slip}` is passed over: it is nearly `{OASIS}` | replace it with `{OASIS}`"
+            "1:1 [{slip}] warning S1013 unknown namespace `{slip}`: did you mean `{OASIS}`? | replace it with `{OASIS}`"
         ),
     );
 }
@@ -62,7 +62,7 @@ fn an_element_that_is_closed_too_late_or_too_early_is_told_once() {
         |inside: &str| format!("<component name='a'>{inside}</component>\n<component name='b'>{JAVA}</component>");
     faults_1_1(
         &component("<implementation.java class='x.Y'><property name='p'>1</property><property name='q'>2</property>"),
-        "2:22 [implementation.java] error S0103 `implementation.java` is not closed before `property` | end `implementation.java` with `/>`",
+        "2:22 [implementation.java] error S0103 `<implementation.java class='x.Y'>` has no end tag | end `implementation.java` with `/>`",
     );
     faults_1_1(
         &component(&format!("{JAVA}<property name='p'>1<property><property name='q'>2</property>")),
@@ -70,13 +70,13 @@ fn an_element_that_is_closed_too_late_or_too_early_is_told_once() {
     );
     faults_1_1(
         &component(&format!("{JAVA}<property name='p'>1<property name='q'>2</property>")),
-        "2:56 [property] error S0103 `property` is not closed before `property` | close `property`",
+        "2:56 [property] error S0103 `<property name='p'>` has no end tag | close `property`",
     );
     faults_1_1(
         &format!(
             "<component name='a'>{JAVA}\n<component name='b'>{JAVA}</component><component name='c'>{JAVA}</component>"
         ),
-        "2:2 [component] error S0103 `component` is not closed before `component` | close `component`",
+        "2:2 [component] error S0103 `<component name='a'>` has no end tag | close `component`",
     );
     faults_1_1(
         &format!("<component name='a'/>{JAVA}<property name='p'>1</property>\n</component>"),
@@ -89,8 +89,8 @@ fn an_element_that_is_closed_too_late_or_too_early_is_told_once() {
     // A fault of another kind leaves elements open as well.
     faults_1_1(
         &format!("<component name='a'>{JAVA}<component name='b'/>&nbsp;</component>"),
-        "2:56 [component] error S1005 `component` cannot stand in `component`\n\
-         2:76 [&nbsp;] error S0109 `&nbsp;` is no entity that is known here",
+        "2:56 [component] error S1005 `component` is not allowed in `component`\n\
+         2:76 [&nbsp;] error S0109 unknown entity `&nbsp;`",
     );
 }
 
@@ -112,9 +112,9 @@ fn a_misspelt_element_is_read_on() {
 fn a_remark_as_other_languages_write_it_becomes_a_comment() {
     faults_1_1(
         "# the hall",
-        "2:1 [# the hall] error S1012 text in `composite`, which holds no text | write it as a comment",
+        "2:1 [# the hall] error S1012 unexpected text in `composite`: it contains elements only | write it as a comment",
     );
-    faults_1_1("the hall", "2:1 [the hall] error S1012 text in `composite`, which holds no text");
+    faults_1_1("the hall", "2:1 [the hall] error S1012 unexpected text in `composite`: it contains elements only");
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn names_are_those_of_xml() {
         faults_1_1(&component(right), "");
     }
     let told = |name: &str, why: &str| {
-        let expected = format!("2:18 [{name}] warning S1011 `{name}` {why}: it is no name of XML");
+        let expected = format!("2:18 [{name}] warning S1011 `{name}` {why}: it is not an XML name");
         faults_1_1(&component(name), &expected);
         faults_1_0(&component(name), &expected);
     };

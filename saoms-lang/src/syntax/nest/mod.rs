@@ -261,10 +261,10 @@ impl<'a> Nest<'_, 'a> {
             // A tag with an unknown end may have been meant as `/>`.
             let is_doubtful = self.token(node.token).is_damaged && top + 1 == self.count;
             if !is_doubtful && !self.lexer.is_cut_short && !self.has_second_root {
-                let Named { name, at, .. } = self.named(&node);
+                let open = self.named(&node);
                 self.lexer.faults.add(|| {
-                    let message = format!("{} is never closed", quoted(name));
-                    self.input.ended(&codes::XML_UNCLOSED, at.start, at.end, message)
+                    let message = tags::without_end_tag(self.input, open);
+                    self.input.ended(&codes::XML_UNCLOSED, open.at.start, open.at.end, message)
                 });
             }
         }
@@ -275,7 +275,7 @@ impl<'a> Nest<'_, 'a> {
         let is_nothing = self.lexer.elements.len() == 1 && self.node(0).name_len == 0;
         if is_nothing && self.lexer.faults.is_empty() {
             let at = self.input.len();
-            self.lexer.faults.add(|| self.input.ended(&codes::XML_SYNTAX, at, at, "the file holds no element"));
+            self.lexer.faults.add(|| self.input.ended(&codes::XML_SYNTAX, at, at, "the file contains no element"));
         }
     }
 }

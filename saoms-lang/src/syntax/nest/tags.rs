@@ -84,13 +84,31 @@ fn with_slash(input: Input<'_>, one: Diagnostic, open: Named<'_>) -> Diagnostic 
     one.suggest(format!("end {} with `/>`", quoted(open.name)), input.at(end, end), "/")
 }
 
+/// The message about an element without an end tag, with the attribute that tells it from others.
+pub(super) fn without_end_tag(input: Input<'_>, open: Named<'_>) -> String {
+    let mut rest = input.slice(open.at.end, open.start_tag.end.max(open.at.end));
+    let attributes: Vec<(&str, &str, char)> = std::iter::from_fn(|| {
+        let (name, value) = rest.split_once('=')?;
+        let quote = value.trim_start().chars().next().filter(|quote| matches!(quote, '"' | '\''))?;
+        let (value, next) = value.trim_start()[1..].split_once(quote)?;
+        rest = next;
+        Some((name.trim(), value, quote))
+    })
+    .collect();
+    let shown = attributes.iter().find(|(name, ..)| *name == "name");
+    let shown = shown.or(attributes.first()).filter(|(name, ..)| !name.starts_with("xmlns"));
+    let first = shown.map_or_else(String::new, |(name, value, quote)| format!(" {name}={quote}{value}{quote}"));
+    let more = if attributes.len() > usize::from(shown.is_some()) { " ..." } else { "" };
+    format!("{} has no end tag", quoted(&format!("<{}{first}{more}>", open.name)))
+}
+
 /// The fault of `outer`, which is not closed before `inner`.
 pub(super) fn not_closed(input: Input<'_>, outer: Named<'_>, inner: Named<'_>) -> Diagnostic {
     let name = quoted(outer.name);
     let close = format!("</{}>", outer.name);
-    let message = format!("{name} is not closed before {}", quoted(inner.name));
+    let message = without_end_tag(input, outer);
     let one = input.fault(&codes::XML_UNCLOSED, outer.at.start, outer.at.end, message);
-    let one = one.label(inner.at.in_file(input.file), "this stands beside it, and not in it");
+    let one = one.label(inner.at.in_file(input.file), "this belongs beside it, not in it");
     let text = input.text;
     let inside = input.slice(outer.start_tag.end, inner.start_tag.start);
     if inside.trim().is_empty() && !ends_with_slash(input, outer) {
@@ -109,14 +127,14 @@ pub(super) fn outside(input: Input<'_>, place: Span, root: Option<Named<'_>>) ->
     let message = "text outside of the root element";
     let one = input.fault(&codes::XML_OUTSIDE_ROOT, place.start, place.end, message);
     match root {
-        None => one.help("a file is one element; before it only comments and instructions can stand"),
+        None => one.help("a file has one root element; only comments and instructions can be before it"),
         Some(root) => one.label(root.at.in_file(input.file), "the root element"),
     }
 }
 
 /// The fault of a second element beside the root.
 pub(super) fn second_root(input: Input<'_>, second: Named<'_>, root: Named<'_>) -> Diagnostic {
-    let message = "a second root element: a file is one element";
+    let message = "a second root element: a file has exactly one";
     let one = input.fault(&codes::XML_OUTSIDE_ROOT, second.at.start, second.at.end, message);
     one.label(root.at.in_file(input.file), "the first root element")
 }

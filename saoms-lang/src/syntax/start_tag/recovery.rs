@@ -31,7 +31,7 @@ impl Tag<'_, '_> {
                 let message = format!("the start tag of {shown} is never closed");
                 return input.ended(&codes::XML_UNCLOSED, name.start, name.end, message);
             }
-            let message = format!("the start tag of {shown} is not closed before the next `<`");
+            let message = format!("the start tag of {shown} has no `>` before the next `<`");
             input
                 .fault(&codes::XML_UNCLOSED, limit, limit + 1, message)
                 .label(name.in_file(input.file), "this tag is open")

@@ -95,7 +95,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a b='
             1:6 ['] S0103 the value of `b` is never closed
         <a>x
-            1:2 [a] S0103 `a` is never closed
+            1:2 [a] S0103 `<a>` has no end tag
         <a><b></a>
             1:7 [</a>] S0102 `</a>` found where `</b>` is expected | end `b` with `/>`
         <a><b>x</a>
@@ -111,7 +111,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a/></a>
             1:5 [</a>] S0102 `</a>` closes nothing: no element is open
         <a/><b/>
-            1:6 [b] S0104 a second root element: a file is one element
+            1:6 [b] S0104 a second root element: a file has exactly one
         <a/> x
             1:6 [x] S0104 text outside of the root element
         x y <a/>
@@ -121,7 +121,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a/><![CDATA[x]]>
             1:5 [<![CDATA[x]]>] S0104 text outside of the root element
         <!-- c -->
-            1:11 [] S0101 the file holds no element
+            1:11 [] S0101 the file contains no element
         <a b='1' b='2'/>
             1:10 [b] S0106 the attribute `b` is given twice | remove the second `b`
         <a xmlns:p='u' xmlns:q='u' p:b='' q:b=''/>
@@ -135,9 +135,9 @@ fn what_is_not_well_formed_is_found_at_its_place() {
             1:6 ['1] S0105 the value of `b` is not closed | close it with `'`
         <a b='1"/><c/></a>
             1:6 ['1"] S0105 the value of `b` is not closed | replace `"` with `'`
-            1:12 [c] S0104 a second root element: a file is one element
+            1:12 [c] S0104 a second root element: a file has exactly one
         <a b='1 c='2'/>
-            1:6 ['1] S0105 this value is not closed before `c` | close it with `'`
+            1:6 ['1] S0105 this value has no closing quote before `c` | close it with `'`
         <a b '1'/>
             1:4 [b] S0105 the attribute `b` has no value | insert `=`
         <a b: '1'/>
@@ -159,17 +159,17 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a =''/>
             1:4 [=] S0101 `=` is misplaced in the start tag of `a`
         <a <b/></a>
-            1:4 [<] S0103 the start tag of `a` is not closed before the next `<`
+            1:4 [<] S0103 the start tag of `a` has no `>` before the next `<`
         <a>< b/></a>
             1:4 [<] S0107 white space cannot follow `<`: the name of an element is expected | replace `<` with `&lt;`
         <1/>
-            1:2 [1] S0107 `1` is no name for an element
+            1:2 [1] S0107 `1` is not a valid name for an element
         <a:b:c/>
-            1:2 [a:b:c] S0107 `a:b:c` is no name for an element
+            1:2 [a:b:c] S0107 `a:b:c` is not a valid name for an element
         <:a/>
-            1:2 [:a] S0107 `:a` is no name for an element
+            1:2 [:a] S0107 `:a` is not a valid name for an element
         <a -b=''/>
-            1:4 [-b] S0107 `-b` is no name for an attribute
+            1:4 [-b] S0107 `-b` is not a valid name for an attribute
         <a></ a>
             1:4 [</] S0107 an end tag is `</`, the name of the element, and `>`
         <a></a b=''>
@@ -177,21 +177,21 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a></a
             1:4 [</a] S0103 this end tag is never closed
         <a>&nbsp;</a>
-            1:4 [&nbsp;] S0109 `&nbsp;` is no entity that is known here
+            1:4 [&nbsp;] S0109 unknown entity `&nbsp;`
         <a>&AMP;</a>
-            1:4 [&AMP;] S0109 `&AMP;` is no entity that is known here | replace `&AMP;` with `&amp;`
+            1:4 [&AMP;] S0109 unknown entity `&AMP;` | replace `&AMP;` with `&amp;`
         <a>a & b</a>
             1:6 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
         <a b='x&y'/>
             1:8 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
         <a>&#0;</a>
-            1:4 [&#0;] S0109 `&#0;` is no character that XML allows
+            1:4 [&#0;] S0109 `&#0;` is not a character that XML allows
         <a>&#xD800;</a>
-            1:4 [&#xD800;] S0109 `&#xD800;` is no character that XML allows
+            1:4 [&#xD800;] S0109 `&#xD800;` is not a character that XML allows
         <a>&#X41;</a>
-            1:4 [&#X41;] S0109 `&#X41;` is no character that XML allows
+            1:4 [&#X41;] S0109 `&#X41;` is not a character that XML allows
         <a>&#1114112;</a>
-            1:4 [&#1114112;] S0109 `&#1114112;` is no character that XML allows
+            1:4 [&#1114112;] S0109 `&#1114112;` is not a character that XML allows
         <a>]]></a>
             1:4 []]>] S0101 `]]>` in text, which XML allows only to end a CDATA section | replace it with `]]&gt;`
         <a><!-- x -- y --></a>
@@ -213,37 +213,37 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <!doctype a><a/>
             1:1 [<!doctype] S0110 a document type declaration is not allowed here
         <a><?xml version='1.0'?></a>
-            1:4 [<?xml version='1.0'?>] S0111 the XML declaration stands at the very start of a file, and only there
+            1:4 [<?xml version='1.0'?>] S0111 the XML declaration is not at the very start of the file
         <?xml?><a/>
             1:3 [xml] S0111 an XML declaration starts with its version
         <?xml encoding='UTF-8'?><a/>
             1:3 [xml] S0111 an XML declaration starts with its version
         <?xml version='2.0'?><a/>
-            1:16 [2.0] S0111 `2.0` is no value of version in an XML declaration
+            1:16 [2.0] S0111 `2.0` is not a value of version in an XML declaration
         <?xml version='1.0' encoding='-'?><a/>
-            1:31 [-] S0111 `-` is no value of encoding in an XML declaration
+            1:31 [-] S0111 `-` is not a value of encoding in an XML declaration
         <?xml version='1.0'encoding='x'?><a/>
             1:20 [encoding] S0111 `encoding` is misplaced in the XML declaration
         <?xml version='1.0' standalone='no' encoding='x'?><a/>
             1:37 [encoding] S0111 `encoding` is misplaced in the XML declaration
         <?xml version='1.0' standalone='maybe'?><a/>
-            1:33 [maybe] S0111 `maybe` is no value of standalone in an XML declaration
+            1:33 [maybe] S0111 `maybe` is not a value of standalone in an XML declaration
         <?xml version='1.0' x?><a/>
-            1:21 [x] S0111 this is no declaration of version, encoding or standalone
+            1:21 [x] S0111 this is not a declaration of version, encoding or standalone
         <?XML x?><a/>
             1:3 [XML] S0111 `XML` is reserved: an instruction cannot have this name
         <?1?><a/>
             1:1 [<?1] S0107 a processing instruction is `<?`, a name, white space, anything, and `?>`
         <p:a/>
-            1:2 [p] S0112 the prefix `p` is bound to no namespace
+            1:2 [p] S0112 the prefix `p` is not declared
         <a p:b=''/>
-            1:4 [p] S0112 the prefix `p` is bound to no namespace
+            1:4 [p] S0112 the prefix `p` is not declared
         <a xsi:type=''/>
-            1:4 [xsi] S0112 the prefix `xsi` is bound to no namespace | declare it in the root element: `xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"`
+            1:4 [xsi] S0112 the prefix `xsi` is not declared | declare it in the root element: `xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"`
         <a xmlns:scx='u'><sca:b/></a>
-            1:19 [sca] S0112 the prefix `sca` is bound to no namespace | replace `sca` with `scx`
+            1:19 [sca] S0112 the prefix `sca` is not declared | replace `sca` with `scx`
         <a><b xmlns:p='u'/><p:c/></a>
-            1:21 [p] S0112 the prefix `p` is bound to no namespace
+            1:21 [p] S0112 the prefix `p` is not declared
         <a xmlns:p=''/>
             1:4 [xmlns:p=''] S0112 a prefix cannot be bound to no namespace
         <a xmlns:xmlns='u'/>
@@ -253,7 +253,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a xmlns='http://www.w3.org/2000/xmlns/'/>
             1:4 [xmlns='http://www.w3.org/2000/xmlns/'] S0112 nothing can be bound to the namespace of declarations
         <xmlns:a/>
-            1:2 [xmlns] S0112 the prefix `xmlns` is bound to no namespace
+            1:2 [xmlns] S0112 the prefix `xmlns` is not declared
         <
             1:1 [<] S0107 the file ends behind `<` | replace `<` with `&lt;`
     "#]].assert_eq(&shown.collect::<String>().replace('\u{200b}', "\\u{200b}"));

@@ -108,9 +108,9 @@ fn what_a_file_cannot_say_is_told() {
           fix: replace `servise` with `service` [run.componentType:2:2-9 "service"]
         run.componentType:2:46-53 error S1007: `property` has no attribute `defualt`
           help: `property` has the attributes `name`, `value`, `type`, `element`, `many`, `mustSupply`
-        run.componentType:3:2-11 error S1005: `component` cannot stand in `componentType`
-          help: `componentType` can hold `implementation.*`, `service`, `reference`, `property`, `requires`, `policySetAttachment`, `documentation`, `extensions`
-        run.componentType:3:22-26 error S1012: text in `componentType`, which holds no text
+        run.componentType:3:2-11 error S1005: `component` is not allowed in `componentType`
+          help: `componentType` can contain `implementation.*`, `service`, `reference`, `property`, `requires`, `policySetAttachment`, `documentation`, `extensions`
+        run.componentType:3:22-26 error S1012: unexpected text in `componentType`: it contains elements only
           help: remove it; comments stand between `<!--` and `-->`
         run.componentType:3:27-34 error S1004: `service` is in no namespace
           help: elements of SCA are in the namespace of the composite, extensions in one of their own
@@ -213,8 +213,8 @@ fn a_value_in_a_component_type_is_one_and_written_once() {
 <requires/><requires intents=''/><policySetAttachment/><documentation/><extensions><service name='x'/></extensions>";
     let component = "<component name='S'><implementation.java class='a.Run'/></component>";
     expect![[r#"
-        Run.componentType:5:85-92 error S1005: `service` cannot stand in `extensions`
-          help: `extensions` holds no elements of SCA
+        Run.componentType:5:85-92 error S1005: `service` is not allowed in `extensions`
+          help: `extensions` contains no elements of SCA
     "#]]
     .assert_eq(&found(component, &[("Run.componentType", inside)], true));
 }

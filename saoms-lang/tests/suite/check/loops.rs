@@ -65,9 +65,9 @@ fn a_composite_adds_replaces_removes_moves_and_parametrises_loops() {
 fn a_loop_of_which_nothing_changes_is_told() {
     assert_eq!(
         faults("<saoms:loop name=\"BatteryMS\"/>\n<saoms:loop name=\"PathMS\" remove=\"false\"/>"),
-        "3:2-12 warning S4510: this changes nothing: the component has the loop `BatteryMS` by its class
+        "3:2-12 warning S4510: this has no effect: the component has the loop `BatteryMS` from its class
   help: remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties
-4:2-12 warning S4510: this changes nothing: the component has the loop `PathMS` by its class
+4:2-12 warning S4510: this has no effect: the component has the loop `PathMS` from its class
   help: remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties
 "
     );
@@ -107,9 +107,9 @@ fn what_is_said_of_a_loop_makes_sense() {
 <saoms:loop name=\"BatteryMS\"/><saoms:loop name=\"BatteryMS\"/>
 <saoms:loop name=\"CollisionMS\" before=\"BatteryMS\" after=\"BatteryMS\"/>"
         ),
-        "3:48-61 error S4503: the loop `PathMS` is removed, and `class` given
+        "3:48-61 error S4503: the loop `PathMS` is removed, but has `class`
   3:35-39 removed here
-  help: what is removed has no class, no place and no properties
+  help: a removed loop has no class, place or properties
 4:49-58 error S4502: the loop `BatteryMS` is given twice
   4:19-28 first here
   help: say all about a loop in one element; two loops of one class need two names
@@ -125,21 +125,21 @@ fn orders_lead_somewhere() {
     assert_eq!(
         faults("<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" before=\"PathMS\"/>"),
         "4:38-44 error S4504: the order of the loops `PathMS` and `BatteryMS` goes in a circle
-  3:34-43 `PathMS` stands beside `BatteryMS`
-  help: let one of them stand beside a loop that is not moved
+  3:34-43 `PathMS` is placed beside `BatteryMS`
+  help: place one of them before or after a loop that is not moved
 "
     );
     assert_eq!(
         faults("<saoms:loop name=\"PathMS\" after=\"PathMS\"/>"),
-        "3:34-40 error S4504: the loop `PathMS` stands beside itself
-  help: let one of them stand beside a loop that is not moved
+        "3:34-40 error S4504: the loop `PathMS` is placed beside itself
+  help: place one of them before or after a loop that is not moved
 "
     );
     assert_eq!(
         faults("<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" remove=\"true\"/>"),
-        "3:34-43 error S4504: the loop `PathMS` stands beside `BatteryMS`, which is removed
+        "3:34-43 error S4504: the loop `PathMS` is placed beside `BatteryMS`, which is removed
   4:19-28 removed here
-  help: let it stand beside another loop, or keep that one
+  help: place it beside another loop, or keep that one
 "
     );
 }

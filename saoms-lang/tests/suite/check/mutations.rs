@@ -83,7 +83,7 @@ proptest! {
 #[test]
 fn what_is_mutated_is_right_but_for_a_warning() {
     expect_test::expect![[r#"
-        5:18-19 warning S2022: reference `r` of the composite is wired to nothing: calls through it fail
+        5:18-19 warning S2022: reference `r` of the composite is wired to no service: calls through it fail
           help: the composite runs by itself, and nothing around it can wire its references
     "#]]
     .assert_eq(&crate::check::support::faults(EVERYTHING));

@@ -61,15 +61,15 @@ fn services_and_references_are_those_of_the_class() {
         5:16-20 error S2004: component `R` has two services `move`
           4:16-20 the first
           help: keep one of them
-        6:94-104 warning S2009: `binding.ws` is not served: the service can be called within the program alone
+        6:94-104 warning S2009: `binding.ws` is not supported: the service can be called only inside this program
           help: remove it; other machines are reached through topics and the `url` of a message broker
         7:18-21 error S2006: class `example.Robot001` has no reference `GPS`
           fix: replace `GPS` with `gps` [7:18-21 "gps"]
-        8:37-41 error S2008: the multiplicity of `gps` is `0..1` in class `example.Robot001`: `0..n` does not narrow it
+        8:37-41 error S2008: the multiplicity `0..n` of `gps` is wider than `0..1` in class `example.Robot001`
           help: it can be `0..1` or `1..1`
         8:44-58 error S2007: the interface of `gps` is `example.Positions`, which this element cannot name
           help: write `<interface.java interface="example.Positions"/>`, or leave it out
-        11:51-55 error S2008: the multiplicity of `wheels` is `1..1` in class `example.Navigator`: `0..1` does not narrow it
+        11:51-55 error S2008: the multiplicity `0..1` of `wheels` is wider than `1..1` in class `example.Navigator`
           help: leave `multiplicity` out: `1..1` is the default
         13:16-29 error S2005: class `example.Navigator` has no service `TaskInterface`
           help: its services are `position`
@@ -103,7 +103,7 @@ fn promotions_have_to_exist() {
           help: give each its own name
         6:28-29 error S2021: component `T` has several services: say which is promoted
           help: write `T/` and one of `left` and `right`
-        7:18-19 warning S2022: reference `r` of the composite is wired to nothing: calls through it fail
+        7:18-19 warning S2022: reference `r` of the composite is wired to no service: calls through it fail
           help: the composite runs by itself, and nothing around it can wire its references
         7:38-46 error S2007: reference `r` of the composite promotes references with the interfaces `example.Positions` and `example.Wheels`
           7:30-37 the first
@@ -141,14 +141,14 @@ fn attributes_of_the_other_version_are_told() {
 <wire source="N/other" target="R" replace="true"/>"#;
     expect![[r#"
         2:106-111 warning S1014: `value` of `property` is an attribute of SCA 1.1, and this file is of SCA 1.0
-          help: it counts here, and other programs do not know it: let the file be one of SCA 1.1
+          help: SAOMS reads it, other programs may not: change the file to SCA 1.1
           help: or write the value as text inside
         3:165-174 warning S1014: `remotable` of `interface.java` is an attribute of SCA 1.1, and this file is of SCA 1.0
-          help: it counts here, and other programs do not know it: let the file be one of SCA 1.1
+          help: SAOMS reads it, other programs may not: change the file to SCA 1.1
         4:15-16 error S2011: there is no component `N`
           help: the components are `R`
         4:35-42 warning S1014: `replace` of `wire` is an attribute of SCA 1.1, and this file is of SCA 1.0
-          help: it counts here, and other programs do not know it: let the file be one of SCA 1.1
+          help: SAOMS reads it, other programs may not: change the file to SCA 1.1
     "#]]
     .assert_eq(&faults_of(&[&fleet_1_0(inside)], &[]));
     expect![[r#"

@@ -12,11 +12,11 @@ fn an_element_of_sca_in_another_namespace_is_told() {
 <x:documentation xmlns:x='urn:x'/>
 <xi:include xmlns:xi='http://www.w3.org/2001/XInclude' href='more.composite'/>";
     expect![[r#"
-        2:2-13 warning S1015: `x:component` is of the namespace `urn:x` and is passed over
-          help: write `<component>` if it is meant to be of SCA
-        3:56-66 warning S1015: `x:property` is of the namespace `urn:x` and is passed over
-          help: write `<property>` if it is meant to be of SCA
-        5:2-12 warning S1015: `xi:include` is of the namespace `http://www.w3.org/2001/XInclude` and is passed over
+        2:2-13 warning S1015: `x:component` is ignored: its namespace `urn:x` is not that of SCA
+          help: write `<component>` if you mean the element of SCA
+        3:56-66 warning S1015: `x:property` is ignored: its namespace `urn:x` is not that of SCA
+          help: write `<property>` if you mean the element of SCA
+        5:2-12 warning S1015: `xi:include` is ignored: its namespace `http://www.w3.org/2001/XInclude` is not that of SCA
           help: `<include name="..."/>` without a prefix includes a composite by its name
     "#]]
     .assert_eq(&found(inside, &[], true));
@@ -35,11 +35,11 @@ fn a_prefix_in_a_list_of_names_has_a_namespace() {
     let inside = "<component name='A' requires='t:known q:unknown plain' policySets='{urn:x}p http://x/y'><implementation.java class='x.A'/></component>
 <property name='p' element='q:e'/>";
     expect![[r#"
-        2:39-48 warning S1011: the prefix `q` of `q:unknown` is bound to no namespace
+        2:39-48 warning S1011: the prefix `q` of `q:unknown` is not declared
           help: declare it in the root element: `xmlns:q="..."`, or correct it
         3:17-18 warning S2026: the property `p` of the composite is used by no component
           help: a component takes its value with `source="$p"`
-        3:29-32 warning S1011: the prefix `q` of `q:e` is bound to no namespace
+        3:29-32 warning S1011: the prefix `q` of `q:e` is not declared
           help: declare it in the root element: `xmlns:q="..."`, or correct it
     "#]]
     .assert_eq(&found(inside, &[], true));

@@ -100,39 +100,39 @@ fn addresses_of_message_brokers() {
     .concat();
     expect![[r#"
         localhost
-        3:22-31 error S4005: `localhost` is no address of a message broker: there is no port
+        3:22-31 error S4005: `localhost` is not an address of a message broker: there is no port
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         localhost:
-        3:31-32 error S4005: `localhost:` is no address of a message broker: there is no port
+        3:31-32 error S4005: `localhost:` is not an address of a message broker: there is no port
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         :61616
-        3:22-28 error S4005: `:61616` is no address of a message broker: there is no host
+        3:22-28 error S4005: `:61616` is not an address of a message broker: there is no host
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         localhost:0
-        3:32-33 error S4005: `localhost:0` is no address of a message broker: port 0 is outside 1 to 65535
+        3:32-33 error S4005: `localhost:0` is not an address of a message broker: port 0 is outside 1 to 65535
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         localhost:65536
-        3:32-37 error S4005: `localhost:65536` is no address of a message broker: port 65536 is outside 1 to 65535
+        3:32-37 error S4005: `localhost:65536` is not an address of a message broker: port 65536 is outside 1 to 65535
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         localhost:6161x
-        3:32-37 error S4005: `localhost:6161x` is no address of a message broker: `6161x` is no port
+        3:32-37 error S4005: `localhost:6161x` is not an address of a message broker: `6161x` is not a port
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         tcp://localhost:61616
-        3:22-28 error S4005: `tcp://localhost:61616` is no address of a message broker: `tcp://` is more than host and port
+        3:22-28 error S4005: `tcp://localhost:61616` is not an address of a message broker: found `tcp://` before host and port
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
           fix: remove it [3:22-28 ""]
         ::1:61616
-        3:22-25 error S4005: `::1:61616` is no address of a message broker: `::1` is no host: an IPv6 address stands in brackets
+        3:22-25 error S4005: `::1:61616` is not an address of a message broker: `::1` is not a host: an IPv6 address is written in brackets
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
           fix: replace it with `[::1]` [3:22-25 "[::1]"]
         local host:1
-        3:27-28 error S4005: `local host:1` is no address of a message broker: ` ` cannot be in the name of a host
+        3:27-28 error S4005: `local host:1` is not an address of a message broker: ` ` cannot be in the name of a host
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         [::g]:1
-        3:22-27 error S4005: `[::g]:1` is no address of a message broker: `[::g]` is no IPv6 address
+        3:22-27 error S4005: `[::g]:1` is not an address of a message broker: `[::g]` is not an IPv6 address
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         localhost:+1
-        3:32-34 error S4005: `localhost:+1` is no address of a message broker: `+1` is no port
+        3:32-34 error S4005: `localhost:+1` is not an address of a message broker: `+1` is not a port
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
     "#]].assert_eq(&all);
 }
@@ -142,7 +142,7 @@ fn faults_of_other_properties_hide_none_of_these() {
     expect![[r#"
         3:24-28 error S3007: property `delay`: `soon` is not a duration: expected a duration from 0ms to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `delay`: From the start to the first due execution; the default is `0ms`
-        4:22-31 error S4005: `localhost` is no address of a message broker: there is no port
+        4:22-31 error S4005: `localhost` is not an address of a message broker: there is no port
           help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
         4:66-71 error S4004: `useJMS` is false, and component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
           help: set `useJMS` to true: without it a component cannot publish or subscribe
@@ -173,7 +173,7 @@ fn settings_that_do_not_go_together() {
           help: set `useJMS` to true: without it a component cannot publish or subscribe
     "#]].assert_eq(&robot(r#"<property name="useJMS">false</property>"#));
     expect![[r#"
-        3:27-32 warning S4007: the deadline of 150ms is behind the period of 100ms: the next execution is due before it
+        3:27-32 warning S4007: the deadline of 150ms is longer than the period of 100ms: the next execution is due before it
           2:124-127 the period
           help: a deadline is at most the period
     "#]]

@@ -67,14 +67,14 @@ fn a_property_for_one_value_has_one() {
 <property name='one'><value>1</value><value>2</value></property>
 <component name='B'><implementation.java class='x.B'/><property name='c' source='$one'/>";
     expect![[r#"
-        7:39-44 error S3011: the property `one` takes one value, and here are 2
+        7:39-44 error S3011: the property `one` allows one value, found 2
           7:23-28 the first
           help: keep one of them, or write `many="true"` where the property is declared
     "#]]
     .assert_eq(&given(wrong));
     let inner = "<component name='R'><implementation.java class='example.Robot001'/><property name='ID'>R</property><property name='period' many='true'>1</property></component>";
     expect![[r#"
-        2:130-134 error S3011: the property `period` takes one value, and is said here to take several
+        2:130-134 error S3011: the property `period` allows one value, but is declared here to allow several
           help: remove `many`
     "#]]
     .assert_eq(&faults(inner));
@@ -172,7 +172,7 @@ fn variables_have_names_that_somebody_can_set() {
         "</component><property name='n' xmlns:saoms='urn:saoms:1' saoms:env='9 bad' many='false'>2</property><component name='B'><implementation.java class='x.B'/><property name='p' source='$n'/>",
     );
     expect![[r#"
-        3:69-74 error S1011: `9 bad` is no name of an environment variable: it has letters, digits and `_`, and no digit first
+        3:69-74 error S1011: `9 bad` is not a name of an environment variable: use letters, digits and `_`, and no digit first
     "#]].assert_eq(&told);
 }
 

@@ -86,8 +86,8 @@ fn what_the_schema_of_1_1_forbids_is_told_where_it_stands() {
           replace `qualifer` with `qualifier`
         definitions.xml:4:77 [qualifier] error S1008 `qualifier` needs the attribute `name`
           add `name="..."` to it
-        definitions.xml:4:89 [component] error S1005 `component` cannot stand in `intent`
-          `intent` can hold `description`, `qualifier`
+        definitions.xml:4:89 [component] error S1005 `component` is not allowed in `intent`
+          `intent` can contain `description`, `qualifier`
         definitions.xml:5:29 [provide] error S1007 `policySet` has no attribute `provide`
           replace `provide` with `provides`
         definitions.xml:5:48 [intentMap] error S1008 `intentMap` needs the attribute `provides`
@@ -95,8 +95,8 @@ fn what_the_schema_of_1_1_forbids_is_told_where_it_stands() {
         definitions.xml:5:81 [name=''] error S1011 the attribute `name` is empty
         definitions.xml:5:103 [policySetReference] error S1008 `policySetReference` needs the attribute `name`
           add `name="..."` to it
-        definitions.xml:6:10 [intentMap] error S1005 `intentMap` cannot stand in `definitions`
-          `definitions` can hold `intent`, `policySet`, `bindingType`, `implementationType`, `externalAttachment`, `binding.*`, `documentation`
+        definitions.xml:6:10 [intentMap] error S1005 `intentMap` is not allowed in `definitions`
+          `definitions` can contain `intent`, `policySet`, `bindingType`, `implementationType`, `externalAttachment`, `binding.*`, `documentation`
         definitions.xml:6:37 [bindingType] error S1008 `bindingType` needs the attribute `type`
           add `type="..."` to it
         definitions.xml:7:81 [mayProvides] error S1007 `implementationType` has no attribute `mayProvides`
@@ -105,7 +105,7 @@ fn what_the_schema_of_1_1_forbids_is_told_where_it_stands() {
           add `attachTo="..."` to it
         definitions.xml:8:84 [binding.http] error S1004 SCA 1.1 has no element `binding.http`
           an extension is written in the namespace of the one who defined it
-          `definitions` can hold `intent`, `policySet`, `bindingType`, `implementationType`, `externalAttachment`, `binding.*`, `documentation`
+          `definitions` can contain `intent`, `policySet`, `bindingType`, `implementationType`, `externalAttachment`, `binding.*`, `documentation`
     "#]].assert_eq(&alone("definitions.xml", definitions(OASIS, inside)));
     let bare = format!("<definitions xmlns='{OASIS}'/>");
     expect![""].assert_eq(&alone("definitions.xml", bare));
@@ -135,7 +135,7 @@ fn only_files_of_sca_are_definitions() {
     "#]]
     .assert_eq(&of_folder(&[("META-INF/definitions.xml", wrong.clone())]));
     expect![[r#"
-        definitions.xml:1:2 [definitions] error S1001 `definitions` is in the namespace `http://schemas.xmlsoap.org/wsdl/`, and has to be in one of SCA
+        definitions.xml:1:2 [definitions] error S1001 `definitions` is in the namespace `http://schemas.xmlsoap.org/wsdl/`, expected one of SCA
           a file of this name holds intents and policy sets
           that is `http://docs.oasis-open.org/ns/opencsa/sca/200912` (SCA 1.1), `http://docs.oasis-open.org/ns/opencsa/sca/200903` (SCA 1.1 (draft)) or `http://www.osoa.org/xmlns/sca/1.0` (SCA 1.0)
     "#]].assert_eq(&alone("definitions.xml", foreign.clone()));

@@ -38,10 +38,10 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
           replace `composit` with `composite`
         sca-contribution.xml:2:23 [t:a] warning S2051 the contribution has no composite `t:a`
           it has none at all: is it put together from several folders?
-        sca-contribution.xml:2:28 [now] error S1012 text in `deployable`, which holds no text
+        sca-contribution.xml:2:28 [now] error S1012 unexpected text in `deployable`: it contains elements only
           remove it; comments stand between `<!--` and `-->`
-        sca-contribution.xml:2:32 [component] error S1005 `component` cannot stand in `deployable`
-          `deployable` can hold `documentation`, `extensions`
+        sca-contribution.xml:2:32 [component] error S1005 `component` is not allowed in `deployable`
+          `deployable` can contain `documentation`, `extensions`
         sca-contribution.xml:2:57 [import] error S1008 `import` needs the attribute `namespace`
           add `namespace="..."` to it
         sca-contribution.xml:2:66 [import.c] error S1008 `import.c` needs the attribute `location`
@@ -52,11 +52,11 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
           replace `pakage` with `package`
         sca-contribution.xml:3:15 [extensions] error S1006 `contribution` has a second `extensions`
         sca-contribution.xml:3:27 [deployable] error S1004 SCA 1.1 has no element `deployable`
-          `extensions` holds no elements of SCA
+          `extensions` contains no elements of SCA
         sca-contribution.xml:3:78 [location] error S1007 `export` has no attribute `location`
           `export` has the attributes `namespace`
-        sca-contribution.xml:3:93 [composite] error S1005 `composite` cannot stand in `contribution`
-          `contribution` can hold `deployable`, `import`, `import.java`, `import.resource`, `import.c`, `import.cpp`, `export`, `export.java`, `export.resource`, `export.c`, `export.cpp`, `documentation`, `extensions`
+        sca-contribution.xml:3:93 [composite] error S1005 `composite` is not allowed in `contribution`
+          `contribution` can contain `deployable`, `import`, `import.java`, `import.resource`, `import.c`, `import.cpp`, `export`, `export.java`, `export.resource`, `export.c`, `export.cpp`, `documentation`, `extensions`
         sca-contribution.xml:3:105 [imports] error S1004 SCA 1.1 has no element `imports`
           replace `imports` with `import`
     "#]].assert_eq(&alone("sca-contribution.xml", description(OASIS, inside)));
@@ -98,16 +98,16 @@ fn what_is_exported_is_there() {
     let mut files =
         vec![("sca-contribution.xml", description(OASIS, inside)), ("fleet.composite", composite("urn:airport"))];
     expect![[r#"
-        sca-contribution.xml:2:20 [urn:airprt] warning S2059 the contribution has nothing of the namespace `urn:airprt`
+        sca-contribution.xml:2:20 [urn:airprt] warning S2059 the contribution has no composite or definition in the namespace `urn:airprt`
           replace `urn:airprt` with `urn:airport`
-        sca-contribution.xml:2:52 [urn:other] warning S2059 the contribution has nothing of the namespace `urn:other`
+        sca-contribution.xml:2:52 [urn:other] warning S2059 the contribution has no composite or definition in the namespace `urn:other`
           it has `urn:airport`
     "#]]
     .assert_eq(&of_folder(&files));
     // A file of another kind may have the other one.
     files.push(("made.bpel", "<process/>".to_owned()));
     expect![[r#"
-        sca-contribution.xml:2:20 [urn:airprt] warning S2059 the contribution has nothing of the namespace `urn:airprt`
+        sca-contribution.xml:2:20 [urn:airprt] warning S2059 the contribution has no composite or definition in the namespace `urn:airprt`
           replace `urn:airprt` with `urn:airport`
     "#]]
     .assert_eq(&of_folder(&files));

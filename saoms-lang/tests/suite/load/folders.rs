@@ -62,7 +62,7 @@ fn what_is_deployable_runs_and_what_nobody_names_is_a_fleet_of_its_own() {
         lib/fleet.composite runs
         META-INF/sca-contribution.xml:2:57 [other] warning S1011 `other` does not say its namespace
           write it with a prefix of the target namespace of the composite
-        META-INF/sca-contribution.xml:2:88 [u:fleet] warning S1011 the prefix `u` is bound to no namespace
+        META-INF/sca-contribution.xml:2:88 [u:fleet] warning S1011 the prefix `u` is not declared
           write it with a prefix of the target namespace of the composite
     "#]]
     .assert_eq(&fleets(&files));
@@ -96,18 +96,18 @@ fn what_is_wrong_with_a_contribution_is_told() {
           `export` has the attributes `namespace`
         sca-contribution.xml:9:2 [imports] error S1004 SCA 1.1 has no element `imports`
           replace `imports` with `import`
-        sca-contribution.xml:10:1 [text] error S1012 text in `contribution`, which holds no text
+        sca-contribution.xml:10:1 [text] error S1012 unexpected text in `contribution`: it contains elements only
           remove it; comments stand between `<!--` and `-->`
         sca-contribution.xml:10:6 [import.resource] error S1008 `import.resource` needs the attribute `uri`
           add `uri="..."` to it
-        sca-contribution.xml:11:43 [component] error S1005 `component` cannot stand in `contribution`
-          `contribution` can hold `deployable`, `import`, `import.java`, `import.resource`, `import.c`, `import.cpp`, `export`, `export.java`, `export.resource`, `export.c`, `export.cpp`, `documentation`, `extensions`
+        sca-contribution.xml:11:43 [component] error S1005 `component` is not allowed in `contribution`
+          `contribution` can contain `deployable`, `import`, `import.java`, `import.resource`, `import.c`, `import.cpp`, `export`, `export.java`, `export.resource`, `export.c`, `export.cpp`, `documentation`, `extensions`
     "#]].assert_eq(&one(
         "\n<deployable composite='x:flet' xmlns:x='urn:a'/>\n<deployable composite='x:hall' xmlns:x='urn:a'/>\n<deployable composite='x:hall' xmlns:x='urn:c'/>\n<deployable/>\n<deployable composit='fleet'/>\n<import namespace=''/>\n<export namespace='urn:a' locaton='x'/>\n<imports/>\ntext<import.resource/>\n<import.sdo x='1'/><x:y xmlns:x='urn:x'/><component/>",
     ));
     expect![[r#"
         fleet.composite
-        sca-contribution.xml:1:2 [contribution] error S1001 `contribution` is in the namespace `urn:c`, and has to be in one of SCA
+        sca-contribution.xml:1:2 [contribution] error S1001 `contribution` is in the namespace `urn:c`, expected one of SCA
           a file of this name says what a contribution runs, imports and exports
           that is `http://docs.oasis-open.org/ns/opencsa/sca/200912` (SCA 1.1), `http://docs.oasis-open.org/ns/opencsa/sca/200903` (SCA 1.1 (draft)) or `http://www.osoa.org/xmlns/sca/1.0` (SCA 1.0)
         a/sca-contribution.xml:2:4 [</b>] error S0102 `</b>` found where `</a>` is expected

@@ -257,7 +257,7 @@ fn what_a_composite_names_is_no_pipe_and_no_device() {
     assert!(matches!(all.link(all.composites()[0].includes[0].origin), Some(Link::Missing(_))));
     let found: Vec<_> =
         diagnostics.iter().map(|one| (one.code.id, sources.snippet(one.location), one.message.as_str())).collect();
-    let message = "the file cannot be read: it is no regular file";
+    let message = "the file cannot be read: it is not a regular file";
     assert_eq!(found, ["pipe", "/dev/zero", "pipe"].map(|at| ("S0003", at, message)));
 }
 
@@ -273,7 +273,7 @@ fn files_that_are_no_composites_are_named_with_the_reason() {
     ];
     // What is called as the name is meant by it, and says itself what is wrong.
     expect![[r#"
-        fleet.composite: b:lounge is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` is no composite: the file is in UTF-16LE, and UTF-8 is expected; `more.composite` is no composite: the file is empty; `other.composite` is no composite: the root element is `contribution` and has to be `composite`
+        fleet.composite: b:lounge is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` is not a composite: the file is in UTF-16LE, expected UTF-8; `more.composite` is not a composite: the file is empty; `other.composite` is not a composite: the root element is `contribution`, expected `composite`
         fleet.composite: b:hall is faulty
         fleet.composite: a:gate -> deep/gate.composite
         hall.composite S0007

@@ -130,12 +130,12 @@ fn a_type_whose_prefix_means_nothing_is_told() {
         of(&format!("{property}\n{}", robot("R", "<property name=\"number\" source=\"$n\"/>")))
     };
     expect![[r#"
-        2:26-33 warning S2050: the prefix `xsd` of this type is bound to no namespace
+        2:26-33 warning S2050: the prefix `xsd` of this type is not declared
           fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
         R (example.Robot) ID=Text("R") number=Integer(3) gps->
     "#]].assert_eq(&with("xsd:int"));
     expect![[r#"
-        2:26-35 warning S2050: the prefix `my` of this type is bound to no namespace
+        2:26-35 warning S2050: the prefix `my` of this type is not declared
           help: declare it: `xmlns:my="..."`
         R (example.Robot) ID=Text("R") number=Integer(3) gps->
     "#]]
@@ -290,19 +290,19 @@ fn an_expression_that_nobody_reads_is_told() {
         ))
     };
     expect![[r#"
-        3:89-93 warning S3017: `${n}` is taken as it stands: `${...}` is for components with a `saoms:count`
+        3:89-93 warning S3017: `${...}` in `${n}` is not evaluated: the component has no `saoms:count`
           help: write `source="$n"` for the value of the property `n`
         R (example.Reader) title=Text("${n}")
     "#]]
     .assert_eq(&with("${n}"));
     expect![[r#"
-        3:89-104 warning S3017: `reader ${n + 1}` is taken as it stands: `${...}` is for components with a `saoms:count`
+        3:89-104 warning S3017: `${...}` in `reader ${n + 1}` is not evaluated: the component has no `saoms:count`
           help: give the component a `saoms:count`, or write the value itself
         R (example.Reader) title=Text("reader ${n + 1}")
     "#]]
     .assert_eq(&with("reader ${n + 1}"));
     expect![[r#"
-        3:89-97 warning S3017: `${index}` is taken as it stands: `${...}` is for components with a `saoms:count`
+        3:89-97 warning S3017: `${...}` in `${index}` is not evaluated: the component has no `saoms:count`
           help: give the component a `saoms:count`, or write the value itself
         R (example.Reader) title=Text("${index}")
     "#]]

@@ -115,7 +115,7 @@ fn a_count_that_is_none_is_an_error() {
         outcome(&[&part("c", around, &robot)], &[])
     };
     expect![[r#"
-        1:127-138 error S1013: what is in the namespace `urn:saoms:0` is passed over: it is nearly `urn:saoms:1`
+        1:127-138 error S1013: unknown namespace `urn:saoms:0`: did you mean `urn:saoms:1`?
           help: `s:count` in it says how many replicas there are, and they cannot be made without
           fix: replace it with `urn:saoms:1` [1:127-138 "urn:saoms:1"]
     "#]]
@@ -161,7 +161,7 @@ fn a_misspelt_root_is_read_on() {
     let text = fleet(&format!("{GPS}\n{GPS}"));
     let end = "</composite>";
     expect![[r#"
-        1:2-10 error S1001: the root element is `compsite` and has to be `composite`
+        1:2-10 error S1001: the root element is `compsite`, expected `composite`
           fix: replace `compsite` with `composite` [1:2-10 "composite"]
         3:18-19 error S2002: there are two components `G`
           2:18-19 the first
@@ -169,7 +169,7 @@ fn a_misspelt_root_is_read_on() {
     "#]]
     .assert_eq(&faults_of(&[&text.replace("<composite", "<compsite")], &[]));
     expect![[r#"
-        1:2-10 error S1001: the root element is `compsite` and has to be `composite`
+        1:2-10 error S1001: the root element is `compsite`, expected `composite`
           fix: replace `compsite` with `composite` [1:2-10 "composite"] [4:3-11 "composite"]
         3:18-19 error S2002: there are two components `G`
           2:18-19 the first
@@ -201,10 +201,10 @@ fn a_value_beside_a_source_counts_for_nothing() {
     expect![[r#"
         4:44-45 warning S3012: the property `number` is given a value beside its `source`
           4:33-35 this counts
-          help: this value counts for nothing: keep one of them
+          help: this value is ignored: keep one of them
         5:36-37 warning S3012: the property `delay` is given a value beside its `source`
           5:32-34 this counts
-          help: this value counts for nothing: keep one of them
+          help: this value is ignored: keep one of them
         R (example.Robot) ID=Text("R") number=Integer(5) awake=Boolean(true) gps->
     "#]]
     .assert_eq(&of(&inside("5")));
@@ -222,12 +222,12 @@ fn a_table_between_other_separators_is_told_once() {
     let with = |table: &str| checked(inside, &[("r.csv", table.as_bytes())], 1 << 20).1;
     expect![[r#"
         r.csv:1:6-7 error S2047: the values of this table stand between `;`, and have to stand between commas
-          help: save it as comma-separated values; a value that holds a comma stands between two `"`
+          help: save it as comma-separated values; a value that contains a comma is written between two `"`
     "#]]
     .assert_eq(&with("index;delay;awake\n1;60;\n2;;true\n"));
     expect![[r#"
         r.csv:1:7-8 error S2047: the values of this table stand between tabs, and have to stand between commas
-          help: save it as comma-separated values; a value that holds a comma stands between two `"`
+          help: save it as comma-separated values; a value that contains a comma is written between two `"`
     "#]]
     .assert_eq(&with("\u{feff}\"name\"\tdelay\nR1\t60\n"));
     assert_eq!(with("index\n1\n"), "");
@@ -239,12 +239,12 @@ fn quotes_of_word_processors_are_told() {
         faults_of(&[&fleet(&format!("{component}<implementation.java class=\"example.Gps\"/></component>"))], &[])
     };
     expect![[r#"
-        2:17-20 error S0105: `“` is no quote of XML: values stand between two `"`
+        2:17-20 error S0105: `“` is not a quote of XML: values are written between two `"`
           fix: replace it with `"G"` [2:17-20 "\"G\""]
     "#]]
     .assert_eq(&with("<component name=“G”>"));
     expect![[r#"
-        2:17-20 error S0105: `„` is no quote of XML: values stand between two `"`
+        2:17-20 error S0105: `„` is not a quote of XML: values are written between two `"`
           fix: replace it with `"G"` [2:17-20 "\"G\""]
     "#]]
     .assert_eq(&with("<component name=„G“>"));
@@ -255,7 +255,7 @@ fn quotes_of_word_processors_are_told() {
     "#]]
     .assert_eq(&with("<component name=\"G”>"));
     expect![[r#"
-        2:17-20 error S0105: `“` is no quote of XML: values stand between two `"`
+        2:17-20 error S0105: `“` is not a quote of XML: values are written between two `"`
           fix: replace it with `"G"` [2:17-20 "\"G\""]
     "#]]
     .assert_eq(&with("<component name=“G\" autowire=\"true\">"));
@@ -331,7 +331,7 @@ fn words_of_other_languages_are_told_once() {
     "#]]
     .assert_eq(&with(class, "<implementation class=\"example.Robot\"/>"));
     expect![[r#"
-        3:42-55 error S1012: text in `implementation.java`, which holds no text
+        3:42-55 error S1012: unexpected text in `implementation.java`: it contains elements only
           help: the class is named by the attribute `class`
     "#]]
     .assert_eq(&with(class, "<implementation.java>example.Robot</implementation.java>"));
@@ -351,7 +351,7 @@ fn words_of_other_languages_are_told_once() {
     "#]]
     .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<service name=\"gps\" target=\"G\"/>"));
     expect![[r#"
-        4:59-60 error S1012: text in `reference`, which holds no text
+        4:59-60 error S1012: unexpected text in `reference`: it contains elements only
           help: the component that it calls is named by the attribute `target`
     "#]]
     .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<reference name=\"gps\">G</reference>"));

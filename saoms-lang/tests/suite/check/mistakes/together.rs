@@ -121,7 +121,7 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     expect![[r#"
         3:26-30 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:26-30 "index"]
-        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
@@ -137,7 +137,7 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     expect![[r#"
         3:36-40 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:36-40 "index"]
-        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
@@ -153,7 +153,7 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     expect![[r#"
         3:23-27 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:23-27 "index"]
-        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
@@ -168,7 +168,7 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     let by_table = halls("saoms:overrides=\"none.csv\"", "");
     expect![[r#"
         2:65-73 error S0003: the file was not read
-        hall:3:18-27 error S2018: reference `gps` of component `C1` leads to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
@@ -285,7 +285,7 @@ fn too_many_targets_of_a_reference_around_another_are_told_where_they_are() {
     let inside = "<component name=\"U\"><implementation.composite name=\"t:frame\"/><reference name=\"pos\" target=\"A B\"/></component>
 <component name=\"A\"><implementation.java class=\"example.Gps\"/></component><component name=\"B\"><implementation.java class=\"example.Gps\"/></component>";
     expect![[r#"
-        2:95-96 error S2017: reference `pos` of component `U` takes one target, and here are 2
+        2:95-96 error S2017: reference `pos` of component `U` allows one target, found 2
           2:93-94 the first
           help: keep one of them
     "#]]
@@ -383,16 +383,16 @@ fn slips_that_many_make_have_hints() {
           fix: swap `source` and `target` [4:15-25 "N/wheels"] [4:35-43 "A/position"]
         4:17-25 error S2015: service `position` of component `A` has the interface `example.Positions`, and the reference needs `example.Wheels`
           help: it offers `position` (example.Positions)
-        5:42-46 error S2045: an expression stands here by itself, without `${` and `}`
+        5:42-46 error S2045: write the expression here without `${` and `}`
           fix: replace `${3}` with `3` [5:42-46 "3"]
         6:22-43 error S1004: SCA 1.1 has no element `implementation.python`
           help: an extension is written in the namespace of the one who defined it
-          help: `component` can hold `implementation.*`, `property`, `service`, `reference`, `requires`, `policySetAttachment`, `documentation`, `extensions`
+          help: `component` can contain `implementation.*`, `property`, `service`, `reference`, `requires`, `policySetAttachment`, `documentation`, `extensions`
         7:22-40 error S1004: SCA 1.1 has no element `implementation.jva`
           fix: replace `implementation.jva` with `implementation.java` [7:22-40 "implementation.java"]
         8:53-65 error S2031: there is no composite `in.composite` in the namespace `urn:t`
           help: it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file
-          help: name the file of the composite beside this one
+          help: give the file of that composite, too, beside this one
     "#]].assert_eq(&of(
         "<component name=\"A\"><implementation.java class=\"example.Gps\"/></component>
 <component name=\"N\"><implementation.java class=\"example.Navigator\"/></component>
@@ -425,7 +425,7 @@ fn a_damaged_component_hides_unknown_ones_only_where_its_name_is_unreadable() {
     "#]]
     .assert_eq(&with_tag("<component name=\"G\"><servce name=x/>"));
     expect![[r#"
-        2:21-24 error S0112: the prefix `odd` is bound to no namespace
+        2:21-24 error S0112: the prefix `odd` is not declared
           help: declare it, as `xmlns:odd="..."`, in this element or in one around it
         3:99-106 error S2011: there is no component `Nowhere`
           help: the components are `G`

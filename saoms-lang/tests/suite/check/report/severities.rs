@@ -151,7 +151,7 @@ fn options_have_reasons_too() {
 fn an_option_that_a_composite_overrules_says_so() {
     let error = clocks("", &severity("S4001", "error"));
     expect![[r#"
-        --severity:1:1-6 warning S2049: S4001 is not set to `allow`: a composite sets it to `error`, and counts first
+        --severity:1:1-6 warning S2049: S4001 is not set to `allow`: a composite sets it to `error`, which takes precedence
           4:23-28 set here
           help: change it there, or leave the option out
         3:85-86 error S4001: components `A` and `B` share the ID `C`
@@ -168,7 +168,7 @@ fn an_option_that_a_composite_overrules_says_so() {
 fn an_option_that_asks_for_more_than_a_composite_says_so_too() {
     let told = of(&clocks("", &severity("S4001", "allow")), &["S4001=error"]).told;
     expect![[r#"
-        --severity:1:1-6 note S2049: S4001 is not set to `error`: a composite sets it to `allow`, and counts first
+        --severity:1:1-6 note S2049: S4001 is not set to `error`: a composite sets it to `allow`, which takes precedence
           4:23-28 set here
           help: change it there, or leave the option out
     "#]]
@@ -244,7 +244,7 @@ fn what_is_wrong_with_severities_is_found() {
           fix: replace `S400` with `S4001` [2:23-27 "S4001"]
         2:77-92 error S2048: there is no code `unused-property`
           fix: replace `unused-property` with `S2026` [2:77-92 "S2026"]
-        2:101-105 error S1011: `level` is `deny` and has to be `allow`, `note`, `warning` or `error`
+        2:101-105 error S1011: `level` is `deny`, expected `allow`, `note`, `warning` or `error`
           fix: replace it with `error` [2:101-105 "error"]
         3:2-16 error S1008: `saoms:severity` needs the attribute `reason`
           help: add `reason="..."` to it
@@ -311,7 +311,7 @@ fn severities_hold_for_what_is_only_counted() {
     };
     assert!(!found(&[&fleet(&text)], &[]).runs);
     let notes = all("note");
-    assert!(notes.runs && notes.told.contains("note S0008: 200 more of the kind S1007"), "{}", notes.told);
+    assert!(notes.runs && notes.told.contains("note S0008: 200 more of S1007"), "{}", notes.told);
     assert!(!notes.told.contains(" error "), "{}", notes.told);
     let allowed = all("allow");
     assert!(allowed.runs && !allowed.told.contains("S1007"), "{}", allowed.told);
@@ -333,11 +333,11 @@ fn an_element_of_saoms_that_stands_elsewhere_says_where_it_can() {
     let inside = severity("S2026", "allow");
     let looping = "<saoms:loop name=\"x\"/><saoms:interface.rust interface=\"y\"/>";
     expect![[r#"
-        2:21-35 error S1005: `saoms:severity` cannot stand in `property`
+        2:21-35 error S1005: `saoms:severity` is not allowed in `property`
           help: it can stand in `composite`, `component`, `service`, `reference`, `wire` and `include`
-        2:93-103 error S1005: `saoms:loop` cannot stand in `composite`
+        2:93-103 error S1005: `saoms:loop` is not allowed in `composite`
           help: it can stand in `component`
-        2:115-135 error S1005: `saoms:interface.rust` cannot stand in `composite`
+        2:115-135 error S1005: `saoms:interface.rust` is not allowed in `composite`
           help: it can stand in `service` and `reference`
     "#]]
     .assert_eq(&of(&format!("<property name=\"p\">{inside}</property>{looping}"), &[]).told);

@@ -42,12 +42,12 @@ fn conditions_take_away_what_is_checked_all_the_same() {
           help: `number`: The number of the robot
         3:178-182 error S3004: class `example.Robot` has no property `sped`
           fix: replace `sped` with `speed` [3:178-182 "speed"]
-        4:31-35 error S2045: here is the text `north`, and a condition is expected
+        4:31-35 error S2045: found the text `north`, expected a condition
           2:23-28 `site` is this
           help: compare it with something, as in `robots > 10`
         5:31-40 error S2045: the text `north` cannot be compared with the number 3
           2:23-28 `site` is this
-          help: texts stand between two `'`, numbers and `true` and `false` do not
+          help: texts are written between two `'`, numbers, `true` and `false` without
         6:35-36 error S2045: there is no `=`
           fix: replace `=` with `==` [6:35-36 "=="]
         7:31-36 error S2045: the composite has no property `index`
@@ -90,7 +90,7 @@ fn a_text_without_quotes_is_told_as_one() {
           2:68-79 the type
           fix: replace `flase` with `false` [2:126-131 "false"]
         3:39-44 error S2045: the composite has no property `south`
-          help: a text stands between two `'`, as `'south'`; its properties are `night` and `site`
+          help: a text is written between two `'`, as `'south'`; its properties are `night` and `site`
         4:39-44 error S2045: the composite has no property `sight`
           fix: replace `sight` with `night` [4:39-44 "night"]
     "#]].assert_eq(&of(

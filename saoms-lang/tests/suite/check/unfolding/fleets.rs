@@ -37,7 +37,7 @@ fn replicas_have_their_index_in_names_values_and_targets() {
     "#]].assert_eq(&of(ROBOTS, &["robots=1"]));
     expect![""].assert_eq(&of(ROBOTS, &["robots=0"]));
     expect![[r#"
-        3:104-125 warning S3017: `$${index} of ${index}` is taken as it stands: `${...}` is for components with a `saoms:count`
+        3:104-125 warning S3017: `${...}` in `$${index} of ${index}` is not evaluated: the component has no `saoms:count`
           help: give the component a `saoms:count`, or write the value itself
         Gps-2 (example.Gps) other->
         Gps-1 (example.Gps) other->
@@ -159,14 +159,14 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
         6:42-46 error S2046: 200000 replicas are more than a fleet can have
           2:98-104 `many` is this
           help: a fleet has at most 100000 replicas
-        7:42-46 error S2045: here is the text `north`, and a whole number is expected
+        7:42-46 error S2045: found the text `north`, expected a whole number
           2:23-28 `site` is this
           help: `docs/fleets.md` says what expressions are
         8:21-26 error S2045: the composite has no property `inedx` (in `F${inedx}`, index 1, and in 1 more)
           fix: replace `inedx` with `index` [8:21-26 "index"]
         9:18-27 error S3006: component `G-1` lacks the property `number` (index -1)
           help: add `<property name="number">...</property>`: a whole number from 1 to 99
-        9:131-136 error S2045: `1` is divided by zero (in `G0`, index 0)
+        9:131-136 error S2045: division by zero: `index` is 0 (in `G0`, index 0)
           help: `docs/fleets.md` says what expressions are
         10:18-31 error S2002: there are two components `H1` (index 3)
           help: give each its own name
@@ -250,7 +250,7 @@ fn what_is_said_of_many_replicas_is_told_once() {
     expect![[r#"
         3:21-34 error S3013: components `R2` and `R3` have the same `ID` `R1` (index 3)
           help: every robot needs its own
-          help: what stands here comes to the same for several replicas: `${index}` is different for each
+          help: this value is the same for several replicas: `${index}` is different for each
     "#]].assert_eq(&of(
         r#"<component name="R${index}" saoms:count="3"><implementation.java class="example.Robot"/>
 <property name="ID">R${index / 2}</property><property name="period">1</property><property name="number">${index % 2 + 1}</property></component>"#,
@@ -302,11 +302,11 @@ fn tables_say_what_differs() {
     "#]]
     .assert_eq(&found(""));
     expect![[r#"
-        robots.csv:1:1-6 error S2047: the first column is `robot`, and has to be `index` or `name`
+        robots.csv:1:1-6 error S2047: the first column is `robot`, expected `index` or `name`
           help: it says which replica a line is about, the other columns are properties
         robots.csv:1:14-20 error S2047: there are two columns `colour`
           robots.csv:1:7-13 the first
-          help: make one of them
+          help: merge them into one
         robots.csv:1:21-21 error S2047: a column without a name
           help: the first line names the property of each column
     "#]]
@@ -319,9 +319,9 @@ fn tables_say_what_differs() {
           help: the indices go from 1 to 4
         robots.csv:4:1-2 error S2047: there are two lines about the replica `1`
           robots.csv:2:1-2 the first
-          help: make one of them
+          help: merge them into one
         robots.csv:4:9-10 error S2047: a line with 4 values, and there are 3 columns
-          help: a value that holds a comma stands between two `"`
+          help: a value that contains a comma is written between two `"`
         robots.csv:5:1-2 error S2047: there is no replica `x`
           help: the indices go from 1 to 4
         robots.csv:6:8-9 error S2047: `x` behind a closing `"`
@@ -384,7 +384,7 @@ fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
         --set:1:8-12 error S2042: the property `robots` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
           2:31-38 the type
           help: change the value, or the type
-        2:31-38 warning S2050: the prefix `xsd` of this type is bound to no namespace
+        2:31-38 warning S2050: the prefix `xsd` of this type is not declared
           fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
         2:92-99 error S2042: the property `day` is of the type `xsd:boolean`: found `perhaps`, expected `true` or `false`
           2:79-90 the type
@@ -397,7 +397,7 @@ fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
 fn groups_that_call_groups_have_a_limit() {
     let group = r#"<component name="Gps${index}" saoms:count="1100"><implementation.java class="example.Gps"/><reference name="other" target="Gps*"/></component>"#;
     let found = of(group, &[]);
-    let limit = "error S2035: groups of replicas come to more than 1000000 ends of wires";
+    let limit = "error S2035: groups of replicas make more than 1000000 ends of wires";
     assert_eq!(found.matches(limit).count(), 1, "{found}");
 }
 

@@ -80,14 +80,14 @@ fn includes_that_cannot_be_say_so() {
           more:1:128-132 said here
           help: give both composites the same `local`
         3:16-21 error S2030: there is no composite `mor` in the namespace `urn:t`
-          help: name the file of the composite beside this one
+          help: give the file of that composite, too, beside this one
           fix: replace `t:mor` with `t:more` [3:16-21 "t:more"]
         4:16-22 error S2033: the composite `more` is included twice
           help: remove one of the includes: all of its components are there already
         5:16-19 error S2030: there is no composite `x`
-          help: the prefix `u` is bound to no namespace
-          help: name the file of the composite beside this one
-        6:16-23 error S2032: composites hold each other in a circle: `fleet` -> `fleet`
+          help: the prefix `u` is not declared
+          help: give the file of that composite, too, beside this one
+        6:16-23 error S2032: composites contain each other in a circle: `fleet` -> `fleet`
           help: a composite cannot be a part of itself: remove one of these
         7:18-19 error S2002: there are two components `A`
           more:2:18-19 the first
@@ -95,7 +95,7 @@ fn includes_that_cannot_be_say_so() {
         more:2:90-95 warning S2030: `fleet` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
           1:115-120 this one
           fix: replace `fleet` with `t:fleet` [more:2:90-95 "t:fleet"]
-        more:2:90-95 error S2032: composites hold each other in a circle: `fleet` -> `more` -> `fleet`
+        more:2:90-95 error S2032: composites contain each other in a circle: `fleet` -> `more` -> `fleet`
           2:16-22 through this
           help: a composite cannot be a part of itself: remove one of these
     "#]]
@@ -145,7 +145,7 @@ fn faults_of_an_inner_composite_are_told_once_and_those_of_its_users_where_they_
           fix: replace `driv` with `drive` [3:16-20 "drive"]
         3:40-44 error S2006: composite `robot` has no reference `when`
           help: its references are `where`
-        3:115-119 error S2008: the multiplicity of `where` is `0..1` in composite `robot`: `1..n` does not narrow it
+        3:115-119 error S2008: the multiplicity `1..n` of `where` is wider than `0..1` in composite `robot`
           help: it can be `0..1` or `1..1`
         4:18-21 error S2025: component `two` has to give the property `id` of its composite a value
           robot:2:54-56 declared here, without a value
@@ -156,7 +156,7 @@ fn faults_of_an_inner_composite_are_told_once_and_those_of_its_users_where_they_
           fix: replace `driv` with `drive` [5:16-20 "drive"]
         5:40-44 error S2006: composite `robot` has no reference `when`
           help: its references are `where`
-        5:115-119 error S2008: the multiplicity of `where` is `0..1` in composite `robot`: `1..n` does not narrow it
+        5:115-119 error S2008: the multiplicity `1..n` of `where` is wider than `0..1` in composite `robot`
           help: it can be `0..1` or `1..1`
         robot:3:38-41 error S2021: component `Robot` has no service `mov`
           fix: replace `mov` with `move` [robot:3:38-41 "move"]
@@ -226,9 +226,9 @@ fn references_are_wired_from_outside_through_every_level() {
         .replace(" target=\"hall/a hall/b\"", " target=\"hall\"")
         .replace("<reference name=\"gps\" target=\"gps\"/>", "");
     expect![[r#"
-        2:18-22 error S2018: reference `where` of component `hall` leads to no service
+        2:18-22 error S2018: reference `where` of component `hall` is wired to no service
           help: give it a target with the interface `example.Positions`: `<reference name="where" target="..."/>`
-        4:18-22 error S2018: reference `gps` of component `band` leads to no service
+        4:18-22 error S2018: reference `gps` of component `band` is wired to no service
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         4:95-99 error S2014: component `hall` has several services with the interface `example.Wheels`
           help: name one of `a` and `b`: `hall/...`
@@ -360,7 +360,7 @@ fn what_is_taken_as_given_has_no_fault_of_its_own() {
         2:90-91 error S2024: the composite has no property `x`
           help: declare it: `<property name="...">...</property>` in the composite
         3:53-59 warning S2031: there is no composite `else` in the namespace `urn:t`
-          help: name the file of the composite beside this one
+          help: give the file of that composite, too, beside this one
         6:30-31 warning S2011: there is no component `D` in these composites
           help: the components are `A`, `C` and `N`
           help: it is taken as given: another composite of the domain may have it
@@ -382,7 +382,7 @@ fn types_of_a_property_and_of_what_gives_its_value_fit() {
     expect![[r#"
         3:90-99 error S3007: the property `size` is of the type `x:boolean`, and of `x:int` where it is declared
           hall:2:29-34 where it is declared
-          help: leave `type` out: that of the declaration holds
+          help: leave `type` out: that of the declaration is used
         3:109-113 error S3007: the property `size` is of the type `x:boolean`, and of `x:string` where its value comes from
           3:90-99 its type
           2:28-36 where its value comes from
@@ -459,7 +459,7 @@ fn a_name_that_means_another_namespace_than_it_leads_to_says_so() {
         4:53-57 warning S2031: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
           hall:1:115-119 this one
           fix: replace `hall` with `t:hall` [4:53-57 "t:hall"]
-        5:53-59 warning S2031: the prefix `x` is bound to no namespace: that of `urn:t` is taken
+        5:53-59 warning S2031: the prefix `x` is not declared: that of `urn:t` is taken
           hall:1:115-119 this one
           fix: replace `x:hall` with `t:hall` [5:53-59 "t:hall"]
         yard:1:2-11 error S1009: `composite` has no `targetNamespace`

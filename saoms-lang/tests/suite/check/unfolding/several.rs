@@ -49,7 +49,7 @@ fn expressions_inside_of_composites_take_what_sources_lead_to() {
     "#]]
     .assert_eq(&both("$halls/hall[@id='b']/count", "$halls/hall[1]/open"));
     expect![[r#"
-        3:96-114 error S2023: `count($halls/hall)` is no path from a property
+        3:96-114 error S2023: `count($halls/hall)` is not a path from a property
           help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
     "#]]
     .assert_eq(&both("count($halls/hall)", "$halls/hall[count=2]/open"));

@@ -103,7 +103,7 @@ fn a_name_of_a_site_has_no_blanks_and_no_empty_parts() {
         let fleet =
             around("fleet", &site("N", "hall").replace("saoms:site=\"N\"", &format!("saoms:site=\"{written}\"")));
         let found = topics(&[&fleet, &hall("", "")]);
-        assert!(found.contains(&format!("error S1011: `{wrong}` is no name of a site")), "{found}");
+        assert!(found.contains(&format!("error S1011: `{wrong}` is not a name of a site")), "{found}");
     }
     let fleet = around("fleet", &site("N", "hall").replace("saoms:site=\"N\"", "saoms:site=\"${nowhere}\""));
     expect![[r#"

@@ -40,7 +40,7 @@ fn values_come_from_the_environment_unless_somebody_gives_one() {
     .assert_eq(&found(&[("ROBOTS", "3")], &["robots=2"]));
     expect![[r#"
         None
-        3:42-48 error S2045: here is the text `many`, and a whole number is expected
+        3:42-48 error S2045: found the text `many`, expected a whole number
           environment:1:8-12 `robots` is this
           help: `docs/fleets.md` says what expressions are
         environment:1:7-8 error S3008: property `speed`: `9` is out of range: expected a number from 0.0 to 2.5 [m/s] (in `R1`, index 1)

@@ -89,11 +89,11 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
         3:30-38 error S0001: there is no such file
           help: it is looked for as `sped.txt`
           help: there is `speed.txt`
-        4:30-35 error S0002: a directory, where a file is expected
-        5:31-37 error S0007: the byte 0xE9 here is no UTF-8
+        4:30-35 error S0002: found a directory, expected a file
+        5:31-37 error S0007: the byte 0xE9 is not valid UTF-8
           help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`; until then nothing of the file is checked
           help: it is in line 1, column 2 of `colour`
-        6:30-35 error S0006: the file is a program or library, and no text
+        6:30-35 error S0006: the file is a program or library, not text
           help: the value of a property is a text in UTF-8
         7:30-35 error S3012: the property `grace` is given a value in two ways
           7:37-41 the other one

@@ -125,7 +125,7 @@ fn a_variable_counts_where_a_component_gives_nothing() {
     expect![[r#"
         2:17-24 warning S2026: the property `nothing` of the composite is used by no component
           help: a component takes its value with `source="$nothing"`
-        hall:3:42-43 error S2045: here is the text `x`, and a whole number is expected
+        hall:3:42-43 error S2045: found the text `x`, expected a whole number
           environment:1:3-4 `n` is this
           help: `docs/fleets.md` says what expressions are
         environment:1:3-4 error S3007: property `number`: `x` is not a whole number: expected a whole number from 1 to 99

@@ -29,7 +29,7 @@ fn sources_lead_to_composite_properties() {
         3:55-58 error S3008: property `number`: `300` is out of range: expected a whole number from 1 to 99
           10:33-47 used here as `number`
           help: `number`: The number of the robot
-        6:17-21 error S2025: the property `must` of the composite has to be given a value
+        6:17-21 error S2025: the property `must` of the composite needs a value
           help: write it in the file, or give `--set must=...`
         7:17-22 error S2003: the composite has two properties `speed`
           2:17-22 the first
@@ -40,11 +40,11 @@ fn sources_lead_to_composite_properties() {
           help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         13:33-37 error S2024: the composite has no property `sped`
           fix: replace `sped` with `speed` [13:33-37 "speed"]
-        14:32-37 error S2023: `speed` names no property of the composite
+        14:32-37 error S2023: `speed` does not name a property of the composite
           help: write `$name`, or `$name/part` for a part of a complex property
           fix: insert `$` [14:32-37 "$speed"]
         15:38-40 error S2023: the property has a simple value: there are no parts in it
-        16:33-35 error S2023: `/x` names no property of the composite
+        16:33-35 error S2023: `/x` does not name a property of the composite
           help: write `$name`, or `$name/part` for a part of a complex property
         19:33-41 error S3006: the property `period` has no value: its source has none
           5:17-24 declared here, without a value
@@ -89,7 +89,7 @@ fn settings_take_the_place_of_composite_properties() {
         --set:1:1-6 error S2028: `speed` is set twice
           --set:1:1-6 first here
           help: keep one of them
-        --set:1:1-6 error S2027: `speed` sets nothing: there is no `=`
+        --set:1:1-6 error S2027: `speed` is not a setting: `=` is missing
           help: write `--set NAME=VALUE` with the name of a composite property
         --set:1:1-3 error S2027: there is no name before the `=`
           help: write `--set NAME=VALUE` with the name of a composite property
@@ -237,13 +237,13 @@ fn a_value_that_a_component_has_to_give_is_awaited_of_one_that_is_not_seen() {
         found.map(|one| shown(one, &sources)).collect::<String>()
     };
     expect![[r#"
-        2:17-21 warning S2025: the property `pace` of the composite has to be given a value
+        2:17-21 warning S2025: the property `pace` of the composite needs a value
           help: write it in the file, or give `--set pace=...`
           help: as an implementation, it takes the value that its component gives it
     "#]]
     .assert_eq(&found(&[&inner], true));
     expect![[r#"
-        2:17-21 error S2025: the property `pace` of the composite has to be given a value
+        2:17-21 error S2025: the property `pace` of the composite needs a value
           help: write it in the file, or give `--set pace=...`
     "#]]
     .assert_eq(&found(&[&inner], false));
@@ -281,7 +281,7 @@ fn sources_of_many_values_have_a_limit() {
         "<value>1</value>".repeat(41_000)
     );
     let found = faults(&inside);
-    let limit = "error S2035: sources come to more than 4000000 values";
+    let limit = "error S2035: sources make more than 4000000 values";
     assert_eq!(found.matches(limit).count(), 1, "{found}");
 }
 
@@ -294,6 +294,6 @@ fn sources_of_long_texts_have_a_limit() {
         "1".repeat(1_000_000)
     );
     let found = faults(&inside);
-    let limit = "error S2035: sources come to more than 64 MB of text";
+    let limit = "error S2035: sources make more than 64 MB of text";
     assert_eq!(found.matches(limit).count(), 1, "{}", found.len());
 }

@@ -84,33 +84,33 @@ fn sources_are_paths() {
         $b/bay[2]/y: S2023: there is no part `y`; the parts are `x`
         $b/bay[4]: S2023: there are 3 parts `bay`, from `[1]` on
         $b/bay[0]/x: S2023: there are 3 parts `bay`, from `[1]` on
-        $b/bay/x: S3011: the property `number` takes one value, and here are 3
+        $b/bay/x: S3011: the property `number` allows one value, found 3
         $b/bay[@id='c']/x: S2023: no part here has `c` as its `id`: its values are `a` and `b/c`
         $b/bay[@name='c']/x: S2023: no part here has `c` as its `name`: none has it
         $b/bay/@di: S2023: there is no attribute `di`; the attributes are `id`
         $b/bay[2]/@id/x: S2023: an attribute has no parts
         $b/bay[1]/text(): S2023: there is no text here
         $b/bay[x=3]/x: Integer(3
-        $b//x: S3011: the property `number` takes one value, and here are 3
+        $b//x: S3011: the property `number` allows one value, found 3
         $b/bay/../x: S2023: no step of a path is written like this
         $b/bay[1]x: S2023: no step of a path is written like this
         $many[3]: S2023: the property has 2 values
         $many[a]: S2023: no step of a path is written like this
         $many/x: S2023: the property has a simple value: there are no parts in it
         $many/value[2]: S2023: the property has a simple value: there are no parts in it; the values of a property are `$name` itself, the second is `$name[2]`
-        $many/text(): S3011: the property `number` takes one value, and here are 2
+        $many/text(): S3011: the property `number` allows one value, found 2
         $many[2]/text(): Integer(2
         $b/bay/x[2]: S2023: there are 3 parts `x` in 3 elements, at most 1 in each, and a place counts in each
-        ($b/bay/x)[2]: S2023: `($b/bay/x)[2]` is no path from a property
-        count($b/bay): S2023: `count($b/bay)` is no path from a property
-        concat($s, 'x'): S2023: `concat($s, 'x')` is no path from a property
+        ($b/bay/x)[2]: S2023: `($b/bay/x)[2]` is not a path from a property
+        count($b/bay): S2023: `count($b/bay)` is not a path from a property
+        concat($s, 'x'): S2023: `concat($s, 'x')` is not a path from a property
         $b/bay[x &gt; 3]/x: S2023: no step of a path is written like this
         $b/bay[not(@id)]/x: S2023: no step of a path is written like this
         $b/bay[1]/following-sibling::bay/x: S2023: no step of a path is written like this
         ${s}: S2023: names of properties stand without braces here
         $sa: S2024: the composite has no property `sa`
-        s: S2023: `s` names no property of the composite
-        'text': S2023: `'text'` names no property of the composite
+        s: S2023: `s` does not name a property of the composite
+        'text': S2023: `'text'` does not name a property of the composite
         $s/x: S2023: the property has a simple value: there are no parts in it
         $b/: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         $b[99999999999999999999999]: S2023: the property has one value
@@ -174,7 +174,7 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
     let all: String =
         ["count($c/a/b)", "$c/a/b[position()&gt;1]/w", "$c/x"].iter().map(|source| of(source, true)).collect();
     expect![[r#"
-        count($c/a/b): 3:97-110 warning S2023: `count($c/a/b)` is no path from a property
+        count($c/a/b): 3:97-110 warning S2023: `count($c/a/b)` is not a path from a property
           help: another program may understand it: it is taken as given
         $c/a/b[position()&gt;1]/w: 3:102-120 warning S2023: no step of a path is written like this
           help: another program may understand it: it is taken as given
@@ -218,11 +218,11 @@ fn a_source_that_is_no_path_says_what_paths_are() {
             false => expect![[r#"
                 2:80-83 error S3001: there is no class `x.Y`
                   help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
-                2:113-128 error S2023: `concat($s, 'x')` is no path from a property
+                2:113-128 error S2023: `concat($s, 'x')` is not a path from a property
                   help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
             "#]].assert_eq(&all),
             true => expect![[r#"
-                2:113-128 warning S2023: `concat($s, 'x')` is no path from a property
+                2:113-128 warning S2023: `concat($s, 'x')` is not a path from a property
                   help: another program may understand it: it is taken as given
             "#]].assert_eq(&all),
         }

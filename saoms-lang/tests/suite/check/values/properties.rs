@@ -66,12 +66,12 @@ fn unknown_classes_are_offered_the_nearest() {
 fn what_cannot_run_says_so() {
     expect![[r#"
         2:53-58 error S2031: there is no composite `inner` in the namespace `urn:t`
-          help: name the file of the composite beside this one
+          help: give the file of that composite, too, beside this one
         3:22-41 error S3002: `implementation.bpel` cannot run here
           help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
         4:71-80 error S3015: the library `libgps.so` was not looked for
         5:16-21 error S2030: there is no composite `other` in the namespace `urn:t`
-          help: name the file of the composite beside this one
+          help: give the file of that composite, too, beside this one
         6:22-45 error S3002: `implementation.script` cannot run here
           help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
     "#]].assert_eq(&faults(
@@ -177,7 +177,7 @@ fn values_of_the_wrong_type() {
         8:26-27 error S3007: property `charger`: found `5`, expected the properties x, y
           help: write each as an element inside
           help: `charger`: Where it charges
-        9:47-48 error S3011: the property `delay` takes one value, and here are 2
+        9:47-48 error S3011: the property `delay` allows one value, found 2
           9:31-32 the first
           help: `delay`: From the start to the first due execution; the default is `0ms`
         10:47-48 error S3007: property `stops`: `x` is not a whole number: expected a whole number from 0 to 65535

@@ -36,14 +36,14 @@ fn rename(text: &str) -> String {
 fn both_ends_of_a_topic_are_asked_for() {
     expect![""].assert_eq(&found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", "")])));
     expect![[r#"
-        2:18-19 note S4010: component `D` publishes topic `ORDERS`, which nobody reads
+        2:18-19 note S4010: component `D` publishes topic `ORDERS`, which no component reads
           help: it is an event topic of `Order`
-        3:18-20 note S4010: component `T1` and another one publish topic `TRACKS`, which nobody reads
+        3:18-20 note S4010: component `T1` and another one publish topic `TRACKS`, which no component reads
           help: it is a state topic of `Position`
     "#]]
     .assert_eq(&found(&fleet(&[("D", "Dispatcher", ""), ("T1", "Tracker", ""), ("T2", "Tracker", "")])));
     expect![[r#"
-        2:18-19 warning S4011: component `P` and 2 others read topic `ORDERS`, which nobody publishes
+        2:18-19 warning S4011: component `P` and 2 others read topic `ORDERS`, which no component publishes
           help: it is an event topic of `Order`
     "#]]
     .assert_eq(&found(&fleet(&[("P", "Picker", ""), ("Q", "Picker", ""), ("R", "Picker", "")])));
@@ -52,7 +52,7 @@ fn both_ends_of_a_topic_are_asked_for() {
 #[test]
 fn names_that_are_nearly_the_same_are_told_together() {
     expect![[r#"
-        2:177-182 warning S4012: component `D` publishes topic `oders`, which nobody reads: there is `orders`
+        2:177-182 warning S4012: component `D` publishes topic `oders`, which no component reads: there is `orders`
           3:174-180 reads `orders`
           fix: replace `oders` with `orders` [2:177-182 "orders"]
     "#]]
@@ -62,13 +62,13 @@ fn names_that_are_nearly_the_same_are_told_together() {
         ("E", "Dispatcher", &rename("ORDERS,orders")),
     ])));
     expect![[r#"
-        2:18-19 warning S4012: component `D` publishes topic `ORDERS`, which nobody reads: there is `orders`
+        2:18-19 warning S4012: component `D` publishes topic `ORDERS`, which no component reads: there is `orders`
           3:173-179 reads `orders`
           help: `topicRename` gives topics other names
     "#]]
     .assert_eq(&found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", &rename("ORDERS,orders"))])));
     expect![[r#"
-        4:174-179 note S4010: component `T` publishes topic `ORDER`, which nobody reads
+        4:174-179 note S4010: component `T` publishes topic `ORDER`, which no component reads
           help: it is a state topic of `Position`
     "#]]
     .assert_eq(&found(&fleet(&[
@@ -89,7 +89,7 @@ fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
         found(&fleet(&all))
     };
     expect![[r#"
-        2:210-219 warning S4012: component `A` hears nobody but itself on topic `postopics`: others use `POSTOPIC`
+        2:210-219 warning S4012: component `A` hears only itself on topic `postopics`: others use `POSTOPIC`
           3:18-19 uses `POSTOPIC`
           help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
     "#]]
@@ -112,7 +112,7 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
         found(&fleet(&all))
     };
     expect![[r#"
-        2:212-219 warning S4012: component `R0` hears nobody but itself on topic `POSTOPC`: others use `POSTOPIC`
+        2:212-219 warning S4012: component `R0` hears only itself on topic `POSTOPC`: others use `POSTOPIC`
           3:18-20 uses `POSTOPIC`
           help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
     "#]]
@@ -120,12 +120,12 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
     expect![""].assert_eq(&found(&["HALL_1", "HALL_1", "HALL_2"]));
     expect![""].assert_eq(&found(&["HALL_1", "HALL_2", "HALL_2"]));
     expect![[r#"
-        2:212-219 warning S4012: component `R0` and another one hear nobody but each other on topic `POSTOPC`: others use `POSTOPIC`
+        2:212-219 warning S4012: component `R0` and another one hear only each other on topic `POSTOPC`: others use `POSTOPIC`
           4:18-20 uses `POSTOPIC`
           help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
     "#]].assert_eq(&found(&["POSTOPC", "POSTOPC", "", ""]));
     expect![[r#"
-        2:212-220 warning S4012: component `R0` and another one hear nobody but each other on topic `postopic`: others use `POSTOPIC`
+        2:212-220 warning S4012: component `R0` and another one hear only each other on topic `postopic`: others use `POSTOPIC`
           4:18-20 uses `POSTOPIC`
           help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
     "#]].assert_eq(&found(&["postopic", "postopic", "", ""]));
@@ -141,9 +141,9 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
     let both = |properties: &str| found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", properties)]));
     expect![""].assert_eq(&both(&slow("11")));
     expect![[r#"
-        3:161-163 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P`, and 10 find room
-          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
-          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
+        3:161-163 note S4013: up to 11 messages of topic `ORDERS` can arrive between two executions of component `P`, and the queue holds 10
+          help: component `D` publishes it: there are so many if each sends one per execution, usually there are fewer
+          help: if a run reports lost messages, give the readers a `queue` of 11, or a shorter `period`
     "#]].assert_eq(&both(&slow("10")));
     expect![""].assert_eq(&both(&format!("{}<property name=\"loss\">accept</property>", slow("10"))));
     // Of those with the same period, each queue by itself.
@@ -151,17 +151,17 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
     let mut all = vec![("D", "Dispatcher", "")];
     all.extend(pickers.iter().map(|(name, properties)| (*name, "Picker", properties.as_str())));
     expect![[r#"
-        3:161-162 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `P` and another one, and 1 find room
-          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
-          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
-        6:161-162 note S4013: up to 11 messages of topic `ORDERS` can come between two executions of component `S`, and 2 find room
-          help: component `D` publishes it: so many come where each sends one in each execution, and fewer as a rule
-          help: where a run says that messages were lost, give the readers a `queue` of 11, or a shorter `period`
+        3:161-162 note S4013: up to 11 messages of topic `ORDERS` can arrive between two executions of component `P` and another one, and the queue holds 1
+          help: component `D` publishes it: there are so many if each sends one per execution, usually there are fewer
+          help: if a run reports lost messages, give the readers a `queue` of 11, or a shorter `period`
+        6:161-162 note S4013: up to 11 messages of topic `ORDERS` can arrive between two executions of component `S`, and the queue holds 2
+          help: component `D` publishes it: there are so many if each sends one per execution, usually there are fewer
+          help: if a run reports lost messages, give the readers a `queue` of 11, or a shorter `period`
     "#]].assert_eq(&found(&fleet(&all)));
     expect![[r#"
-        3:18-27 note S4013: up to 1200 messages of topic `ORDERS` can come between two executions of component `P1` and 399 others, and 1024 find room
-          help: component `D1` and 399 others publish it: so many come where each sends one in each execution, and fewer as a rule
-          help: where a run says that messages were lost, give the readers a `queue` of 1200, or a shorter `period`
+        3:18-27 note S4013: up to 1200 messages of topic `ORDERS` can arrive between two executions of component `P1` and 399 others, and the queue holds 1024
+          help: component `D1` and 399 others publish it: there are so many if each sends one per execution, usually there are fewer
+          help: if a run reports lost messages, give the readers a `queue` of 1200, or a shorter `period`
     "#]].assert_eq(&found(&fleet(&[
         ("D${index}", "Dispatcher", ""),
         ("P${index}", "Picker", &period("300")),
@@ -171,9 +171,9 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
 #[test]
 fn readers_in_a_hurry_are_told_once_for_each_period() {
     expect![[r#"
-        3:18-19 note S4014: component `P` and another one read topic `ORDERS` every 50ms, and nobody publishes it more often than every 100ms
+        3:18-19 note S4014: component `P` and another one read topic `ORDERS` every 50ms, but no component publishes it more often than every 100ms
           help: some of its executions find nothing new
-        5:18-19 note S4014: component `R` reads topic `ORDERS` every 20ms, and nobody publishes it more often than every 100ms
+        5:18-19 note S4014: component `R` reads topic `ORDERS` every 20ms, but no component publishes it more often than every 100ms
           help: some of its executions find nothing new
     "#]].assert_eq(&found(&fleet(&[
         ("D", "Dispatcher", ""),

@@ -27,7 +27,7 @@ fn multiplicities_are_not_widened_whatever_the_classes_are() {
 <reference name='e' multiplicity='0..n' promote='B/p'/>
 <reference name='f' multiplicity='1..1' promote='A/many'/>";
     expect![[r#"
-        7:35-39 error S2036: `c` promotes reference `r` of component `B`, which takes `1..1`: `0..1` does not narrow it
+        7:35-39 error S2036: the multiplicity `0..1` of `c` is wider than `1..1` of the promoted reference `r` of component `B`
           help: it can be `1..1`
     "#]]
     .assert_eq(&given(wrong));
@@ -90,7 +90,7 @@ fn interfaces_of_composites_are_those_of_the_classes() {
           fix: replace `example.Position` with `example.Wheels` [5:63-79 "example.Wheels"]
         7:83-99 error S2007: the interface of `w` is `example.Wheels`, not `example.Position`
           fix: replace `example.Position` with `example.Wheels` [7:83-99 "example.Wheels"]
-        8:18-19 warning S2022: reference `v` of the composite is wired to nothing: calls through it fail
+        8:18-19 warning S2022: reference `v` of the composite is wired to no service: calls through it fail
           help: the composite runs by itself, and nothing around it can wire its references
         8:36-42 error S2007: reference `v` of the composite promotes references with the interfaces `example.Positions` and `unibg.robotics.tca.TaskInterface`
           8:30-35 the first
@@ -138,7 +138,7 @@ fn a_promoted_reference_is_wired_where_it_has_an_address_or_nobody_knows_what_ta
         )
     };
     expect![[r#"
-        2:18-19 warning S2022: reference `R` of the composite is wired to nothing: calls through it fail
+        2:18-19 warning S2022: reference `R` of the composite is wired to no service: calls through it fail
           help: the composite runs by itself, and nothing around it can wire its references
     "#]]
     .assert_eq(&told(&class("example.Robot001"), ""));

@@ -16,7 +16,7 @@ fn a_target_of_nothing_is_told() {
     .assert_eq(&of(&inside));
     let needed = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/>\n<reference name=\"wheels\" target=\"\"/></component>";
     expect![[r#"
-        3:18-24 error S2018: reference `wheels` of component `N` leads to no service
+        3:18-24 error S2018: reference `wheels` of component `N` is wired to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&of(needed));
@@ -125,7 +125,7 @@ fn beside_an_include_that_leads_nowhere_no_reference_lacks_a_target() {
     let wires = part("c", "", &format!("<wire source=\"N/wheels\" target=\"R\"/>{}", robot("R", "")));
     expect![[r#"
         2:16-19 error S2030: there is no composite `C` in the namespace `urn:t`
-          help: name the file of the composite beside this one
+          help: give the file of that composite, too, beside this one
           fix: replace `t:C` with `t:c` [2:16-19 "t:c"]
     "#]]
     .assert_eq(&outcome(&[&fleet, &wires], &[]));
@@ -197,25 +197,27 @@ fn navigators(attributes: &str, inside: &str) -> String {
 fn one_of_replicas_is_taken_where_all_are_named() {
     let by_target = "<reference name=\"wheels\" target=\"R*/move\"/></component>";
     expect![[r#"
-        4:34-41 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        4:34-41 error S2017: reference `wheels` of component `N` allows one target, found 2
           help: `R*` stands for all replicas, and one is taken
           fix: replace `R*/move` with `R1/move` [4:34-41 "R1/move"]
           fix: replace `R*/move` with `R2/move` [4:34-41 "R2/move"]
     "#]]
     .assert_eq(&navigators("N\"", by_target));
     expect![[r#"
-        4:34-41 error S2017: reference `wheels` of component `N1` takes one target, and here are 2 (index 1, and in 1 more)
+        4:34-41 error S2017: reference `wheels` of component `N1` allows one target, found 2 (index 1, and in 1 more)
           help: `R*` stands for all replicas, and one is taken
           fix: replace `R*/move` with `R${index}/move` [4:34-41 "R${index}/move"]
-    "#]].assert_eq(&navigators("N${index}\" saoms:count=\"2\"", by_target));
+    "#]]
+    .assert_eq(&navigators("N${index}\" saoms:count=\"2\"", by_target));
     expect![[r#"
-        4:34-41 error S2017: reference `wheels` of component `N2` takes one target, and here are 2 (index 2, and in 1 more)
+        4:34-41 error S2017: reference `wheels` of component `N2` allows one target, found 2 (index 2, and in 1 more)
           help: `R*` stands for all replicas, and one is taken
           fix: replace `R*/move` with `R${index}/move` [4:34-41 "R${index}/move"]
-    "#]].assert_eq(&navigators("N${index}\" saoms:from=\"2\" saoms:count=\"2\"", by_target));
+    "#]]
+    .assert_eq(&navigators("N${index}\" saoms:from=\"2\" saoms:count=\"2\"", by_target));
     let by_wire = "</component>\n<wire source=\"N/wheels\" target=\"R*\"/>";
     expect![[r#"
-        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        5:33-35 error S2017: reference `wheels` of component `N` allows one target, found 2
           help: `R*` stands for all replicas, and one is taken
           fix: replace `R*` with `R1` [5:33-35 "R1"]
           fix: replace `R*` with `R2` [5:33-35 "R2"]
@@ -230,13 +232,13 @@ fn a_wire_can_count_in_place_of_a_target() {
     };
     let other = "<wire source=\"N/wheels\" target=\"R2\"/>";
     expect![[r#"
-        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        5:33-35 error S2017: reference `wheels` of component `N` allows one target, found 2
           4:34-36 the first
-          help: keep one of them, or write `replace="true"` at the wire, which counts in place of the `target` then
+          help: keep one of them, or write `replace="true"` at the wire, which then replaces the `target`
     "#]]
     .assert_eq(&wired("R1", other));
     expect![[r#"
-        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        5:33-35 error S2017: reference `wheels` of component `N` allows one target, found 2
           4:34-36 the first
           help: they lead to one service: keep one of them
     "#]]
@@ -244,14 +246,14 @@ fn a_wire_can_count_in_place_of_a_target() {
     // It counts in place of the `target` alone.
     let replacing = other.replace("/>", " replace=\"true\"/>");
     expect![[r#"
-        5:85-87 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        5:85-87 error S2017: reference `wheels` of component `N` allows one target, found 2
           5:33-35 the first
           help: keep one of them
     "#]]
     .assert_eq(&wired("R1", &format!("{replacing}<wire source=\"N/wheels\" target=\"R1\"/>")));
     let twice = format!("{other}<wire source=\"N/wheels\" target=\"R1\"/>");
     expect![[r#"
-        5:33-35 error S2017: reference `wheels` of component `N` takes one target, and here are 3
+        5:33-35 error S2017: reference `wheels` of component `N` allows one target, found 3
           4:34-36 the first
           help: keep one of them
     "#]]

@@ -19,19 +19,19 @@ fn ends_agree_in_kind_and_schema() {
     expect![[r#"
         6:18-19 error S4009: component `S` publishes topic `POSTOPIC` as an event topic, and component `A` as a state topic
           2:18-19 publishes it as a state topic
-          help: all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart
+          help: a topic has one kind and one type of messages for all components; give one of them another topic with `topicRename`
     "#]]
         .assert_eq(&faults(&(robots.clone() + &task("S", "Shouter", "") + &task("S2", "Shouter", ""))));
     assert_eq!(faults(&(robots.clone() + &task("S", "Shouter", "POSTOPIC,shouts"))), "");
     expect![[r#"
         7:37-45 error S4009: component `T` publishes topic `POSTOPIC` as `Position`, and component `A` as `Position` with other fields
           2:18-19 publishes it as `Position` with other fields
-          help: all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart
+          help: a topic has one kind and one type of messages for all components; give one of them another topic with `topicRename`
     "#]].assert_eq(&faults(&(robots.clone() + &task("T", "Tracker", "TRACKS,POSTOPIC"))));
     expect![[r#"
         3:49-50 error S4009: component `A` subscribes to topic `x` as an event topic, and itself as a state topic
           3:39-40 publishes it as a state topic
-          help: all ends of a topic are of one kind and carry one type of messages; `topicRename` tells topics apart
+          help: a topic has one kind and one type of messages for all components; give one of them another topic with `topicRename`
     "#]]
     .assert_eq(&faults(&task("A", "Robot001", "POSTOPIC,x::ORDERS,x")));
 }

@@ -69,11 +69,11 @@ fn targets_lead_to_services() {
         3:34-44 error S2010: `R/move/b/c` has the wrong form
           help: write `component`, `component/service` or `component/service/binding`
         R T/left
-        3:36-42 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        3:36-42 error S2017: reference `wheels` of component `N` allows one target, found 2
           3:34-35 the first
           help: keep one of them
         R R/move
-        3:36-42 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        3:36-42 error S2017: reference `wheels` of component `N` allows one target, found 2
           3:34-35 the first
           help: they lead to one service: keep one of them
     "#]].assert_eq(&all);
@@ -111,7 +111,7 @@ fn bindings_of_targets() {
     expect![[r#"
         3:46-49 error S2012: component `R` has no service `mve`
           fix: replace `mve` with `move` [3:46-49 "move"]
-        5:27-37 warning S2009: `binding.ws` is not served: calls through it fail
+        5:27-37 warning S2009: `binding.ws` is not supported: calls through it fail
           help: remove it; other machines are reached through topics and the `url` of a message broker
     "#]]
     .assert_eq(&faults(&by_binding));
@@ -128,7 +128,7 @@ fn wires_of_composites() {
         assert_eq!(wire(wires), "", "{wires}");
     }
     expect![[r#"
-        3:33-39 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        3:33-39 error S2017: reference `wheels` of component `N` allows one target, found 2
           2:33-39 the first
           help: keep one of them
         4:15-16 error S2016: component `N` has several references
@@ -164,17 +164,17 @@ fn a_reference_without_a_target() {
 <component name="L"><implementation.java class="example.Navigator"/>
 <reference name="wheels" wiredByImpl="true"/></component>"#;
     expect![[r#"
-        2:18-19 error S2018: reference `wheels` of component `N` leads to no service
+        2:18-19 error S2018: reference `wheels` of component `N` is wired to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
-        4:18-24 error S2018: reference `wheels` of component `M` leads to no service
+        4:18-24 error S2018: reference `wheels` of component `M` is wired to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&faults_of(&[&fleet(text)], &[]));
     expect![[r#"
-        2:18-19 warning S2018: reference `wheels` of component `N` leads to no service
+        2:18-19 warning S2018: reference `wheels` of component `N` is wired to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
           help: calls through it fail
-        4:18-24 warning S2018: reference `wheels` of component `M` leads to no service
+        4:18-24 warning S2018: reference `wheels` of component `M` is wired to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
           help: calls through it fail
     "#]]
@@ -232,7 +232,7 @@ fn autowire_finds_the_only_fitting_service() {
     let twins = r#"<component name="T"><implementation.java class="example.Twins"/></component>"#;
     assert_eq!(faults_of(&[&text("true", robot)], &[]), "");
     expect![[r#"
-        3:18-24 error S2018: reference `wheels` of component `N` leads to no service
+        3:18-24 error S2018: reference `wheels` of component `N` is wired to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&faults_of(
@@ -245,7 +245,7 @@ fn autowire_finds_the_only_fitting_service() {
     "#]]
     .assert_eq(&faults_of(&[&text("true", &format!("{robot}{twins}"))], &[]));
     expect![[r#"
-        3:18-24 error S2018: reference `wheels` of component `N` leads to no service
+        3:18-24 error S2018: reference `wheels` of component `N` is wired to no service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
           help: autowire finds no service with this interface
     "#]]
@@ -264,19 +264,19 @@ fn one_service_is_a_target_once_where_one_is_taken() {
     };
     let again = r#"<wire source="N/wheels" target="T/move"/>"#;
     expect![[r#"
-        3:109-115 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        3:109-115 error S2017: reference `wheels` of component `N` allows one target, found 2
           3:102-108 the first
           help: they lead to one service: keep one of them
     "#]]
     .assert_eq(&wired(&fleet, "T/move T/move", ""));
     expect![[r#"
-        4:33-39 error S2017: reference `wheels` of component `N` takes one target, and here are 2
+        4:33-39 error S2017: reference `wheels` of component `N` allows one target, found 2
           3:102-108 the first
           help: they lead to one service: keep one of them
     "#]]
     .assert_eq(&wired(&fleet, "T/move", again));
     expect![[r#"
-        4:33-39 warning S2017: reference `wheels` of component `N` takes one target, and here are 2
+        4:33-39 warning S2017: reference `wheels` of component `N` allows one target, found 2
           3:102-108 the first
           help: they lead to one service: keep one of them
     "#]]
