@@ -57,6 +57,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                 );
                 let help = match others == topic {
                     true => format!("remove the pair `{topic},{own}`: all robots of a world need the same topics"),
+                    false if others.contains('/') || own.contains('/') => {
+                        format!("let all robots of a world be in one site, or give it the pair `{topic},/{others}`")
+                    }
                     false => format!("give it the pair `{topic},{others}`, as the others have it"),
                 };
                 findings.push(

@@ -4,6 +4,7 @@ use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::robots::{FleetRobot, robots, sharing};
+use crate::messages::ROBOT_LIST;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -21,7 +22,14 @@ pub(super) static RULE: FleetRule = FleetRule {
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let mut findings = Vec::new();
-    for (robot, other) in sharing(&robots, |robot| robot.number) {
+    // Robots of two sites have numbers of their own, unless they hear each other or share a world.
+    let topic = |robot: &FleetRobot| fleet.components()[robot.index].topic(ROBOT_LIST.name()).to_owned();
+    let mut pairs = sharing(&robots, |robot| (robot.number, topic(robot)));
+    let of_world = sharing(&robots, |robot| (robot.number, robot.world.map_or(Err(robot.index), Ok)));
+    pairs.extend(of_world);
+    pairs.sort_by_key(|(robot, other)| (robot.index, other.index));
+    pairs.dedup_by_key(|(robot, _)| robot.index);
+    for (robot, other) in pairs {
         let name = |robot: &FleetRobot| fleet.components()[robot.index].path;
         let message = format!("robots `{}` and `{}` both have the number {}", name(other), name(robot), robot.number);
         // If both have the same ID, the ID has to change. The checker reports that itself, unless the composite allows

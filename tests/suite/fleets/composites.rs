@@ -40,6 +40,33 @@ fn two_sites_from_one_composite_do_not_hear_each_other() {
 }
 
 #[test]
+fn robots_of_two_sites_in_one_world_are_judged_together() {
+    let robot = |name: &str, number: u32| {
+        format!(
+            "<component name=\"{name}\" saoms:site=\"{name}\"><implementation.rust class=\"saoms.Robot\"/>\
+             <property name=\"ID\">Robot{number}</property><property name=\"period\">100ms</property>\
+             <reference name=\"world\" target=\"World\"/></component>"
+        )
+    };
+    let fleet = |robots: String| {
+        let text = format!(
+            "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:saoms=\"urn:saoms:1\" name=\"f\" \
+             targetNamespace=\"urn:f\"><component name=\"World\"><implementation.rust class=\"saoms.World\"/>\
+             <property name=\"ID\">World</property><property name=\"period\">100ms</property></component>{robots}</composite>"
+        );
+        Fleet::of_text(text).diagnostics()
+    };
+    let found = fleet(robot("North", 1) + &robot("South", 1));
+    assert!(
+        found.contains("error S5004") && found.contains("robots `North` and `South` both have the number 1"),
+        "{found}"
+    );
+    let found = fleet(robot("North", 1) + &robot("South", 2));
+    assert!(found.contains("error S5012") && found.contains("`South/POSTOPIC`"), "{found}");
+    assert!(!found.contains("S5004"), "{found}");
+}
+
+#[test]
 fn each_checks_without_errors() {
     for path in shipped() {
         if path.parent().unwrap().ends_with("manual") {

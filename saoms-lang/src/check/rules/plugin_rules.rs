@@ -1,14 +1,15 @@
 //! Rules of plugins and component crates over the whole fleet.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
 use saoms_api::rule::{ClassView, ComponentView, FleetView};
 
-use crate::assembly::LoopSpec;
+use crate::assembly::{LoopSpec, on_bus};
 use crate::check::component::ComponentCheck;
-use crate::check::fleet::Fleet;
 use crate::check::fleet::class_index::ClassIndex;
+use crate::check::fleet::{Fleet, Member};
 use crate::check::properties::findings::{Subject, diagnostic};
 use crate::check::report::Report;
 use crate::check::tasks::unique_values::RepeatedValues;
@@ -61,23 +62,30 @@ pub(crate) fn check<'s>(
     }
     let rules: Vec<&RegisteredRule> = rules.filter(|rule| rule.judges_parts() || is_whole).collect();
     let facts = Facts { fleet, checks, wiring, repeated, missing };
-    let is_known: HashSet<usize> = sites.values().flatten().copied().collect();
-    for own in sites.into_values() {
-        let mut parts = own.clone();
-        // What they are wired to in other sites is seen, and judged there.
-        let mut indices: HashMap<usize, usize> = own.iter().enumerate().map(|(index, place)| (*place, index)).collect();
-        let mut next = 0;
-        while let Some(place) = parts.get(next) {
-            for provider in wiring[*place].iter().flatten().flatten().map(|provider| provider.member) {
-                if is_known.contains(&provider) && !indices.contains_key(&provider) {
-                    indices.insert(provider, parts.len());
-                    parts.push(provider);
-                }
-            }
-            next += 1;
-        }
-        facts.check_site(&parts, own.len(), &indices, &rules, report);
+    for parts in connected(sites, fleet, wiring) {
+        let indices = parts.iter().enumerate().map(|(index, place)| (*place, index)).collect();
+        facts.check_sites(&parts, &indices, &rules, report);
     }
+}
+
+/// The components of sites in document order, those of sites that wires connect together: robots of several sites may
+/// have one world.
+fn connected(sites: BTreeMap<&str, Vec<usize>>, fleet: &Fleet<'_>, wiring: &Wiring) -> Vec<Vec<usize>> {
+    let mut groups: Vec<(HashSet<&str>, Vec<usize>)> = Vec::new();
+    for (site, mut parts) in sites {
+        let mut names = HashSet::from([site]);
+        let targets = parts.iter().flat_map(|place| wiring[*place].iter().flatten().flatten());
+        names.extend(targets.map(|provider| fleet.members[provider.member].site.as_str()));
+        let connected: Vec<_> = groups.extract_if(.., |(others, _)| !others.is_disjoint(&names)).collect();
+        for (others, more) in connected {
+            names.extend(others);
+            parts.extend(more);
+        }
+        parts.sort_unstable();
+        groups.push((names, parts));
+    }
+    groups.sort_unstable_by_key(|(_, parts)| parts.first().copied());
+    groups.into_iter().map(|(_, parts)| parts).collect()
 }
 
 /// The findings of earlier phases that rules are told of.
@@ -91,11 +99,10 @@ struct Facts<'s, 'f> {
 }
 
 impl<'s, 'f> Facts<'s, 'f> {
-    /// Asks the rules about these components, the first `own` of which are of one site; `indices` has their places.
-    fn check_site(
+    /// Asks the rules about the components of sites that are connected; `indices` has their places among these.
+    fn check_sites(
         &self,
         parts: &[usize],
-        own: usize,
         indices: &HashMap<usize, usize>,
         rules: &[&'s RegisteredRule],
         report: &mut Report<'_>,
@@ -121,7 +128,10 @@ impl<'s, 'f> Facts<'s, 'f> {
         });
         let wires: Vec<Vec<(&str, usize)>> = wires.collect();
         let mut classes = ClassViews::new();
-        let renamed: Vec<Vec<(&str, &str)>> = all().map(|(_, check, _)| renamed(check)).collect();
+        let renamed = all().map(|(place, check, class)| renamed(&fleet.members[place], check, class));
+        let renamed: Vec<Vec<(&str, Cow<'_, str>)>> = renamed.collect();
+        let pairs = renamed.iter().map(|all| all.iter().map(|(declared, on_bus)| (*declared, &**on_bus)).collect());
+        let renamed: Vec<Vec<(&str, &str)>> = pairs.collect();
         let views =
             all().zip(wires.iter().zip(&renamed)).map(|((place, check, class), (wires, renamed))| ComponentView {
                 path: fleet.members[place].path(),
@@ -146,11 +156,6 @@ impl<'s, 'f> Facts<'s, 'f> {
                 }
             };
             for finding in &findings {
-                let is_elsewhere =
-                    finding.place().component_index().is_some_and(|index| (own..parts.len()).contains(&index));
-                if is_elsewhere {
-                    continue;
-                }
                 let severity = finding.own_severity().unwrap_or(rule.code().severity);
                 let own = finding.place().component_index().and_then(subject).unwrap_or(first);
                 match finding.place().component_index().and_then(|index| parts.get(index)) {
@@ -169,10 +174,23 @@ impl<'s, 'f> Facts<'s, 'f> {
     }
 }
 
-/// The topics to which a component gives new names.
-fn renamed<'s>(check: &'s ComponentCheck<'_>) -> Vec<(&'s str, &'s str)> {
-    let pairs = check.task.iter().flat_map(|task| &task.topic_rename.0);
-    pairs.map(|(old, new)| (old.as_str(), new.as_str())).collect()
+/// The topics of a component that have another name on the bus, and that name.
+fn renamed<'s>(
+    member: &Member<'_>,
+    check: &'s ComponentCheck<'_>,
+    class: &ClassIndex<'s>,
+) -> Vec<(&'s str, Cow<'s, str>)> {
+    let renames = check.task.as_ref().map(|task| &task.topic_rename);
+    if member.site.is_empty() && renames.is_none_or(|renames| renames.0.is_empty()) {
+        return Vec::new();
+    }
+    let mut topics: Vec<&'s str> = class.publishes.iter().chain(&class.subscribes).map(|topic| &*topic.name).collect();
+    topics.sort_unstable();
+    topics.dedup();
+    let on_bus = |declared: &'s str| {
+        (declared, on_bus(&member.site, renames.map_or(declared, |renames| renames.name(declared))))
+    };
+    topics.into_iter().map(on_bus).filter(|(declared, on_bus)| declared != on_bus).collect()
 }
 
 /// The views of classes with their loops, each made once.

@@ -12,7 +12,7 @@ use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::expression::{has_expression, render};
 use crate::model::{ComponentElement, Naming};
-use crate::syntax::Element;
+use crate::syntax::{Element, is_local_name};
 
 impl<'a> Unfolding<'a, '_, '_> {
     /// Adds a component as it is `written`, and what is inside it.
@@ -89,10 +89,15 @@ impl<'a> Unfolding<'a, '_, '_> {
                 }
             }
         }
-        if own.split('/').any(|name| name.is_empty() || name.contains(char::is_whitespace)) {
+        // A colon ends the site of an event from outside.
+        let is_wrong = |sign: char| sign.is_whitespace() || matches!(sign, ':' | '$');
+        if own.split('/').any(|name| name.is_empty() || name.contains(is_wrong)) {
             let message = format!("{} is not a name of a site", quoted(&own));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, written.location, message);
-            self.report.push(one.help("write a name without blanks, as `North`, or several with `/` between them"));
+            self.report.push(match own.strip_prefix('$').filter(|name| is_local_name(name)) {
+                Some(name) => one.replace(&own, written.location, &format!("${{{name}}}")),
+                None => one.help("write a name as `North`, without blanks and `:`, or several with `/` between them"),
+            });
             return around;
         }
         if around.is_empty() { own.into() } else { format!("{around}/{own}").into() }

@@ -99,7 +99,9 @@ fn a_site_may_come_from_an_index_or_a_property() {
 
 #[test]
 fn a_name_of_a_site_has_no_blanks_and_no_empty_parts() {
-    for (written, wrong) in [("North hall", "North hall"), ("/North", "/North"), ("a//b", "a//b")] {
+    for (written, wrong) in
+        [("North hall", "North hall"), ("/North", "/North"), ("a//b", "a//b"), ("a:b", "a:b"), ("$site", "$site")]
+    {
         let fleet =
             around("fleet", &site("N", "hall").replace("saoms:site=\"N\"", &format!("saoms:site=\"{written}\"")));
         let found = topics(&[&fleet, &hall("", "")]);
@@ -111,6 +113,14 @@ fn a_name_of_a_site_has_no_blanks_and_no_empty_parts() {
           help: declare it: `<property name="...">...</property>` in the composite
     "#]]
     .assert_eq(&topics(&[&fleet, &hall("", "")]));
+}
+
+#[test]
+fn a_topic_outside_all_sites_needs_a_name() {
+    let fleet = around("fleet", &site("N", "hall"));
+    let renamed = hall("", "<property name=\"topicRename\">POSTOPIC,/</property>");
+    let found = topics(&[&fleet, &renamed]);
+    assert!(found.contains("S4002: bad `topicRename`: `/` is no name of a topic"), "{found}");
 }
 
 #[test]
