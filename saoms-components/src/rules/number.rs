@@ -25,7 +25,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     // Robots of two sites have numbers of their own, unless they hear each other or share a world.
     let topic = |robot: &FleetRobot| fleet.components()[robot.index].topic(ROBOT_LIST.name()).to_owned();
     let mut pairs = sharing(&robots, |robot| (robot.number, topic(robot)));
-    let of_world = sharing(&robots, |robot| (robot.number, robot.world.map_or(Err(robot.index), Ok)));
+    let of_world = sharing(&robots, |robot| (robot.number, robot.world.ok_or(robot.index)));
     pairs.extend(of_world);
     pairs.sort_by_key(|(robot, other)| (robot.index, other.index));
     pairs.dedup_by_key(|(robot, _)| robot.index);

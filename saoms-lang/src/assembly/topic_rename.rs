@@ -136,7 +136,7 @@ fn pair<'a>(
     let count = found.iter().filter(|name| !name.text.is_empty()).count();
     match &found[..] {
         [_, new] if count == 2 && new.text.trim_start_matches('/').is_empty() => {
-            let message = format!("`{}` is no name of a topic", new.text);
+            let message = format!("`{}` is not a name of a topic", new.text);
             faults.push(RenameFault { at: new.at.clone(), message, other: None });
         }
         [old, new] if count == 2 => pairs.push(Pair { old: old.clone(), new: new.clone() }),

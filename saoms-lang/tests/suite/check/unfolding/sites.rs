@@ -120,7 +120,7 @@ fn a_topic_outside_all_sites_needs_a_name() {
     let fleet = around("fleet", &site("N", "hall"));
     let renamed = hall("", "<property name=\"topicRename\">POSTOPIC,/</property>");
     let found = topics(&[&fleet, &renamed]);
-    assert!(found.contains("S4002: bad `topicRename`: `/` is no name of a topic"), "{found}");
+    assert!(found.contains("S4002: bad `topicRename`: `/` is not a name of a topic"), "{found}");
 }
 
 #[test]
