@@ -101,7 +101,11 @@ fn read_table(name: &Text, max_size: u64, sources: &mut Sources, diagnostics: &m
             let file = sources.add(path.display().to_string(), text);
             table(file, sources, diagnostics).map(Arc::new)
         }
-        Err(diagnostic) => {
+        Err(mut diagnostic) => {
+            // An expression stands for several names.
+            if sources.snippet(name.location) != name.as_str() {
+                diagnostic.message = format!("{}: {}", quoted(name), diagnostic.message);
+            }
             diagnostics.push(*diagnostic);
             None
         }

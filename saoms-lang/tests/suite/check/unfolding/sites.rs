@@ -171,8 +171,8 @@ fn each_use_of_a_composite_has_its_own_table() {
         South/Robot1 None
         South/Robot2 Some(Float(1.5))"#]]
     .assert_eq(&speeds(compiled()));
-    fs::remove_file(folder.path().join("south.csv")).unwrap();
+    ["south.csv", "north.csv"].iter().for_each(|name| fs::remove_file(folder.path().join(name)).unwrap());
     let found = compiled();
     let message: Vec<String> = found.reported().map(|one| format!("{} {}", one.code.id, one.message)).collect();
-    assert_eq!(message, ["S0001 there is no such file"]);
+    assert_eq!(message, ["S0001 `north.csv`: there is no such file", "S0001 `south.csv`: there is no such file"]);
 }
