@@ -178,6 +178,7 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
     let mut engine = shared.lock();
     let when = at.map_or(0, Time::as_nanos).max(shared.clock.now());
     engine.injections.add(when, Due::Message { topic: id, bytes, key, text });
+    engine.look_at = engine.look_at.min(when);
     engine.wake |= when < engine.roles.asleep_until;
     shared.release(engine);
     Ok(())
@@ -205,6 +206,7 @@ impl Engine {
             let periods = self.slots.iter().filter(|slot| slot.is_member()).map(|slot| slot.policy.period);
             let settled = now.saturating_add(periods.max().unwrap_or(0).saturating_mul(SETTLING));
             self.injections.add(settled, Due::Settled);
+            self.look_at = self.look_at.min(settled);
         }
     }
 

@@ -67,6 +67,7 @@ impl Engine {
             Some(MessageFaultKind::Late(time)) => {
                 let when = now.saturating_add(nanos(time));
                 self.injections.hold_up(when, topic, message);
+                self.look_at = self.look_at.min(when);
                 self.wake |= when < self.roles.asleep_until;
             }
             Some(MessageFaultKind::Duplicated) => {

@@ -78,6 +78,8 @@ pub(crate) struct Engine {
     pub(crate) ended: (u64, u64),
     pub(crate) votes: VoteTally,
     pub(crate) standstill: StandstillDetector,
+    /// Time before which no message from outside is due and no standstill can be found; later effects only delay one.
+    pub(crate) look_at: u64,
     /// Latest end of the run.
     pub(crate) limit: u64,
     /// Time up to which virtual time may advance for now.
@@ -160,6 +162,7 @@ impl Engine {
             ended: (0, 0),
             votes: VoteTally::default(),
             standstill: StandstillDetector::default(),
+            look_at: 0,
             limit: settings.limit.map_or(NEVER, nanos),
             pause: 0,
             real: settings.clock == ClockKind::Real,
@@ -178,16 +181,22 @@ impl Engine {
                         self.begin_stop(EndCause::Elapsed, self.limit);
                         continue;
                     }
-                    if self.injections.earliest().is_some_and(|when| when <= now && when < self.limit) {
-                        self.deliver_injections(now);
-                        continue;
-                    }
-                    if self.standstill.is_quiet(now) {
-                        if let Some(index) = self.next_to_ask(now) {
-                            return Next::Run(index, Job::Ask);
-                        }
-                        if self.phase != RunPhase::Running {
+                    // One comparison in most executions.
+                    if now >= self.look_at {
+                        if self.injections.earliest().is_some_and(|when| when <= now && when < self.limit) {
+                            self.deliver_injections(now);
                             continue;
+                        }
+                        if self.standstill.is_quiet(now) {
+                            if let Some(index) = self.next_to_ask(now) {
+                                return Next::Run(index, Job::Ask);
+                            }
+                            if self.phase != RunPhase::Running {
+                                continue;
+                            }
+                        } else {
+                            let quiet = self.standstill.quiet_from();
+                            self.look_at = self.injections.earliest().map_or(quiet, |when| when.min(quiet));
                         }
                     }
                     let Some((when, index)) = self.queue.pop_due(now) else {

@@ -42,6 +42,11 @@ impl StandstillDetector {
         self.last_effect = now;
     }
 
+    /// The time from which it is quiet unless something happens.
+    pub(crate) fn quiet_from(&self) -> u64 {
+        self.last_effect.saturating_add(self.patience)
+    }
+
     #[inline]
     pub(crate) fn is_quiet(&self, now: u64) -> bool {
         now.saturating_sub(self.last_effect) >= self.patience
