@@ -15,10 +15,15 @@ use super::convert::{PropertyViews, read_record, read_report, read_topic, read_v
 use super::guard::{guarded, guarded_call, guarded_value};
 use super::lease_cell::host;
 use super::looping::export_loop;
+use super::null::{self, given, place};
 use super::service::BytesCall;
 
 /// The levels of [`HostFunctions::log`] in their order; behind them comes the console.
 pub(super) const LEVELS: [Level; 4] = [Level::Error, Level::Warning, Level::Info, Level::Debug];
+
+/// What answers of functions are for, where there is no place for one.
+const INDEX: &str = "the place of the index";
+const VALUE: &str = "a value of the entry";
 
 /// Runs code with the host behind a state, for a function that cannot answer with a failure: then the answer is
 /// `otherwise`.
@@ -61,7 +66,7 @@ unsafe extern "C" fn publish(state: *mut c_void, view: *const TopicView, index: 
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         guarded(error, || {
-            *index = host(state)?.publish(&read_topic(view)?)?;
+            *place(index, INDEX)? = host(state)?.publish(&read_topic(view)?)?;
             Ok(())
         })
     }
@@ -71,7 +76,7 @@ unsafe extern "C" fn subscribe(state: *mut c_void, view: *const TopicView, index
     // SAFETY: as in `publish`.
     unsafe {
         guarded(error, || {
-            *index = host(state)?.subscribe(&read_topic(view)?)?;
+            *place(index, INDEX)? = host(state)?.subscribe(&read_topic(view)?)?;
             Ok(())
         })
     }
@@ -98,7 +103,7 @@ unsafe extern "C" fn reference(
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         guarded(error, || {
-            *index = host(state)?.reference(name.get_text()?, interface.get_text()?)?;
+            *place(index, INDEX)? = host(state)?.reference(name.get_text()?, interface.get_text()?)?;
             Ok(())
         })
     }
@@ -135,6 +140,7 @@ unsafe extern "C" fn chosen_loop(state: *mut c_void, place: u32, given: *mut Loo
     // SAFETY: callers pass the state of their handle, and a place for the loop.
     unsafe {
         guarded(error, || {
+            let given = null::place(given, "the place of a loop")?;
             *given = export_loop(host(state)?.chosen_loop(place)?);
             Ok(())
         })
@@ -186,7 +192,10 @@ unsafe extern "C" fn report(state: *mut c_void, path: Bytes, value: *const Repor
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
     unsafe {
         with_host(state, (), |host| {
-            let read = path.get_text().map_err(Failure::from).and_then(|path| Ok((path, read_report(&*value)?)));
+            let read = path
+                .get_text()
+                .map_err(Failure::from)
+                .and_then(|path| Ok((path, read_report(given(value, "the value")?)?)));
             match read {
                 Ok((path, value)) => host.report(path, value),
                 Err(failure) => warn(host, "a value for the report", &failure),
@@ -234,7 +243,7 @@ unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const Record
         with_host(state, (), |host| {
             let phase = [Phase::Symptom, Phase::Decision, Phase::Effect].get(phase as usize).copied();
             let phase = phase.ok_or_else(|| Failure::new("it is of no phase"));
-            match phase.and_then(|phase| Ok((phase, read_record(&*view)?))) {
+            match phase.and_then(|phase| Ok((phase, read_record(given(view, "the record")?)?))) {
                 Ok((phase, record)) => host.journal(phase, &record),
                 Err(failure) => warn(host, "a record", &failure),
             }
@@ -247,7 +256,8 @@ unsafe extern "C" fn changed(state: *mut c_void, entry: Bytes, before: *const Va
     // SAFETY: callers pass the state of their handle, and lend the views; texts are part of their library, which stays.
     unsafe {
         with_host(state, (), |host| {
-            let read = || Ok((entry.get_text()?, read_value(*before)?, read_value(*after)?));
+            let read =
+                || Ok((entry.get_text()?, read_value(*given(before, VALUE)?)?, read_value(*given(after, VALUE)?)?));
             match read() {
                 Ok((entry, before, after)) => host.changed(entry, before, after),
                 Err(failure) => warn(host, "a changed entry", &failure),

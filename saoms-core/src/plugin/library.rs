@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::{env, error, fmt, fs, io, process};
 
-use libloading::{Library, Symbol};
+use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW, Symbol};
 use saoms_abi::{EntryPoint, PluginTable, VERSION};
 
-use super::boundary::LEAST_COMPONENT_TABLE;
+use super::tables::{all, whole};
 use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
 
 /// Loads a library. It is never unloaded.
@@ -21,8 +21,10 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
         false => None,
     };
     let file = copy.as_deref().unwrap_or(&absolute);
+    // All that it calls is bound now: a function that nobody has would end the program when it is called first.
     // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
-    let library = unsafe { Library::new(file) }.map_err(|error| unloadable(with_causes(&error)));
+    let library =
+        unsafe { Library::open(Some(file), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| unloadable(why(&error, file)));
     if let Some(copy) = &copy {
         // The loaded library does not need the file name any more.
         let _ = fs::remove_file(copy);
@@ -32,7 +34,7 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
     let library: &'static Library = Box::leak(Box::new(library));
     let table = {
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
-        let entry: Symbol<'_, EntryPoint> = unsafe { library.get(metadata.entry.as_bytes()) }
+        let entry: Symbol<EntryPoint> = unsafe { library.get(metadata.entry.as_bytes()) }
             .map_err(|error| unloadable(format!("it has no function `{}`: {}", metadata.entry, with_causes(&error))))?;
         // SAFETY: the same.
         unsafe { entry(VERSION) }
@@ -62,22 +64,25 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
         return Err(disagrees("the texts differ".to_owned()));
     }
     // SAFETY: a library with metadata of this version keeps the rules of the boundary: so many tables are there.
-    unsafe {
-        let classes = tables(table.classes, table.class_count).map_err(disagrees)?;
-        let loops = tables(table.loops, table.loop_count).map_err(disagrees)?;
-        let rules = tables(table.rules, table.rule_count).map_err(disagrees)?;
-        for class in &classes {
-            check(class.component, LEAST_COMPONENT_TABLE).map_err(disagrees)?;
+    let code = || unsafe {
+        let mut code = Code { classes: Vec::new(), loops: Vec::new(), rules: Vec::new() };
+        let names = metadata.class_names();
+        for (class, name) in all(table.classes, "class", &names)?.into_iter().zip(&names) {
+            whole((*class).component, &format!("class `{name}`"))?;
+            code.classes.push(ImportedClass::new(&*class));
         }
-        for looping in &loops {
-            one(looping.looping).map_err(disagrees)?;
+        let names = metadata.loop_names();
+        for (looping, name) in all(table.loops, "loop", &names)?.into_iter().zip(&names) {
+            whole((*looping).looping, &format!("loop `{name}`"))?;
+            code.loops.push(ImportedLoopClass::new(&*looping));
         }
-        Ok(Code {
-            classes: classes.into_iter().map(|class| ImportedClass::new(class)).collect(),
-            loops: loops.into_iter().map(|looping| ImportedLoopClass::new(looping)).collect(),
-            rules: rules.into_iter().map(|rule| ImportedRule::new(*rule)).collect(),
-        })
-    }
+        let names: Vec<String> = metadata.rules.iter().map(|rule| rule.code.id.to_owned()).collect();
+        for rule in all(table.rules, "rule", &names)? {
+            code.rules.push(ImportedRule::new(*rule));
+        }
+        Ok(code)
+    };
+    code().map_err(unloadable)
 }
 
 /// A copy of a library: beside it, where it finds what it depends on, or among the temporary files.
@@ -93,37 +98,14 @@ fn copy(path: &Path) -> io::Result<PathBuf> {
     })
 }
 
-/// A table, which begins with its size.
-///
-/// # Safety
-/// It is null, or there for as long as the program runs.
-unsafe fn one<T>(table: *const T) -> Result<&'static T, String> {
-    // SAFETY: as the caller promises; when it has the size of the type, all of it is there.
-    unsafe { check(table, size_of::<T>()).map(|()| &*table) }
-}
-
-/// Checks that a table is there and has so many bytes at least. If a table gains fields within a version, that is the
-/// first size of the version, and missing fields are `None`.
-///
-/// # Safety
-/// As [`one`].
-unsafe fn check<T>(table: *const T, least: usize) -> Result<(), String> {
-    if table.is_null() {
-        return Err("a table is missing".to_owned());
+/// What keeps the system from loading a library, without the name of the file that it was loaded from, and what to do.
+fn why(error: &dyn error::Error, file: &Path) -> String {
+    let text = with_causes(error);
+    let text = text.replace(&format!("{}: ", file.display()), "");
+    match text.contains("undefined symbol") {
+        true => format!("{text}: link it with the file that defines this, or with `-l` of the library that does"),
+        false => text,
     }
-    // SAFETY: as the caller promises; all tables begin with their size.
-    let size = unsafe { *table.cast::<usize>() };
-    if size < least {
-        return Err(format!("a table has {size} bytes, expected {least}"));
-    }
-    Ok(())
-}
-
-/// # Safety
-/// So many are there, for as long as the program runs.
-unsafe fn tables<T>(first: *const *const T, count: usize) -> Result<Vec<&'static T>, String> {
-    // SAFETY: as the caller promises.
-    (0..count).map(|place| unsafe { one(*first.add(place)) }).collect()
 }
 
 /// An error with its causes: libloading's own text hides them.

@@ -37,6 +37,29 @@ pub struct Metadata {
     pub(super) rules: Vec<RuleMetadata>,
 }
 
+impl Metadata {
+    /// The names of its classes, in the order of its tables.
+    pub(super) fn class_names(&self) -> Vec<String> {
+        names(&self.classes)
+    }
+
+    /// The names of its loops, in the order of its tables.
+    pub(super) fn loop_names(&self) -> Vec<String> {
+        names(&self.loops)
+    }
+}
+
+fn names(declarations: &[Box<RawValue>]) -> Vec<String> {
+    #[derive(Deserialize)]
+    struct Named {
+        #[serde(alias = "class", alias = "loop", default)]
+        name: String,
+    }
+    // The registry has judged them all before code is loaded.
+    let name = |one: &RawValue| serde_json::from_str(one.get()).map(|Named { name }| name);
+    declarations.iter().map(|one| name(one).unwrap_or_default()).collect()
+}
+
 /// Metadata of a rule.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RuleMetadata {

@@ -11,6 +11,7 @@ mod library;
 mod metadata;
 mod named;
 mod search;
+mod tables;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};

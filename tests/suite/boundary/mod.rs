@@ -6,4 +6,5 @@ mod misbehaving;
 mod named;
 mod refused;
 mod run;
+mod tables;
 mod together;

@@ -2,6 +2,7 @@ use std::ops::Range;
 
 use saoms_abi::{Bytes, FindingSink, FindingView, LabelView, PlaceView, list};
 
+use crate::boundary::null::given;
 use crate::host::contain::contained;
 use crate::rule::Severity;
 use crate::{Failure, Finding, Place};
@@ -42,7 +43,7 @@ pub(in crate::boundary) unsafe fn put_findings(sink: FindingSink, findings: &[Fi
 /// The view and what it leads to are readable.
 pub(in crate::boundary) unsafe fn take_finding(findings: &mut Findings, view: *const FindingView) {
     // SAFETY: as the caller promises.
-    findings.push(contained(|| unsafe { read_finding(&*view) }).and_then(|read| read));
+    findings.push(contained(|| unsafe { read_finding(given(view, "a finding")?) }).and_then(|read| read));
 }
 
 fn place_view(place: &Place) -> PlaceView {

@@ -1,6 +1,7 @@
 use saoms_abi::{Bytes, TopicView};
 
 use crate::Failure;
+use crate::boundary::null::given;
 use crate::host::{TopicDeclaration, TopicKind};
 
 /// The view of a topic.
@@ -26,7 +27,7 @@ pub(in crate::boundary) const fn topic_view(topic: &TopicDeclaration<'_>) -> Top
 pub(in crate::boundary) unsafe fn read_topic<'a>(view: *const TopicView) -> Result<TopicDeclaration<'a>, Failure> {
     // SAFETY: as the caller promises.
     unsafe {
-        let TopicView { name, message, schema, kind } = *view;
+        let TopicView { name, message, schema, kind } = *given(view, "a topic")?;
         let kind = match kind {
             0 => TopicKind::State,
             1 => TopicKind::Event,

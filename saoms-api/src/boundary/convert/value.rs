@@ -1,5 +1,6 @@
 use saoms_abi::{Bytes, RecordView, ValueView};
 
+use crate::boundary::null::given;
 use crate::{Failure, Record, Value};
 
 /// The view of a value.
@@ -51,6 +52,9 @@ pub(in crate::boundary) unsafe fn read_record(view: &RecordView) -> Result<Recor
     }
     // SAFETY: as the caller promises.
     unsafe {
+        if view.count > 0 {
+            given(view.values, "the values")?;
+        }
         for (place, value) in values.iter_mut().enumerate().take(view.count) {
             *value = read_value(*view.values.add(place))?;
         }

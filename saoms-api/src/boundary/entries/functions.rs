@@ -5,6 +5,7 @@ use saoms_abi::{Bytes, EntriesFunctions, EntriesHandle, EntryView, Sink, Status,
 use crate::boundary::convert::{read_value, value_view};
 use crate::boundary::guard::{guarded, guarded_value};
 use crate::boundary::lease_cell::knowledge;
+use crate::boundary::null::given;
 use crate::host::contain::contained;
 use crate::host::{DynEntries, EntryDeclaration};
 use crate::{Failure, Knowledge, Value};
@@ -143,7 +144,7 @@ unsafe extern "C" fn count<B: EntriesKind>(state: *mut c_void) -> u32 {
 unsafe extern "C" fn describe<B: EntriesKind>(state: *mut c_void, entry: u32, view: *mut EntryView) {
     // SAFETY: callers pass the state of their handle, and a place for the view.
     unsafe {
-        if let Some(found) = with_all::<B, _>(state, None, |all| all.declared(entry)) {
+        if let (Some(found), Some(view)) = (with_all::<B, _>(state, None, |all| all.declared(entry)), view.as_mut()) {
             *view = EntryView {
                 name: Bytes::text(found.name),
                 of: Bytes::text(found.of),
@@ -156,12 +157,12 @@ unsafe extern "C" fn describe<B: EntriesKind>(state: *mut c_void, entry: u32, vi
 unsafe extern "C" fn get<B: EntriesKind>(state: *mut c_void, entry: u32, value: *mut ValueView) -> u32 {
     // SAFETY: callers pass the state of their handle, and a place for the value.
     unsafe {
-        match with_all::<B, _>(state, None, |all| all.get(entry)) {
-            Some(found) => {
+        match (with_all::<B, _>(state, None, |all| all.get(entry)), value.as_mut()) {
+            (Some(found), Some(value)) => {
                 *value = value_view(found);
                 1
             }
-            None => 0,
+            _ => 0,
         }
     }
 }
@@ -173,7 +174,9 @@ unsafe extern "C" fn set<B: EntriesKind>(
     error: Sink,
 ) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the value.
-    unsafe { guarded(error, || B::with(state, |all| all.set(entry, read_value(*value)?))?) }
+    unsafe {
+        guarded(error, || B::with(state, |all| all.set(entry, read_value(*given(value, "the value of an entry")?)?))?)
+    }
 }
 
 unsafe extern "C" fn get_bytes<B: EntriesKind>(state: *mut c_void, entry: u32, bytes: Sink, error: Sink) -> Status {

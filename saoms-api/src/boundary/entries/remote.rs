@@ -1,9 +1,11 @@
+use std::mem::offset_of;
 use std::sync::{Mutex, PoisonError};
 
 use saoms_abi::{Bytes, EntriesFunctions, EntriesHandle, EntryView};
 
 use crate::boundary::convert::{read_value, value_view};
 use crate::boundary::lease::{call, call_for_bytes};
+use crate::boundary::null::{given, null_in};
 use crate::host::{DynEntries, EntryDeclaration};
 use crate::{Failure, Value};
 
@@ -20,14 +22,40 @@ impl RemoteEntries {
     /// # Safety
     /// The handle and its functions keep the rules of the boundary, for as long as the result is used.
     pub(in crate::boundary) unsafe fn new(handle: EntriesHandle) -> Result<RemoteEntries, Failure> {
-        // SAFETY: as the caller promises.
-        let declared = unsafe { declared(&handle) }?;
+        // SAFETY: as the caller promises: a table that is there begins with its size.
+        let declared = unsafe {
+            check(handle.functions)?;
+            declared(&handle)
+        }?;
         Ok(RemoteEntries { handle, declared })
     }
 
     pub(super) fn functions(&self) -> &EntriesFunctions {
         // SAFETY: `new`'s caller promised it.
         unsafe { &*self.handle.functions }
+    }
+}
+
+/// Checks that a table of functions is whole.
+///
+/// # Safety
+/// It is null, or there with the size that it says.
+unsafe fn check(table: *const EntriesFunctions) -> Result<(), Failure> {
+    macro_rules! members {
+        ($($member:ident),*) => { [$((stringify!($member), offset_of!(EntriesFunctions, $member))),*] };
+    }
+    let members = members!(declaration, count, describe, get, set, get_bytes, set_bytes, destroy);
+    let name = "SaomsEntriesFunctions";
+    // SAFETY: as the caller promises.
+    unsafe {
+        let (size, least) =
+            (*given(table.cast::<usize>(), "the table of functions of its entries")?, size_of::<EntriesFunctions>());
+        if size < least {
+            return Err(Failure::new(format!("its `{name}` has {size} bytes, expected at least {least}")));
+        }
+        null_in(table.cast(), &members).map_or(Ok(()), |member| {
+            Err(Failure::new(format!("`{member}` in its `{name}` is null, expected a function")))
+        })
     }
 }
 

@@ -1,3 +1,4 @@
+use std::cell::RefCell;
 use std::ffi::c_void;
 use std::ptr;
 use std::sync::{Mutex, PoisonError};
@@ -17,7 +18,8 @@ use crate::{Context, Failure, Knowledge};
 /// # Safety
 /// It is given away to the caller, and its functions keep the rules of the boundary for as long as the program runs.
 pub unsafe fn import_loop(instance: *mut c_void, table: LoopTable) -> Result<Box<dyn DynLoop>, Failure> {
-    let mut imported = ImportedLoop { instance, table, effects: &[], lease: Lease::default() };
+    let mut imported =
+        ImportedLoop { instance, table, effects: &[], lease: Lease::default(), fault: RefCell::default() };
     let mut effects = Vec::new();
     for number in 0.. {
         // SAFETY: as the caller promises; the names stay by the rules.
@@ -49,6 +51,8 @@ struct ImportedLoop {
     table: LoopTable,
     effects: &'static [&'static str],
     lease: Lease,
+    /// What is wrong with its entries: told when it initializes, as it has none then.
+    fault: RefCell<Option<Failure>>,
 }
 
 // SAFETY: the rules say that a loop is used by one thread at a time, not by which.
@@ -76,11 +80,20 @@ impl DynLoop for ImportedLoop {
             if (self.table.entries)(self.instance, &raw mut handle) == 0 {
                 return None;
             }
-            RemoteEntries::new(handle).ok().map(|remote| Box::new(OwnedRemoteEntries(remote)) as Box<dyn DynEntries>)
+            match RemoteEntries::new(handle) {
+                Ok(remote) => Some(Box::new(OwnedRemoteEntries(remote))),
+                Err(failure) => {
+                    self.fault.replace(Some(failure));
+                    None
+                }
+            }
         }
     }
 
     fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        if let Some(failure) = self.fault.take() {
+            return Err(Failure::new(format!("the entries that it adds cannot be used: {failure}")));
+        }
         self.step(self.table.initialize, knowledge, context)
     }
 

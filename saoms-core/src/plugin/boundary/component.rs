@@ -1,5 +1,5 @@
 use std::ffi::c_void;
-use std::mem::{MaybeUninit, offset_of};
+use std::mem::MaybeUninit;
 use std::ptr;
 
 use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
@@ -35,13 +35,10 @@ impl ImportedClass {
     }
 }
 
-/// The least size of the functions of components: what came later may be missing in libraries built before.
-pub(crate) const LEAST_COMPONENT_TABLE: usize = offset_of!(ComponentTable, waits_for);
-
 /// A copy of the functions of components, with null for those that the library does not have.
 ///
 /// # Safety
-/// The pointer leads to a table, which has its size: [`LEAST_COMPONENT_TABLE`] at least.
+/// The pointer leads to a table, with all functions that may not be null.
 unsafe fn read(table: *const ComponentTable) -> ComponentTable {
     let mut copy = MaybeUninit::<ComponentTable>::zeroed();
     // SAFETY: as the caller promises, so many bytes are there. All functions that may not be null are among them, and

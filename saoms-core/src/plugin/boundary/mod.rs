@@ -5,6 +5,5 @@ mod looping;
 mod rule;
 
 pub use component::ImportedClass;
-pub(super) use component::LEAST_COMPONENT_TABLE;
 pub use looping::ImportedLoopClass;
 pub use rule::ImportedRule;

@@ -1,0 +1,231 @@
+/* A component and a loop in C that misbehave: tables with holes by `-D`, the rest by the properties `at` and `does`. */
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "saoms_author.h"
+
+#define JSON(...) #__VA_ARGS__
+/* The same with macros in it expanded. */
+#define TEXT(...) JSON(__VA_ARGS__)
+#define WORD JSON({"name": "Word", "fields": [{"name": "text", "type": "string"}]})
+
+#ifdef UNBOUND
+/* Nobody has it. */
+extern void turn_the_wheels(void);
+#endif
+
+typedef struct Actor {
+    char at[32], does[32];
+    uint32_t publisher;
+} Actor;
+
+
+static volatile int zero = 0;
+static volatile int *volatile nowhere = NULL;
+
+static int overflow(volatile int depth) {
+    volatile char block[4096];
+    memset((char *)block, depth, sizeof block);
+    if (depth < zero) {
+        return 0;
+    }
+    return overflow(depth + 1) + block[depth % 4096];
+}
+
+static void act(const Actor *actor, const char *place) {
+    if (strcmp(actor->at, place) != 0) {
+        return;
+    }
+    if (strcmp(actor->does, "segv") == 0) {
+        *nowhere = 1;
+    } else if (strcmp(actor->does, "bus") == 0) {
+        raise(SIGBUS);
+    } else if (strcmp(actor->does, "ill") == 0) {
+        __builtin_trap();
+    } else if (strcmp(actor->does, "fpe") == 0) {
+        raise(SIGFPE);
+    } else if (strcmp(actor->does, "abort") == 0) {
+        abort();
+    } else if (strcmp(actor->does, "overflow") == 0) {
+        zero = overflow(1);
+    } else if (strcmp(actor->does, "exit") == 0) {
+        exit(0);
+    } else if (strcmp(actor->does, "hang") == 0) {
+        for (;;) {
+            sleep(1);
+        }
+    }
+}
+
+static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void **made, SaomsFindingSink findings,
+                             SaomsSink error) {
+    Actor *actor = calloc(1, sizeof *actor);
+    (void)error;
+    saoms_property_text(values, count, "at", actor->at, sizeof actor->at);
+    saoms_property_text(values, count, "does", actor->does, sizeof actor->does);
+    if (strcmp(actor->does, "null finding") == 0) {
+        findings.put(findings.state, NULL);
+        return SaomsStatus_FAILED;
+    }
+    act(actor, "construct");
+    *made = actor;
+    return SaomsStatus_OK;
+}
+
+static SaomsStatus initialize(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    Actor *actor = component;
+    SaomsTopicView topic = {saoms_text("WORDS"), saoms_text("Word"), saoms_text(WORD), 1};
+    act(actor, "initialize");
+    if (strcmp(actor->does, "null topic") == 0) {
+        return host->functions->publish(host->state, NULL, &actor->publisher, error);
+    }
+    if (strcmp(actor->does, "null index") == 0) {
+        return host->functions->subscribe(host->state, &topic, NULL, error);
+    }
+    if (strcmp(actor->does, "null reference") == 0) {
+        return host->functions->reference(host->state, saoms_text("callee"), saoms_text("c.Callee"), NULL, error);
+    }
+    return host->functions->publish(host->state, &topic, &actor->publisher, error);
+}
+
+static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    Actor *actor = component;
+    uint8_t memory[64];
+    SaomsBuffer message = saoms_writer(memory, sizeof memory);
+    act(actor, "execute");
+    if (strcmp(actor->does, "null views") == 0) {
+        SaomsRecordView record = {saoms_text("text"), saoms_text("a,"), NULL, 1};
+        host->functions->report(host->state, saoms_text("c.null"), NULL);
+        host->functions->journal(host->state, 0, NULL);
+        host->functions->journal(host->state, 0, &record);
+        host->functions->changed(host->state, saoms_text("entry"), NULL, NULL);
+    }
+#ifdef UNBOUND
+    if (strcmp(actor->does, "turn") == 0) {
+        turn_the_wheels();
+    }
+#endif
+    saoms_write_string(&message, "word");
+    return host->functions->send(host->state, actor->publisher, NULL, saoms_written(&message), error);
+}
+
+static SaomsStatus shutdown(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    (void)host, (void)error;
+    act(component, "shutdown");
+    return SaomsStatus_OK;
+}
+
+static SaomsStatus serve(void *component, const SaomsHostHandle *host, SaomsBytes service, uint32_t operation,
+                         SaomsBytes arguments, SaomsSink reply, SaomsSink error) {
+    (void)component, (void)host, (void)service, (void)operation, (void)arguments, (void)reply, (void)error;
+    return SaomsStatus_MISMATCH;
+}
+
+static void destroy(void *component) {
+    act(component, "destroy");
+    free(component);
+}
+
+static SaomsBytes effect(void *looping, uint32_t number) {
+    (void)looping;
+    return number == 0 ? saoms_text("brightness") : saoms_text("");
+}
+
+#ifdef NULL_ENTRIES
+static uint32_t entries(void *looping, SaomsEntriesHandle *given) {
+    static SaomsEntriesFunctions functions = {.size = sizeof functions};
+    given->state = looping;
+    given->functions = NULL_ENTRIES ? &functions : NULL;
+    return 1;
+}
+#else
+static uint32_t entries(void *looping, SaomsEntriesHandle *given) {
+    (void)looping, (void)given;
+    return 0;
+}
+#endif
+
+static SaomsStatus step(void *looping, const SaomsEntriesHandle *knowledge, const SaomsHostHandle *host,
+                        SaomsSink error) {
+    Actor *actor = looping;
+    if (strcmp(actor->does, "null value") == 0) {
+        return knowledge->functions->set(knowledge->state, 0, NULL, error);
+    }
+    if (strcmp(actor->does, "null place") == 0) {
+        knowledge->functions->describe(knowledge->state, 0, NULL);
+        return knowledge->functions->get(knowledge->state, 0, NULL) == 0 ? saoms_fail(error, "nothing was got")
+                                                                          : SaomsStatus_OK;
+    }
+    if (strcmp(actor->does, "null loop") == 0) {
+        return host->functions->chosen_loop(host->state, 0, NULL, error);
+    }
+    return SaomsStatus_OK;
+}
+
+#define TOPICS JSON([{"topic": "WORDS", "kind": "event", "message": "Word", "optional": true, "schema":) WORD JSON(}])
+#define PROPERTIES JSON("properties": [{"name": "at", "type": "string", "default": ""}, {"name": "does", "type": "string", "default": ""}])
+
+SAOMS_METADATA static const char metadata[] =
+    JSON({"saoms": "plugin", "abi":) TEXT(SAOMS_ABI_VERSION) JSON(, "package": "actor", "version": "0.1.0", "entry": "actor_plugin", "classes": [
+        {"contract": 1, "class": "c.Actor", "kind": "periodic",) PROPERTIES JSON(,
+         "references": [{"name": "callee", "optional": true, "interface": {"name": "c.Callee", "operations": []}}],
+         "publishes":) TOPICS JSON(, "subscribes":) TOPICS JSON(}], "loops": [
+        {"contract": 1, "loop": "c.Step", "effects": ["brightness"],) PROPERTIES JSON(}]});
+
+#ifndef COMPONENT
+#define COMPONENT &component_table
+#endif
+#ifndef LOOPING
+#define LOOPING &loop_table
+#endif
+#ifndef HOLES
+#define HOLES
+#endif
+#ifndef LOOP_HOLES
+#define LOOP_HOLES
+#endif
+#ifndef CONSTRUCT
+#define CONSTRUCT construct
+#endif
+#ifndef SIZE
+#define SIZE sizeof(SaomsComponentTable)
+#endif
+
+/* A later member of the same name counts. */
+static SaomsComponentTable component_table = {
+    .size = SIZE, .initialize = initialize, .execute = execute,
+    .shutdown = shutdown, .serve = serve, .destroy = destroy, HOLES
+};
+
+static SaomsClassTable class_table = {.size = sizeof class_table, .construct = CONSTRUCT, .component = COMPONENT};
+
+static SaomsLoopTable loop_table = {
+    .size = sizeof loop_table, .effect = effect, .entries = entries, .initialize = step,
+    .monitor = step, .adapt = step, .shutdown = step, .destroy = destroy, LOOP_HOLES
+};
+
+static SaomsLoopClassTable loop_class = {.size = sizeof loop_class, .construct = construct, .looping = LOOPING};
+
+#ifndef CLASS
+#define CLASS &class_table
+#endif
+#ifndef CLASSES
+#define CLASSES classes
+#endif
+
+SAOMS_EXPORT const SaomsPluginTable *actor_plugin(uint32_t version) {
+    static const SaomsClassTable *classes[1];
+    static const SaomsLoopClassTable *loops[] = {&loop_class};
+    static SaomsPluginTable table = {.size = sizeof table, .version = SAOMS_ABI_VERSION, .class_count = 1, .loop_count = 1};
+    (void)version;
+    /* Used in all cases, so that a compiler says nothing. */
+    (void)component_table, (void)loop_table;
+    classes[0] = CLASS;
+    table.classes = CLASSES;
+    table.loops = loops;
+    table.metadata = saoms_text(metadata);
+    return &table;
+}

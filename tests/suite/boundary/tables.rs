@@ -1,0 +1,105 @@
+//! Libraries in C whose tables have holes, and code in C that gives null where it must not.
+
+use super::build::{c_library, library};
+use super::run::{Run, component, property, second};
+
+/// A second of virtual time with an actor of a library that was built with these definitions.
+fn run(definitions: &[&str], inside: &str) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    second(&component("Bad", "c.Actor", inside), &[c_library(folder.path(), definitions)])
+}
+
+/// Nothing starts, with one message that names the library and says this.
+fn assert_refused(run: &Run, expected: &[&str]) {
+    assert_eq!(run.code, Some(2), "{}", run.text);
+    let errors: Vec<&str> = run.text.lines().filter(|line| line.starts_with("error")).collect();
+    assert_eq!(errors.len(), 1, "{}", run.text);
+    for expected in ["libactor.so` (actor) cannot be loaded: "].iter().chain(expected) {
+        assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
+    }
+}
+
+#[test]
+fn a_library_is_whole_without_what_may_be_null() {
+    let run = run(&[], "");
+    assert_eq!((run.code, &run.component("Bad")["messages"]["sent"]), (Some(0), &10.into()), "{}", run.text);
+}
+
+#[test]
+fn a_null_function_is_refused_by_its_name() {
+    for function in ["initialize", "execute", "shutdown", "serve", "destroy"] {
+        let run = run(&[&format!("HOLES=.{function}=NULL")], "");
+        let expected = format!("`{function}` in its `SaomsComponentTable` of class `c.Actor` is null: set it, ");
+        assert_refused(&run, &[&expected, "a function that does nothing where there is nothing to do"]);
+    }
+    assert_refused(&run(&["CONSTRUCT=NULL"], ""), &["`construct` in its `SaomsClassTable` of class `c.Actor` is null"]);
+    for function in ["effect", "entries", "initialize", "monitor", "adapt", "shutdown", "destroy"] {
+        let run = run(&[&format!("LOOP_HOLES=.{function}=NULL")], "");
+        assert_refused(&run, &[&format!("`{function}` in its `SaomsLoopTable` of loop `c.Step` is null: set it")]);
+    }
+}
+
+#[test]
+fn a_null_or_short_table_is_refused_by_its_name() {
+    for (definition, expected) in [
+        ("CLASS=NULL", "its `SaomsClassTable` of class `c.Actor` is null: let its entry in the tables"),
+        ("CLASSES=NULL", "its list of `SaomsClassTable`s is null, expected 1 class"),
+        ("COMPONENT=NULL", "`component` in its `SaomsClassTable` of class `c.Actor` is null"),
+        ("LOOPING=NULL", "`looping` in its `SaomsLoopClassTable` of loop `c.Step` is null"),
+        ("SIZE=12", "its `SaomsComponentTable` of class `c.Actor` has 12 bytes, expected at least "),
+    ] {
+        assert_refused(&run(&[definition], ""), &[expected]);
+    }
+}
+
+#[test]
+fn a_function_that_nobody_has_is_missing_when_the_library_is_loaded() {
+    // Called in an execution alone, and in none of this run.
+    let run = run(&["UNBOUND"], "");
+    assert_refused(&run, &["undefined symbol: turn_the_wheels: link it with the file that defines this"]);
+}
+
+#[test]
+fn null_in_place_of_a_view_or_an_answer_is_a_failure() {
+    for (does, code, expected) in [
+        ("null finding", 2, "found null for a finding"),
+        ("null topic", 1, "found null for a topic"),
+        ("null index", 1, "found null for the place of the index"),
+        ("null reference", 1, "found null for the place of the index"),
+    ] {
+        let run = run(&[], &property("does", does));
+        assert_eq!(run.code, Some(code), "{does}: {}", run.text);
+        assert!(run.text.contains(expected) && run.text.contains("Bad"), "{does}: {}", run.text);
+    }
+    let run = run(&[], &property("does", "null views"));
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    for expected in
+        ["null for the value", "null for the record", "null for the values", "null for a value of the entry"]
+    {
+        assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
+    }
+}
+
+#[test]
+fn null_in_a_loop_is_a_failure_of_its_component() {
+    let run = |definitions: &[&str], does: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let looping = format!("<saoms:loop name=\"Step\" class=\"c.Step\">{}</saoms:loop>", property("does", does));
+        let remove = "<saoms:loop name=\"Switch\" remove=\"true\"/>";
+        let components = component("Bad", "bad.Lamp", &format!("{remove}{looping}"));
+        let libraries = [c_library(folder.path(), definitions), library("bad")];
+        second(&components, &libraries)
+    };
+    for (definitions, does, expected) in [
+        (&[][..], "null value", "found null for the value of an entry"),
+        (&[], "null place", "nothing was got"),
+        (&[], "null loop", "found null for the place of a loop"),
+        (&["NULL_ENTRIES=0"], "", "found null for the table of functions of its entries"),
+        (&["NULL_ENTRIES=1"], "", "`declaration` in its `SaomsEntriesFunctions` is null"),
+    ] {
+        let run = run(definitions, does);
+        assert_eq!(run.code, Some(1), "{does}: {}", run.text);
+        assert!(run.text.contains(expected) && run.text.contains("Bad"), "{does}: {}", run.text);
+    }
+    assert_eq!(run(&[], "").code, Some(0));
+}
