@@ -6,6 +6,7 @@ use saoms_abi::{Bytes, EntriesHandle, FindingSink, HostHandle, Inbox, MessageVie
 
 use crate::host::Host;
 use crate::host::SharedMessage;
+use crate::host::contain::resume;
 use crate::{CallError, Context, Failure, Knowledge};
 
 use super::convert::Findings;
@@ -115,6 +116,9 @@ impl Lease {
     ///
     /// # Errors
     /// The code answers with a failure, or the lease was misused.
+    ///
+    /// # Panics
+    /// The code panicked.
     #[inline]
     pub fn call(
         &mut self,
@@ -122,7 +126,7 @@ impl Lease {
         code: impl FnOnce(*const HostHandle, Sink) -> Status,
     ) -> Result<(), Failure> {
         let status = self.with_context(context, |lent, handle| lent.hold(|error| code(handle, error)));
-        self.outcome(status)
+        resumed(status, self.outcome(status))
     }
 
     /// Calls a function of a loop with knowledge and a context.
@@ -150,6 +154,9 @@ impl Lease {
     ///
     /// # Errors
     /// The code answers with an error, or the lease was misused.
+    ///
+    /// # Panics
+    /// The code panicked.
     pub fn serve(
         &mut self,
         context: &mut Context<'_>,
@@ -157,6 +164,9 @@ impl Lease {
     ) -> Result<&[u8], CallError> {
         let into_reply = self.reply();
         let status = self.with_context(context, |lent, handle| lent.hold(|error| code(handle, into_reply, error)));
+        if status == Status::PANICKED {
+            resumed(status, self.outcome(status))?;
+        }
         // SAFETY: there is no holder, so this thread alone uses it.
         let error = unsafe { &mut *self.0.error.get() };
         let result = call_outcome(status, &error.bytes);
@@ -214,26 +224,41 @@ impl Lease {
     }
 }
 
+/// The outcome, unless the other side panicked: that goes on here, so that it is handled as a panic of linked code.
+#[inline]
+fn resumed(status: Status, outcome: Result<(), Failure>) -> Result<(), Failure> {
+    match outcome {
+        Err(failure) if status == Status::PANICKED => resume(failure),
+        outcome => outcome,
+    }
+}
+
 /// Calls a function that is lent a sink for errors.
 ///
 /// # Errors
 /// It answers with a failure, or the sink was misused.
+///
+/// # Panics
+/// It panicked.
 pub fn call(code: impl FnOnce(Sink) -> Status) -> Result<(), Failure> {
     let mut lent = Lease::default();
     let status = lent.hold(code);
-    lent.outcome(status)
+    resumed(status, lent.outcome(status))
 }
 
 /// Calls a function that is lent a sink for bytes and one for errors.
 ///
 /// # Errors
 /// As [`call`].
+///
+/// # Panics
+/// As [`call`].
 pub fn call_for_bytes(bytes: &mut Vec<u8>, code: impl FnOnce(Sink, Sink) -> Status) -> Result<(), Failure> {
     bytes.clear();
     let mut lent = Lease::default();
     let into_bytes = lent.reply();
     let status = lent.hold(|error| code(into_bytes, error));
-    lent.outcome(status)?;
+    resumed(status, lent.outcome(status))?;
     bytes.extend_from_slice(lent.replied()?);
     Ok(())
 }

@@ -248,7 +248,7 @@ impl Host for RemoteHost<'_> {
                 // What is built into this library works on the structs of this library.
                 let own = LoopRegistration::linked().find(|known| known.name() == class);
                 let made = match own {
-                    Some(own) => own.construct(&values),
+                    Some(own) => contained(|| own.construct(&values)).and_then(|made| made),
                     None => self.made_by_host(place),
                 };
                 Ok((name.clone(), made.map_err(|failure| Failure::new(format!("loop `{name}`: {failure}")))?))

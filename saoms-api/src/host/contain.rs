@@ -48,8 +48,19 @@ pub(crate) fn contained_or<T, R>(
     }
 }
 
+/// Goes on with a panic that was caught at the boundary to a library, as if the library's code were linked in: what
+/// contains that contains this. The failure is told as it is.
+#[cold]
+pub(crate) fn resume(failure: Failure) -> ! {
+    panic::resume_unwind(Box::new(failure))
+}
+
 #[cold]
 fn describe(payload: Box<dyn Any + Send>) -> Failure {
+    let payload = match payload.downcast::<Failure>() {
+        Ok(failure) => return *failure,
+        Err(payload) => payload,
+    };
     let message = payload
         .downcast_ref::<String>()
         .map(String::as_str)

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use saoms_api::Saved;
 use saoms_api::host::PropertyValue;
+use saoms_api::host::contain::contained;
 use saoms_core::plugin::Plugin;
 use saoms_lang::registry::Registry;
 
@@ -103,9 +104,9 @@ fn a_panic_in_what_a_reload_calls_is_a_failure() {
         let values = values.map(|(name, value)| (name.into(), PropertyValue::from(value)));
         registry.get("bad.Actor").unwrap().construct(&values).unwrap()
     };
-    let failure = made("save").save().map(drop).unwrap_err();
+    let failure = contained(|| made("save").save().map(drop)).unwrap_err();
     assert!(failure.message().ends_with("no more of save"), "{failure}");
-    let failure = made("restore").restore(&Saved::default()).unwrap_err();
+    let failure = contained(|| made("restore").restore(&Saved::default())).unwrap_err();
     assert!(failure.message().ends_with("no more of restore"), "{failure}");
 }
 

@@ -1,6 +1,7 @@
 //! Plugins at their best and at their worst: real libraries, built once from `tests/plugins`, loaded by the real
 //! command.
 
+mod alike;
 mod build;
 mod misbehaving;
 mod named;

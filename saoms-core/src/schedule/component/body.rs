@@ -166,7 +166,7 @@ impl Body {
         };
         let mut host = ComponentHost { shared, part: &mut self.part };
         let mut context = Context::new(&mut host, &self.inboxes);
-        contained(|| code(instance.as_mut(), &mut context))
+        contained(|| code(instance.as_mut(), &mut context)).map_err(|panic| self.part.of_loop(panic))
     }
 
     /// Drops the instance. A panic of its destructor is contained, too.
@@ -193,6 +193,15 @@ fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
 }
 
 impl Part {
+    /// Names the loop whose code panicked, if it was one.
+    #[cold]
+    fn of_loop(&self, panic: Failure) -> Failure {
+        match self.recorder.present().and_then(|place| self.spec.loops.get(usize::from(place))) {
+            Some(one) => Failure::new(format!("loop `{}`: {panic}", one.name)),
+            None => panic,
+        }
+    }
+
     pub(crate) fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }

@@ -2,6 +2,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::host::contain::contained;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
@@ -279,7 +280,7 @@ impl Host for ComponentHost<'_> {
             return Err(Failure::new("a component can only take its loops in `initialize`; keep what `loops` returns"));
         }
         let one = self.spec().loops.get(place as usize).ok_or("there are not so many loops")?;
-        let constructed = one.class.construct(&one.values);
+        let constructed = contained(|| one.class.construct(&one.values)).and_then(|made| made);
         constructed.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", one.name)))
     }
 

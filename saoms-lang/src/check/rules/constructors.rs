@@ -29,7 +29,7 @@ fn partly(
     repeated: &RepeatedValues,
     report: &mut Report<'_>,
 ) {
-    let construct = |values: &[(SmolStr, PropertyValue)]| class.class.construct(values).map(drop);
+    let construct = |values: &[(SmolStr, PropertyValue)]| dropped(class.class.construct(values));
     let unsure: Vec<&PropertyDeclaration> = unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
     if unsure.is_empty() {
         return judge(|| construct(subject.values), subject, class.class.name(), repeated, report);
@@ -61,6 +61,11 @@ fn partly(
     };
     let found: Vec<Finding> = found.unwrap_or_default().into_iter().filter(is_given).collect();
     findings(&found, subject, class.class.name(), repeated, report);
+}
+
+/// The judgement alone. A panic of a destructor is none: it harms no fleet.
+fn dropped<T>(made: Result<T, Failure>) -> Result<(), Failure> {
+    made.map(|made| drop(contained(|| drop(made))))
 }
 
 /// Reports the findings of a constructor at the values that they are about, any other judgement at the name.
@@ -131,11 +136,11 @@ pub(crate) fn check_all(
         report.about(member);
         let (subject, class) = (check.subject(member), of.class);
         if is_asked(class.origin(), class.is_only_read()) {
-            judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
+            judge(|| dropped(class.construct(subject.values)), subject, class.name(), repeated, report);
         }
         for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {
             if is_asked(class.origin(), class.is_only_read()) {
-                judge(|| class.construct(subject.values).map(drop), subject, class.name(), repeated, report);
+                judge(|| dropped(class.construct(subject.values)), subject, class.name(), repeated, report);
             }
         }
     }

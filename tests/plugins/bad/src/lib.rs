@@ -4,8 +4,8 @@ use std::panic::panic_any;
 use std::time::Duration;
 
 use saoms_api::{
-    Class, Component, Context, Effector, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message,
-    Properties, Publisher, Record, Saved, Subscription, Topic, interface, record,
+    Class, Component, Context, Effector, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
+    Publisher, Record, Saved, Subscription, Topic, interface, record,
 };
 
 /// A message.
@@ -46,9 +46,9 @@ impl Drop for Nasty {
 }
 
 impl ActorProperties {
-    fn act(&self, place: &str) {
+    fn act(&self, place: &str) -> Result<(), Failure> {
         if self.at != place {
-            return;
+            return Ok(());
         }
         match &*self.does {
             "panic" => panic!("no more of {place}"),
@@ -57,8 +57,10 @@ impl ActorProperties {
             "never" => loop {
                 std::thread::sleep(Duration::from_secs(1));
             },
+            "fail" => return Err(format!("fails in {place}").into()),
             other => panic!("what is {other}?"),
         }
+        Ok(())
     }
 }
 
@@ -76,13 +78,13 @@ impl Component for Actor {
     type Properties = ActorProperties;
 
     fn new(properties: ActorProperties) -> Result<Self, Failure> {
-        properties.act("new");
+        properties.act("new")?;
         let (said, heard, callee) = Default::default();
         Ok(Actor { properties, said, heard, callee })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.properties.act("initialize");
+        self.properties.act("initialize")?;
         self.said = context.publish(&WORDS)?;
         self.heard = context.subscribe(&WORDS)?;
         self.callee = context.reference("callee")?;
@@ -94,10 +96,10 @@ impl Component for Actor {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         if context.receive(&self.heard).count() > 0 {
-            self.properties.act("receive");
+            self.properties.act("receive")?;
         }
         if context.execution() == 3 {
-            self.properties.act("execute");
+            self.properties.act("execute")?;
         }
         if context.is_wired(&self.callee) && context.execution() > 1 {
             self.callee.call(context)?;
@@ -107,31 +109,31 @@ impl Component for Actor {
     }
 
     fn shutdown(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.properties.act("shutdown");
+        self.properties.act("shutdown")?;
         Ok(())
     }
 
     fn save(&mut self) -> Result<Saved, Failure> {
-        self.properties.act("save");
+        self.properties.act("save")?;
         Ok(Saved::default())
     }
 
     fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
-        self.properties.act("restore");
+        self.properties.act("restore")?;
         Ok(())
     }
 }
 
 impl Callee for Actor {
     fn call(&mut self, _: &mut Context<'_>) -> Result<u32, Failure> {
-        self.properties.act("serve");
+        self.properties.act("serve")?;
         Ok(1)
     }
 }
 
 impl Drop for Actor {
     fn drop(&mut self) {
-        self.properties.act("drop");
+        let _ = self.properties.act("drop");
     }
 }
 
@@ -191,56 +193,46 @@ impl Loop for Switch {
     type Decision = Record;
 
     fn new(properties: ActorProperties) -> Result<Self, Failure> {
-        properties.act("new");
+        properties.act("new")?;
         Ok(Switch { properties, brightness: Effector::default() })
     }
 
     fn initialize(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.properties.act("initialize");
+        self.properties.act("initialize")?;
         self.brightness = knowledge.effector("brightness")?;
         Ok(())
     }
 
     fn monitor(&mut self, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.properties.act("monitor");
+        self.properties.act("monitor")?;
         Ok(())
     }
 
     fn analyze(&mut self, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
-        self.properties.act("analyze");
+        self.properties.act("analyze")?;
         Ok(Some(record!("it is dark")))
     }
 
-    fn plan(
-        &mut self,
-        _: Record,
-        _: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<Option<Record>, Failure> {
-        self.properties.act("plan");
+    fn plan(&mut self, _: Record, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
+        self.properties.act("plan")?;
         Ok(Some(record!("switches it on")))
     }
 
-    fn execute(
-        &mut self,
-        _: Record,
-        knowledge: &mut dyn Knowledge,
-        _: &mut Context<'_>,
-    ) -> Result<(), Failure> {
-        self.properties.act("execute");
+    fn execute(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
+        self.properties.act("execute")?;
         let brighter = self.brightness.get(knowledge)? + 1;
         self.brightness.set(knowledge, brighter)
     }
 
     fn shutdown(&mut self, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.properties.act("shutdown");
+        self.properties.act("shutdown")?;
         Ok(())
     }
 }
 
 impl Drop for Switch {
     fn drop(&mut self) {
-        self.properties.act("drop");
+        let _ = self.properties.act("drop");
     }
 }
 
