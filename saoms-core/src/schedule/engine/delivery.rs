@@ -36,9 +36,10 @@ impl Engine {
     #[inline]
     pub(crate) fn deliver(&mut self, part: &mut Part, now: u64) {
         self.record(part, now);
-        if !part.outbox.is_empty() {
-            self.standstill.note_effect(now);
+        if part.outbox.is_empty() {
+            return;
         }
+        self.standstill.note_effect(now);
         self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
         for (topic, message) in part.outbox.drain(..) {
             if let Some(trace) = &mut self.trace {

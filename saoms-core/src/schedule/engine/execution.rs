@@ -147,13 +147,13 @@ impl Engine {
                     self.deliver(&mut body.part, ended);
                 }
                 let vote = body.part.vote.take_if(|_| !held);
-                if job == Job::Ask {
-                    self.slots[index as usize].waits_for = body.part.waits_for.take();
+                let slot = &mut self.slots[index as usize];
+                match job {
+                    Job::Execute | Job::Shutdown => {}
+                    Job::Ask => slot.waits_for = body.part.waits_for.take(),
+                    Job::Start => body.inboxes.resize_with(body.part.subscriptions.len(), Vec::new),
                 }
-                if job == Job::Start {
-                    body.inboxes.resize_with(body.part.subscriptions.len(), Vec::new);
-                }
-                self.slots[index as usize].body = Some(body);
+                slot.body = Some(body);
                 if let Some(vote) = vote {
                     self.vote(index, vote, ended);
                 }

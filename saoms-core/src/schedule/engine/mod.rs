@@ -194,10 +194,9 @@ impl Engine {
                             if self.phase != RunPhase::Running {
                                 continue;
                             }
-                        } else {
-                            let quiet = self.standstill.quiet_from();
-                            self.look_at = self.injections.earliest().map_or(quiet, |when| when.min(quiet));
                         }
+                        let quiet = self.standstill.next_look(now);
+                        self.look_at = self.injections.earliest().map_or(quiet, |when| when.min(quiet));
                     }
                     let Some((when, index)) = self.queue.pop_due(now) else {
                         return Next::Wait(self.earliest().unwrap_or(NEVER).min(self.limit));

@@ -42,9 +42,15 @@ impl StandstillDetector {
         self.last_effect = now;
     }
 
-    /// The time from which it is quiet unless something happens.
-    pub(crate) fn quiet_from(&self) -> u64 {
-        self.last_effect.saturating_add(self.patience)
+    /// The earliest time at which there is something to ask or to tell, after all that there was at a time.
+    pub(crate) fn next_look(&self, now: u64) -> u64 {
+        let quiet = self.last_effect.saturating_add(self.patience);
+        if now < quiet {
+            return quiet;
+        }
+        // All were asked: only an effect begins another round, or an hour without one.
+        let long = self.last_effect.saturating_add(LONG);
+        now.saturating_add(QUIET).min(if now < long { long } else { NEVER })
     }
 
     #[inline]
