@@ -1,12 +1,14 @@
 //! Rule: a robot breaks down that is broken already.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
+use super::hearing::{events, passed_on};
 use super::robots::robots;
 use crate::environment::{Environment, EventSpec, Scenario};
+use crate::messages::FAULT;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -26,17 +28,21 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let scheduled = fleet.components().iter().flat_map(|one| one.wires.iter().map(|(_, target)| *target));
     let scheduled: HashSet<usize> = scheduled.collect();
     let robots = robots(fleet);
-    let repaired = robots.iter().filter(|robot| scheduled.contains(&robot.index)).map(|robot| robot.number);
-    let repaired: HashSet<u32> = repaired.collect();
+    let repaired = robots.iter().filter(|robot| scheduled.contains(&robot.index));
+    let repaired = repaired.map(|robot| (robot.number, fleet.components()[robot.index].topic(FAULT.name())));
+    let repaired: HashSet<(u32, &str)> = repaired.collect();
+    let mut heard: HashMap<&str, BTreeSet<&str>> = HashMap::new();
     let mut findings = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
         let mut first: HashMap<u32, Place> = HashMap::new();
+        let events = events(fleet, index);
+        let heard = heard.entry(events).or_insert_with(|| passed_on(fleet, events, FAULT.name()));
         for line in scenario.lines() {
             let EventSpec::Breakdown(robot) = &line.event else { continue };
             let number = robot.value.least;
             // Of several robots one is drawn.
-            if number != robot.value.most || repaired.contains(&number) {
+            if number != robot.value.most || heard.iter().any(|name| repaired.contains(&(number, *name))) {
                 continue;
             }
             let place = Place::property("scenario").part(line.text, robot.bytes.clone()).in_component(index);

@@ -4,8 +4,7 @@ use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::map::{WorldMap, areas};
-use super::robots::{FleetRobot, by_world, robots};
-use crate::world::World;
+use super::robots::{FleetRobot, robots};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -22,19 +21,18 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
-    let by_world = by_world(&robots);
+    let mut inside: Vec<(usize, &FleetRobot)> =
+        robots.iter().filter_map(|robot| Some((robot.ground?, robot))).collect();
+    inside.sort_by_key(|(world, _)| *world);
     let mut findings = Vec::new();
     if robots.is_empty() {
         return findings;
     }
-    // Where there is one world, robots that are not wired to it drive on its blocks, too.
-    let is_one = fleet.indices::<World>().nth(1).is_none() && !fleet.misses::<World>();
     for area in areas(fleet) {
-        let first = by_world.partition_point(|(world, _)| *world < area.index);
-        let inside = by_world[first..].iter().take_while(|(world, _)| *world == area.index);
-        let inside = inside.map(|(_, robot)| (*robot, Severity::Error));
-        let beside = robots.iter().filter(|robot| is_one && robot.world.is_none());
-        for (robot, severity) in inside.chain(beside.map(|robot| (robot, Severity::Warning))) {
+        let first = inside.partition_point(|(world, _)| *world < area.index);
+        for (_, robot) in inside[first..].iter().take_while(|(world, _)| *world == area.index) {
+            // One that is not wired drives on the blocks all the same.
+            let severity = if robot.world.is_some() { Severity::Error } else { Severity::Warning };
             findings.extend(on_map(fleet, &area, robot).map(|finding| finding.severity(severity)));
         }
     }

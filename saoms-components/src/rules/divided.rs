@@ -7,7 +7,7 @@ use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::budget::Budget;
-use super::map::{LuggageLine, WorldMap, area, luggage, rows};
+use super::map::{LuggageLine, WorldMap, area, by_events, rows};
 use super::robots::{FleetRobot, may_be_others, robots, unless_elsewhere};
 use crate::environment::{Spanned, Spot};
 use crate::grid::{Block, Map};
@@ -26,9 +26,20 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
+    if may_be_others(fleet) {
+        return Vec::new();
+    }
+    let robots = robots(fleet);
+    let all = by_events(fleet);
+    let findings = all.iter().flat_map(|(events, luggage)| check_luggage(fleet, &robots, events, luggage)).collect();
+    unless_elsewhere(fleet, findings)
+}
+
+/// The findings about luggage of one name of the events on the bus.
+fn check_luggage(fleet: &FleetView<'_>, robots: &[FleetRobot], events: &str, luggage: &[LuggageLine]) -> Vec<Finding> {
+    let Some(area) = area(fleet, events) else { return Vec::new() };
     let robots: Vec<&FleetRobot> = robots.iter().filter(|robot| robot.world == Some(area.index)).collect();
-    if area.map.is_open() || robots.is_empty() || may_be_others(fleet) {
+    if area.map.is_open() || robots.is_empty() {
         return Vec::new();
     }
     let parts = Parts::of(&area.map);
@@ -36,8 +47,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let chargers: Option<HashSet<u32>> = robots.iter().map(|robot| parts.part(robot.charger)).collect();
     let Some(chargers) = chargers else { return Vec::new() };
     let mut reached = Reached { area: &area, parts: &parts, chargers: &chargers, budget: Budget::default() };
-    let findings = luggage(fleet).iter().flat_map(|piece| check_piece(&mut reached, piece)).collect();
-    unless_elsewhere(fleet, findings)
+    luggage.iter().flat_map(|piece| check_piece(&mut reached, piece)).collect()
 }
 
 /// Parts of the map that robots reach.

@@ -1,12 +1,13 @@
 //! Rule: two environments give their luggage the same numbers.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
+use super::hearing::{events, hearing};
 use super::map::{LuggageLine, luggage};
-use crate::messages::ENVIRONMENT;
+use crate::messages::EVENT_LUGGAGE;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -23,15 +24,21 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let components = fleet.components();
-    let luggage = luggage(fleet);
-    let mut first: HashMap<&str, &LuggageLine> = HashMap::new();
+    let (components, hearing) = (fleet.components(), hearing(fleet));
+    // The first environment with luggage of each name of a topic on which its events, or its luggage, are told.
+    let mut first: HashMap<&str, LuggageLine> = HashMap::new();
+    let mut passed: HashMap<&str, BTreeSet<&str>> = HashMap::new();
     let mut findings = Vec::new();
-    for lines in luggage.chunk_by(|one, other| one.index == other.index) {
-        let Some(line) = lines.first() else { continue };
-        let events = components[line.index].topic(ENVIRONMENT.name());
-        let Some(other) = first.get(events) else {
-            first.insert(events, line);
+    let mut all = luggage(fleet);
+    all.dedup_by_key(|line| line.index);
+    for line in all {
+        let events = events(fleet, line.index);
+        let names = passed.entry(events).or_insert_with(|| {
+            let masters = hearing.masters(events).iter();
+            masters.map(|master| components[*master].topic(EVENT_LUGGAGE.name())).chain([events]).collect()
+        });
+        let Some(other) = names.iter().find_map(|name| first.get(name)) else {
+            first.extend(names.iter().map(|name| (*name, line.clone())));
             continue;
         };
         let message = format!(

@@ -1,10 +1,13 @@
 //! Rule: luggage starts or ends on a block that no robot can enter.
 
-use saoms_api::Finding;
-use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
+use std::collections::HashMap;
+
+use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
 
 use super::budget::Budget;
-use super::map::{LuggageLine, WorldMap, area, luggage, rows};
+use super::hearing::TOGETHER;
+use super::map::{LuggageLine, WorldMap, area, by_events, rows};
 use super::robots::unless_elsewhere;
 use crate::environment::{Spanned, Spot};
 use crate::messages::AREA;
@@ -24,25 +27,49 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let area = area(fleet);
-    let says = |component: &ComponentView<'_>| component.class.publishes.contains(&AREA.name());
-    let is_said = fleet.misses::<World>() || fleet.components().iter().any(says);
+    let said = said(fleet);
     let (mut findings, mut budget) = (Vec::new(), Budget::default());
-    for piece in luggage(fleet) {
-        for spot in [&piece.from, &piece.to] {
-            match &area {
-                Some(area) => findings.extend(check_spot(area, &piece, spot, &mut budget)),
-                None if spot.value == Spot::Anywhere && !is_said => {
-                    let message = "`random` needs an area to draw from, and nothing in the fleet says one";
-                    let help = "add a `saoms.World`, or write two corners such as `(1,0)..(10,10)`";
-                    let finding = Finding::new(piece.place(spot), message).help(help);
-                    findings.extend(unless_elsewhere(fleet, vec![finding]));
-                }
-                None => {}
+    for (events, luggage) in by_events(fleet) {
+        let area = area(fleet, events);
+        for (piece, spot) in luggage.iter().flat_map(|piece| [(piece, &piece.from), (piece, &piece.to)]) {
+            let is_drawn = spot.value == Spot::Anywhere && !fleet.misses::<World>();
+            if is_drawn && !said.contains_key(fleet.components()[piece.index].topic(AREA.name())) {
+                findings.extend(unless_elsewhere(fleet, vec![nothing_to_draw(fleet, piece, spot, &said)]));
+            } else if let Some(area) = &area {
+                findings.extend(check_spot(area, piece, spot, &mut budget));
             }
         }
     }
     findings
+}
+
+/// The names on the bus on which areas are said, each with the first component that says one.
+fn said<'f>(fleet: &FleetView<'f>) -> HashMap<&'f str, usize> {
+    let mut said = HashMap::new();
+    for (index, component) in fleet.components().iter().enumerate() {
+        if component.class.publishes.contains(&AREA.name()) {
+            said.entry(component.topic(AREA.name())).or_insert(index);
+        }
+    }
+    said
+}
+
+fn nothing_to_draw(
+    fleet: &FleetView<'_>,
+    piece: &LuggageLine,
+    spot: &Spanned<Spot>,
+    said: &HashMap<&str, usize>,
+) -> Finding {
+    let heard = fleet.components()[piece.index].topic(AREA.name());
+    let Some((name, index)) = said.iter().min_by_key(|(_, index)| **index) else {
+        let message = "`random` needs an area to draw from, and nothing in the fleet says one";
+        let help = "add a `saoms.World`, or write two corners such as `(1,0)..(10,10)`";
+        return Finding::new(piece.place(spot), message).help(help);
+    };
+    let message = format!("`random` needs an area to draw from, and nothing says one on the topic `{heard}`");
+    Finding::new(piece.place(spot), message)
+        .label(Place::component(*index), format!("this one says its area on the topic `{name}`"))
+        .help(TOGETHER)
 }
 
 fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget: &mut Budget) -> Option<Finding> {

@@ -8,6 +8,7 @@ use std::time::Duration;
 use saoms_api::rule::FleetView;
 use saoms_api::{Finding, Place};
 
+use super::hearing::{events, hearing};
 use crate::environment::{Environment, EventSpec, RandomRange, Scenario, Spanned, Spot};
 use crate::grid::{Block, Map};
 use crate::world::{World, WorldProperties};
@@ -24,18 +25,23 @@ pub(super) struct WorldMap {
 /// Worlds with valid maps. Each map is built when it is needed, as it may take megabytes.
 pub(super) fn areas<'f>(fleet: &'f FleetView<'_>) -> impl Iterator<Item = WorldMap> + use<'f> {
     let worlds = fleet.all::<World>();
-    worlds.filter_map(|(index, properties)| {
-        Some(WorldMap { index, map: properties.map().ok()?, properties, blocked: OnceCell::new() })
-    })
+    worlds.filter_map(|(index, properties)| WorldMap::of(index, properties))
 }
 
-/// The map of the fleet; `None` if there is no world, or if several worlds, or one with a fault, make it ambiguous.
-pub(super) fn area(fleet: &FleetView<'_>) -> Option<WorldMap> {
-    let is_one = fleet.indices::<World>().take(2).count() == 1 && !fleet.misses::<World>();
-    is_one.then(|| areas(fleet).next()).flatten()
+/// The map of the world that hears the events of this name on the bus; `None` if there is none, or if several worlds, or
+/// one with a fault, make it ambiguous.
+pub(super) fn area(fleet: &FleetView<'_>, events: &str) -> Option<WorldMap> {
+    let hearing = hearing(fleet);
+    let [index] = *hearing.worlds(events) else { return None };
+    let properties = fleet.components()[index].properties::<World>().filter(|_| !fleet.misses::<World>())?;
+    WorldMap::of(index, properties)
 }
 
 impl WorldMap {
+    fn of(index: usize, properties: WorldProperties) -> Option<WorldMap> {
+        Some(WorldMap { index, map: properties.map().ok()?, properties, blocked: OnceCell::new() })
+    }
+
     /// Reason why no robot can be on a block: it is outside, or blocked.
     pub(super) fn problem(&self, block: Block) -> Option<String> {
         if !self.map.contains(block) {
@@ -68,6 +74,7 @@ impl WorldMap {
 }
 
 /// A luggage line of a scenario.
+#[derive(Clone)]
 pub(super) struct LuggageLine {
     /// Index of its environment.
     pub(super) index: usize,
@@ -105,6 +112,21 @@ pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<LuggageLine> {
                 all.push(LuggageLine { index, text: line.text, endless, from: from.clone(), to: to.clone() });
             }
         }
+    }
+    all
+}
+
+/// Luggage of all scenarios, by the names that the events have on the bus; both in document order.
+pub(super) fn by_events<'f>(fleet: &FleetView<'f>) -> Vec<(&'f str, Vec<LuggageLine>)> {
+    let mut places: HashMap<&str, usize> = HashMap::new();
+    let mut all: Vec<(&str, Vec<LuggageLine>)> = Vec::new();
+    for line in luggage(fleet) {
+        let events = events(fleet, line.index);
+        let place = *places.entry(events).or_insert(all.len());
+        if place == all.len() {
+            all.push((events, Vec::new()));
+        }
+        all[place].1.push(line);
     }
     all
 }

@@ -9,6 +9,7 @@ mod budget;
 mod charger;
 mod divided;
 mod environments;
+mod hearing;
 mod luggage;
 mod map;
 mod map_size;

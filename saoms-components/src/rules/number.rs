@@ -4,7 +4,7 @@ use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::robots::{FleetRobot, robots, sharing};
-use crate::messages::ROBOT_LIST;
+use crate::messages::{CRITICAL_SITUATION, EVENT_LUGGAGE, POSITION, ROBOT_LIST};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -19,14 +19,18 @@ pub(super) static RULE: FleetRule = FleetRule {
     check,
 };
 
+/// Topics on which robots say their numbers to each other.
+const SHARED: [&str; 4] = [ROBOT_LIST.name(), POSITION.name(), EVENT_LUGGAGE.name(), CRITICAL_SITUATION.name()];
+
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let mut findings = Vec::new();
+    let components = fleet.components();
     // Robots of two sites have numbers of their own, unless they hear each other or share a world.
-    let topic = |robot: &FleetRobot| fleet.components()[robot.index].topic(ROBOT_LIST.name()).to_owned();
-    let mut pairs = sharing(&robots, |robot| (robot.number, topic(robot)));
-    let of_world = sharing(&robots, |robot| (robot.number, robot.world.ok_or(robot.index)));
-    pairs.extend(of_world);
+    let mut pairs = sharing(&robots, |robot| (robot.number, robot.world.ok_or(robot.index)));
+    for topic in SHARED {
+        pairs.extend(sharing(&robots, |robot| (robot.number, components[robot.index].topic(topic))));
+    }
     pairs.sort_by_key(|(robot, other)| (robot.index, other.index));
     pairs.dedup_by_key(|(robot, _)| robot.index);
     for (robot, other) in pairs {

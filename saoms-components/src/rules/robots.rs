@@ -6,9 +6,11 @@ use std::rc::Rc;
 use saoms_api::rule::{Fact, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
+use super::hearing::hearing;
 use crate::grid::Block;
 use crate::messages::ROBOT_LIST;
 use crate::robot::{Robot, RobotProperties};
+use crate::world::World;
 
 /// A robot of the fleet with valid properties.
 pub(super) struct FleetRobot {
@@ -18,6 +20,8 @@ pub(super) struct FleetRobot {
     pub(super) charger: Block,
     /// Index of its world.
     pub(super) world: Option<usize>,
+    /// Index of the world whose blocks it drives on: its own, or, where it is wired to none, the one that hears of it.
+    pub(super) ground: Option<usize>,
     pub(super) properties: RobotProperties,
 }
 
@@ -64,26 +68,35 @@ impl Fact for Robots {
     fn of(fleet: &FleetView<'_>) -> Robots {
         // In large fleets most components are robots; reserving their number avoids moving the list as it grows.
         let mut known = Vec::with_capacity(fleet.indices::<Robot>().count());
+        let (hearing, misses) = (hearing(fleet), fleet.misses::<World>());
         known.extend(fleet.all::<Robot>().filter_map(|(index, properties)| {
             let number = properties.number().ok()?;
             let charger = properties.charge_block(number).ok()?;
-            let world = fleet.components()[index].target("world");
-            Some(FleetRobot { index, number, charger, world, properties })
+            let component = &fleet.components()[index];
+            let world = component.target("world");
+            let ground = world.or_else(|| match hearing.worlds_of_robots(component.topic(ROBOT_LIST.name())) {
+                [world] if !misses => Some(*world),
+                _ => None,
+            });
+            Some(FleetRobot { index, number, charger, world, ground, properties })
         }));
         Robots {
             known,
-            may_be_others: publishes_beside_robots(fleet, ROBOT_LIST.name()),
+            may_be_others: publishers_beside_robots(fleet, ROBOT_LIST.name()).next().is_some(),
             has_broker: fleet.components().iter().any(|component| component.has_broker),
         }
     }
 }
 
-/// True if a component other than a robot publishes on a topic.
-pub(super) fn publishes_beside_robots(fleet: &FleetView<'_>, topic: &str) -> bool {
+/// The components other than robots that publish on a topic.
+pub(super) fn publishers_beside_robots<'f>(
+    fleet: &FleetView<'f>,
+    topic: &'static str,
+) -> impl Iterator<Item = usize> + use<'f> {
     let mut robots = fleet.indices::<Robot>().peekable();
-    let mut components = fleet.components().iter().enumerate();
-    components
-        .any(|(index, component)| robots.next_if_eq(&index).is_none() && component.class.publishes.contains(&topic))
+    let components = fleet.components().iter().enumerate();
+    let others = components.filter(move |(index, _)| robots.next_if_eq(index).is_none());
+    others.filter(move |(_, component)| component.class.publishes.contains(&topic)).map(|(index, _)| index)
 }
 
 /// The robots that share a key with an earlier one, each with the first that has the key, in document order.

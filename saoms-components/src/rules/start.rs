@@ -4,6 +4,7 @@ use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
 use super::robots::{FleetRobot, robots, sharing};
+use crate::messages::ROBOT_LIST;
 use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -25,11 +26,14 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let robots = robots(fleet);
-    // Where there is one world, robots that are not wired to it drive between those that are.
-    let are_several = fleet.indices::<World>().nth(1).is_some();
-    let world = |robot: &FleetRobot| robot.world.filter(|_| are_several);
+    let components = fleet.components();
+    // Where no world is known, those that hear of each other drive on the same blocks.
+    let ground = |robot: &FleetRobot| match robot.ground {
+        Some(world) => (Some(world), ""),
+        None => (None, components[robot.index].topic(ROBOT_LIST.name())),
+    };
     let mut findings = Vec::new();
-    for (robot, other) in sharing(&robots, |robot| (world(robot), robot.charger.y, robot.charger.x)) {
+    for (robot, other) in sharing(&robots, |robot| (ground(robot), robot.charger.y, robot.charger.x)) {
         // Robots with the same number are reported by another rule.
         if other.number != robot.number {
             let message = format!(

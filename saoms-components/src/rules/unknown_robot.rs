@@ -1,16 +1,16 @@
 //! Rule: a breakdown names a robot that does not exist, or does not hear of it.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::ops::Range;
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
 use saoms_api::{Finding, Place};
 
 use super::budget::Budget;
+use super::hearing::{events, passed_on};
 use super::robots::{FleetRobot, has_broker, may_be_others, robots};
 use crate::environment::{Environment, EventSpec, RandomRange, Scenario};
-use crate::master::MasterEnvironment;
-use crate::messages::{ENVIRONMENT, FAULT};
+use crate::messages::FAULT;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -85,7 +85,7 @@ struct Names<'r> {
 
 impl<'r> Names<'r> {
     fn of(fleet: &FleetView<'r>, all: &'r [FleetRobot], environment: usize) -> Names<'r> {
-        let topics = topics(fleet, environment);
+        let topics = passed_on(fleet, events(fleet, environment), FAULT.name());
         let hears = |robot: &&FleetRobot| {
             topics.is_empty() || topics.contains(fleet.components()[robot.index].topic(FAULT.name()))
         };
@@ -109,20 +109,6 @@ impl<'r> Names<'r> {
     fn ids(&self) -> impl Iterator<Item = &'r str> {
         self.robots.iter().map(|robot| robot.properties.id.as_str())
     }
-}
-
-/// Names of the topics on which masters pass the breakdowns of an environment on; none if nobody does, which another
-/// rule reports.
-fn topics<'r>(fleet: &FleetView<'r>, environment: usize) -> HashSet<&'r str> {
-    let components = fleet.components();
-    let events = components[environment].topic(ENVIRONMENT.name());
-    let masters: HashSet<usize> = fleet.indices::<MasterEnvironment>().collect();
-    let passes = components.iter().enumerate().filter(|(index, component)| match masters.contains(index) {
-        true => component.topic(ENVIRONMENT.name()) == events,
-        // Whom a component of another class listens to is not known.
-        false => component.class.publishes.contains(&FAULT.name()),
-    });
-    passes.map(|(_, component)| component.topic(FAULT.name())).collect()
 }
 
 fn check_name(

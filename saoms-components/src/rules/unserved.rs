@@ -1,22 +1,25 @@
 //! Rule: a scenario has events that no component handles, so that a run would wait for ever.
 
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::robots::{FleetRobot, may_be_others, publishes_beside_robots, robots, unless_elsewhere};
+use super::hearing::{TOGETHER, events, hearing, passed_on};
+use super::robots::{FleetRobot, may_be_others, publishers_beside_robots, robots, unless_elsewhere};
 use crate::environment::{Environment, EventSpec, Scenario};
-use crate::master::MasterRobot;
-use crate::messages::{EVENT_LUGGAGE, ROBOT_STATE};
+use crate::master::{MasterEnvironment, MasterRobot};
+use crate::messages::{ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, ROBOT_STATE};
 use crate::robot::{Policy, Robot};
+use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",
-        meaning: "A scenario has no effect: no component passes its events on, there is no robot, or all robots are \
-            classic ones that sleep, and none is woken.",
+        meaning: "A scenario has no effect: no component hears its events and passes them on, no robot hears of them, their \
+            world does not, or all robots are classic ones that sleep, and none is woken.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -32,11 +35,20 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let scenarios = fleet.all::<Environment>();
     let scenarios: Vec<(usize, FirstEvents)> =
         scenarios.map(|(index, properties)| (index, FirstEvents::of(&properties.scenario))).collect();
-    let is_woken = scenarios.iter().any(|(_, has)| has.airplanes.is_some());
+    let with_airplanes = scenarios.iter().filter(|(_, has)| has.airplanes.is_some());
+    let with_airplanes: BTreeSet<&str> = with_airplanes.map(|(index, _)| events(fleet, *index)).collect();
+    let woken = woken(fleet, &with_airplanes);
+    let mut known: HashMap<&str, Served> = HashMap::new();
     let judged = scenarios.iter().filter_map(|(index, has)| {
-        let (first, message, help) = find_mistake(fleet, has, is_woken).or_else(|| airplanes(fleet, has))?;
+        let events = events(fleet, *index);
+        let served = known.entry(events).or_insert_with(|| Served::of(fleet, events, &woken));
+        let (first, mistake) = served.find_mistake(has)?;
         let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
-        Some(Finding::new(place, message).help(help))
+        let finding = Finding::new(place, mistake.message).help(mistake.help.clone());
+        Some(match &mistake.other {
+            Some((other, label)) => finding.label(Place::component(*other), label.clone()),
+            None => finding,
+        })
     });
     unless_elsewhere(fleet, judged.collect())
 }
@@ -50,9 +62,6 @@ struct FirstEvents {
     luggage: Option<First>,
     airplanes: Option<First>,
 }
-
-/// Place of the mistake, message, and help.
-type Mistake<'h> = (&'h First, &'static str, &'static str);
 
 impl FirstEvents {
     fn of(texts: &[String]) -> FirstEvents {
@@ -69,49 +78,160 @@ impl FirstEvents {
     }
 }
 
-/// Reason why no component handles the events of a scenario, and help.
-fn find_mistake<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents, is_woken: bool) -> Option<Mistake<'h>> {
-    if let Some(first) = &has.events
-        && !publishes_beside_robots(fleet, EVENT_LUGGAGE.name())
-    {
-        return Some((
-            first,
-            "no component passes the events of this scenario on to the robots",
-            "add a `saoms.MasterEnvironment`",
-        ));
-    }
-    let robots = robots(fleet);
-    // Safe robots wake for luggage by themselves, classic robots do not.
-    let comes = |robot: &FleetRobot| !robot.properties.asleep || robot.properties.policy == Policy::Safe;
-    let first = has.luggage.as_ref()?;
-    if robots.iter().any(comes) {
-        return None;
-    }
-    if robots.is_empty() {
-        // A robot with a fault of its own counts as well.
-        let is_none = fleet.indices::<Robot>().next().is_none();
-        return is_none.then_some((
-            first,
-            "there is no robot to bring the luggage of this scenario",
-            "add a `saoms.Robot`",
-        ));
-    }
-    let message = "all robots sleep, and none is woken to bring the luggage of this scenario";
-    if !publishes_beside_robots(fleet, ROBOT_STATE.name()) {
-        let help = "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for \
-            landings and take-offs";
-        return Some((first, message, help));
-    }
-    let help = "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are woken";
-    (!is_woken).then_some((first, message, help))
+/// Reason why a scenario has no effect.
+struct Mistake {
+    message: &'static str,
+    help: String,
+    /// Another component, and what it says about it.
+    other: Option<(usize, String)>,
 }
 
-/// Landings and take-offs that no component handles.
-fn airplanes<'h>(fleet: &FleetView<'_>, has: &'h FirstEvents) -> Option<Mistake<'h>> {
-    let first = has.airplanes.as_ref()?;
-    fleet.all::<MasterRobot>().next().is_none().then_some((
-        first,
-        "no component reacts to the landings and take-offs of this scenario",
-        "add a `saoms.MasterRobot`, which awakes robots for them",
-    ))
+/// What hinders the events of one name on the bus.
+struct Served {
+    /// Any event, luggage, and landings and take-offs.
+    events: Option<Mistake>,
+    luggage: Option<Mistake>,
+    airplanes: Option<Mistake>,
+}
+
+impl Served {
+    fn of(fleet: &FleetView<'_>, events: &str, woken: &Woken<'_>) -> Served {
+        let luggage = passed_on(fleet, events, EVENT_LUGGAGE.name());
+        Served {
+            events: luggage.is_empty().then(|| without_master(fleet, events)),
+            luggage: not_brought(fleet, events, &luggage, woken),
+            airplanes: not_handled(fleet, events),
+        }
+    }
+
+    /// The first event that something hinders, and what that is.
+    fn find_mistake<'h>(&'h self, has: &'h FirstEvents) -> Option<(&'h First, &'h Mistake)> {
+        let all = [(&has.events, &self.events), (&has.luggage, &self.luggage), (&has.airplanes, &self.airplanes)];
+        all.into_iter().find_map(|(first, mistake)| Some((first.as_ref()?, mistake.as_ref()?)))
+    }
+}
+
+fn without_master(fleet: &FleetView<'_>, events: &str) -> Mistake {
+    let message = "no component passes the events of this scenario on to the robots";
+    let Some(master) = fleet.indices::<MasterEnvironment>().next() else {
+        return Mistake { message, help: format!("add a `saoms.MasterEnvironment`{}", in_site(events)), other: None };
+    };
+    let own = fleet.components()[master].topic(ENVIRONMENT.name());
+    let label = format!("this one passes on events of the topic `{own}`, and these are on `{events}`");
+    Mistake { message, help: TOGETHER.to_owned(), other: Some((master, label)) }
+}
+
+/// Where a component has to be to use a topic of this name on the bus.
+fn in_site(topic: &str) -> String {
+    match topic.rsplit_once('/') {
+        Some((site, _)) => format!(" to the site `{site}`"),
+        None => String::new(),
+    }
+}
+
+/// Reason why no robot brings luggage that masters tell of on these topics.
+fn not_brought(fleet: &FleetView<'_>, events: &str, luggage: &BTreeSet<&str>, woken: &Woken<'_>) -> Option<Mistake> {
+    let components = fleet.components();
+    let topic = |index: usize| components[index].topic(EVENT_LUGGAGE.name());
+    // A robot with a fault of its own counts as well.
+    if !fleet.indices::<Robot>().any(|index| luggage.contains(topic(index))) {
+        let Some(robot) = fleet.indices::<Robot>().next() else {
+            let site = luggage.first().map_or_else(String::new, |name| in_site(name));
+            let message = "there is no robot to bring the luggage of this scenario";
+            return Some(Mistake { message, help: format!("add a `saoms.Robot`{site}"), other: None });
+        };
+        let told = luggage.first()?;
+        let label = format!("this one hears of luggage on the topic `{}`, and this is told on `{told}`", topic(robot));
+        let message = "no robot hears of the luggage of this scenario";
+        return Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((robot, label)) });
+    }
+    let robots = robots(fleet);
+    let hear: Vec<&FleetRobot> = robots.iter().filter(|robot| luggage.contains(topic(robot.index))).collect();
+    // Safe robots wake for luggage by themselves, classic robots do not.
+    let comes = |robot: &&&FleetRobot| !robot.properties.asleep || robot.properties.policy == Policy::Safe;
+    if hear.is_empty() {
+        return None;
+    }
+    if hear.iter().any(|robot| comes(&robot)) {
+        return not_known(fleet, events, hear.iter().filter(comes).copied());
+    }
+    let states: BTreeSet<&str> = hear.iter().map(|robot| components[robot.index].topic(ROBOT_STATE.name())).collect();
+    let message = "all robots sleep, and none is woken to bring the luggage of this scenario";
+    let help = match (states.is_disjoint(&woken.can_be), states.is_disjoint(&woken.are)) {
+        (true, _) => {
+            "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for landings and \
+             take-offs"
+        }
+        (_, true) => "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are woken",
+        _ => return None,
+    };
+    Some(Mistake { message, help: help.to_owned(), other: None })
+}
+
+/// Reason why the robots cannot collect luggage: their worlds do not hear where it is.
+fn not_known<'r>(fleet: &FleetView<'_>, events: &str, robots: impl Iterator<Item = &'r FleetRobot>) -> Option<Mistake> {
+    let hearing = hearing(fleet);
+    let worlds: HashSet<usize> = fleet.indices::<World>().collect();
+    let environments: HashSet<usize> = fleet.indices::<Environment>().collect();
+    if publishers_beside_robots(fleet, ENVIRONMENT.name()).any(|index| !environments.contains(&index)) {
+        // One of another class may tell the world of it.
+        return None;
+    }
+    let mut first = None;
+    for robot in robots {
+        // What stands between a robot and its world is not known.
+        let world = robot.world.filter(|world| worlds.contains(world))?;
+        if hearing.worlds(events).contains(&world) {
+            return None;
+        }
+        first.get_or_insert(world);
+    }
+    let own = fleet.components()[first?].topic(ENVIRONMENT.name());
+    let label = format!("it hears of luggage on the topic `{own}`, and this is on `{events}`");
+    let message = "the world of the robots does not hear of the luggage of this scenario: none of it can be collected";
+    Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((first?, label)) })
+}
+
+/// Reason why landings and take-offs have no effect.
+fn not_handled(fleet: &FleetView<'_>, events: &str) -> Option<Mistake> {
+    let airplanes = passed_on(fleet, events, EXCEPTIONAL_EVENT.name());
+    let topic = |index: usize| fleet.components()[index].topic(EXCEPTIONAL_EVENT.name());
+    let mut masters = fleet.indices::<MasterRobot>();
+    if masters.any(|index| airplanes.contains(topic(index))) {
+        return None;
+    }
+    let message = "no component reacts to the landings and take-offs of this scenario";
+    let master = fleet.indices::<MasterRobot>().next();
+    let Some((master, told)) = master.zip(airplanes.first()) else {
+        let site = airplanes.first().map_or_else(String::new, |name| in_site(name));
+        let help = format!("add a `saoms.MasterRobot`{site}, which awakes robots for them");
+        return Some(Mistake { message, help, other: None });
+    };
+    let label = format!("this one hears of them on the topic `{}`, and these are told on `{told}`", topic(master));
+    Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((master, label)) })
+}
+
+/// The names on the bus of the states that robots are told to take.
+struct Woken<'f> {
+    /// Those that components tell.
+    can_be: BTreeSet<&'f str>,
+    /// Those that they tell where airplanes land or take off, as a scenario says.
+    are: BTreeSet<&'f str>,
+}
+
+fn woken<'f>(fleet: &FleetView<'f>, with_airplanes: &BTreeSet<&str>) -> Woken<'f> {
+    let all = with_airplanes.iter().flat_map(|events| passed_on(fleet, events, EXCEPTIONAL_EVENT.name()));
+    let heard: BTreeSet<&str> = all.collect();
+    let masters: HashSet<usize> = fleet.indices::<MasterRobot>().collect();
+    let mut woken = Woken { can_be: BTreeSet::new(), are: BTreeSet::new() };
+    for index in publishers_beside_robots(fleet, ROBOT_STATE.name()) {
+        let component = &fleet.components()[index];
+        woken.can_be.insert(component.topic(ROBOT_STATE.name()));
+        // Whom a component of another class listens to is not known.
+        let hears = heard.contains(component.topic(EXCEPTIONAL_EVENT.name()));
+        if if masters.contains(&index) { hears } else { !with_airplanes.is_empty() } {
+            woken.are.insert(component.topic(ROBOT_STATE.name()));
+        }
+    }
+    woken
 }

@@ -1,12 +1,13 @@
 //! Rule: a world has no robots.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::map::{WorldMap, areas};
 use super::robots::{FleetRobot, by_world, may_be_others, robots};
+use crate::messages::ROBOT_LIST;
 use crate::robot::Robot;
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -36,21 +37,27 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut used: Vec<usize> = wires.collect();
     used.sort_unstable();
     let mut findings = Vec::new();
+    // Robots that a world does not hear of are not those that it is for.
+    let list = |index: usize| fleet.components()[index].topic(ROBOT_LIST.name());
+    let known: HashSet<&str> = robots.iter().map(|robot| list(robot.index)).collect();
     // The last world to which robots of each composite are wired, by the common prefix of their paths.
-    let mut around: HashMap<&str, (usize, &FleetRobot)> = HashMap::new();
+    let mut around: Around<'_> = HashMap::new();
     for area in areas(fleet) {
         let index = area.index;
-        if used.binary_search(&index).is_err() {
+        if used.binary_search(&index).is_err() && known.contains(list(index)) {
             findings.push(without_robots(fleet, &area, &robots));
         } else if let Ok(place) = first.binary_search_by_key(&index, |(world, _)| *world) {
             let (_, robot) = first[place];
-            around.insert(composite(fleet.components()[index].path), (index, robot));
+            around.insert((composite(fleet.components()[index].path), list(robot.index)), (index, robot));
         }
     }
     let lost = robots.iter().filter(|robot| robot.world.is_none());
     findings.extend(lost.filter_map(|robot| beside(fleet, robot, &around)));
     findings
 }
+
+/// The worlds of robots, each with one of them, by composites and the names on the bus of the lists of robots.
+type Around<'r> = HashMap<(&'r str, &'r str), (usize, &'r FleetRobot)>;
 
 /// Path of a component's composite, with the slash at its end.
 fn composite(path: &str) -> &str {
@@ -80,10 +87,11 @@ fn without_robots(fleet: &FleetView<'_>, area: &WorldMap, robots: &[FleetRobot])
 const BETWEEN: &str = "through the composites in between: each promotes the reference or the service";
 
 /// A finding for a robot without a world if other robots in its composite have one; the innermost composite counts.
-fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &HashMap<&str, (usize, &FleetRobot)>) -> Option<Finding> {
-    let own = composite(fleet.components()[robot.index].path);
+fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &Around<'_>) -> Option<Finding> {
+    let component = &fleet.components()[robot.index];
+    let (own, list) = (composite(component.path), component.topic(ROBOT_LIST.name()));
     let mut outer = std::iter::successors(Some(own), |path| Some(composite(path.strip_suffix('/')?)));
-    let (world, other) = outer.find_map(|path| around.get(path))?;
+    let (world, other) = outer.find_map(|path| around.get(&(path, list)))?;
     let path = fleet.components()[*world].path;
     let message = "this robot is wired to no world, and others are: neither the world nor they know where it is";
     let finding =

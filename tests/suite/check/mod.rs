@@ -5,3 +5,4 @@ mod hints;
 mod mistakes;
 mod rules;
 mod shared;
+mod sites;

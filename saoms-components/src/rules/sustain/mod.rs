@@ -13,9 +13,12 @@ use std::time::Duration;
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
-use super::map::{WorldMap, area, luggage};
+use super::budget::Budget;
+use super::hearing::passed_on;
+use super::map::{LuggageLine, WorldMap, area, by_events};
 use super::robots::{FleetRobot, may_be_others, robots, unless_elsewhere};
 use crate::grid::Block;
+use crate::messages::EVENT_LUGGAGE;
 use crate::robot::safe::is_within;
 use crate::robot::{Battery, Policy};
 
@@ -37,19 +40,29 @@ pub(super) static RULE: FleetRule = FleetRule {
     check,
 };
 
+/// Cost of asking a robot what it hears of, in comparisons of the budget.
+const HEARS: usize = 20;
+
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let luggage = luggage(fleet);
-    // Without luggage there is nothing to check.
-    if luggage.is_empty() {
-        return Vec::new();
-    }
-    let (Some(area), robots) = (area(fleet), robots(fleet)) else { return Vec::new() };
+    let (all, mut budget) = (by_events(fleet), Budget::default());
+    let within = all.iter().take_while(|_| budget.admit(HEARS * robots(fleet).len()));
+    let findings = within.flat_map(|(events, luggage)| check_luggage(fleet, events, luggage)).collect();
+    unless_elsewhere(fleet, findings)
+}
+
+/// The findings about luggage of one name of the events on the bus.
+fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -> Vec<Finding> {
+    let (Some(area), robots) = (area(fleet, events), robots(fleet)) else { return Vec::new() };
+    // Robots that do not hear of it do not bring it.
+    let passed_on = passed_on(fleet, events, EVENT_LUGGAGE.name());
+    let hears = |robot: &&FleetRobot| passed_on.contains(fleet.components()[robot.index].topic(EVENT_LUGGAGE.name()));
+    let robots: Vec<&FleetRobot> = robots.iter().filter(|robot| passed_on.is_empty() || hears(robot)).collect();
     // Classic robots move with an empty battery; robots of other classes and other loops are unknown.
     let is_known = |robot: &FleetRobot| {
         let loops = &fleet.components()[robot.index].class.loops;
         robot.properties.policy == Policy::Safe && loops.iter().all(|name| name.starts_with("saoms."))
     };
-    if robots.is_empty() || !robots.iter().all(is_known) || may_be_others(fleet) {
+    if robots.is_empty() || !robots.iter().all(|robot| is_known(robot)) || may_be_others(fleet) {
         return Vec::new();
     }
     let ranges: Option<Vec<Range>> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();
@@ -64,9 +77,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> = missed.as_ref().map_or_else(Vec::new, told);
     // Luggage that no robot can bring is no load.
     if findings.is_empty() {
-        findings.extend(overloaded(&area, &ranges, &luggage, &mut ways));
+        findings.extend(overloaded(&area, &ranges, luggage, &mut ways));
     }
-    unless_elsewhere(fleet, findings)
+    findings
 }
 
 /// Range and speed of a robot.

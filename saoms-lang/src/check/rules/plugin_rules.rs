@@ -62,30 +62,60 @@ pub(crate) fn check<'s>(
     }
     let rules: Vec<&RegisteredRule> = rules.filter(|rule| rule.judges_parts() || is_whole).collect();
     let facts = Facts { fleet, checks, wiring, repeated, missing };
-    for parts in connected(sites, fleet, wiring) {
+    for parts in connected(sites, (fleet, checks, wiring)) {
         let indices = parts.iter().enumerate().map(|(index, place)| (*place, index)).collect();
         facts.check_sites(&parts, &indices, &rules, report);
     }
 }
 
-/// The components of sites in document order, those of sites that wires connect together: robots of several sites may
-/// have one world.
-fn connected(sites: BTreeMap<&str, Vec<usize>>, fleet: &Fleet<'_>, wiring: &Wiring) -> Vec<Vec<usize>> {
-    let mut groups: Vec<(HashSet<&str>, Vec<usize>)> = Vec::new();
-    for (site, mut parts) in sites {
-        let mut names = HashSet::from([site]);
-        let targets = parts.iter().flat_map(|place| wiring[*place].iter().flatten().flatten());
-        names.extend(targets.map(|provider| fleet.members[provider.member].site.as_str()));
-        let connected: Vec<_> = groups.extract_if(.., |(others, _)| !others.is_disjoint(&names)).collect();
-        for (others, more) in connected {
-            names.extend(others);
-            parts.extend(more);
-        }
-        parts.sort_unstable();
-        groups.push((names, parts));
+/// The components of sites in document order, those of sites that wires or topics connect together: robots of several
+/// sites may have one world, and those of two sites hear each other on a topic outside of both.
+fn connected(
+    sites: BTreeMap<&str, Vec<usize>>,
+    (fleet, checks, wiring): (&Fleet<'_>, &[ComponentCheck<'_>], &Wiring),
+) -> Vec<Vec<usize>> {
+    if sites.len() < 2 {
+        return sites.into_values().collect();
     }
-    groups.sort_unstable_by_key(|(_, parts)| parts.first().copied());
-    groups.into_iter().map(|(_, parts)| parts).collect()
+    // A site that another one is connected to leads to it.
+    let mut leads: HashMap<&str, &str> = sites.keys().map(|site| (*site, *site)).collect();
+    let mut first: HashMap<Cow<'_, str>, &str> = HashMap::new();
+    for (site, place) in sites.iter().flat_map(|(site, parts)| parts.iter().map(move |place| (*site, *place))) {
+        for provider in wiring[place].iter().flatten().flatten() {
+            join(&mut leads, site, &fleet.members[provider.member].site);
+        }
+        let class = fleet.class_of(place).into_iter();
+        for (_, on_bus) in class.flat_map(|class| topics(&fleet.members[place], &checks[place], class)) {
+            let other = *first.entry(on_bus).or_insert(site);
+            join(&mut leads, site, other);
+        }
+    }
+    let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (site, parts) in sites {
+        groups.entry(end(&mut leads, site)).or_default().extend(parts);
+    }
+    let mut groups: Vec<Vec<usize>> = groups.into_values().collect();
+    groups.iter_mut().for_each(|parts| parts.sort_unstable());
+    groups.sort_unstable_by_key(|parts| parts.first().copied());
+    groups
+}
+
+/// Connects two sites.
+fn join<'s>(leads: &mut HashMap<&'s str, &'s str>, site: &'s str, other: &'s str) {
+    if site != other {
+        let (site, other) = (end(leads, site), end(leads, other));
+        leads.insert(site.max(other), site.min(other));
+    }
+}
+
+/// The site to which one leads at last, with path halving. One without components that are judged leads to itself.
+fn end<'s>(leads: &mut HashMap<&'s str, &'s str>, mut site: &'s str) -> &'s str {
+    while let Some(next) = leads.get(site).copied().filter(|next| *next != site) {
+        let after = leads.get(next).copied().unwrap_or(next);
+        leads.insert(site, after);
+        site = after;
+    }
+    site
 }
 
 /// The findings of earlier phases that rules are told of.
@@ -176,7 +206,7 @@ impl<'s, 'f> Facts<'s, 'f> {
 
 /// The topics of a component that have another name on the bus, and that name.
 fn renamed<'s>(
-    member: &Member<'_>,
+    member: &'s Member<'_>,
     check: &'s ComponentCheck<'_>,
     class: &ClassIndex<'s>,
 ) -> Vec<(&'s str, Cow<'s, str>)> {
@@ -184,13 +214,21 @@ fn renamed<'s>(
     if member.site.is_empty() && renames.is_none_or(|renames| renames.0.is_empty()) {
         return Vec::new();
     }
-    let mut topics: Vec<&'s str> = class.publishes.iter().chain(&class.subscribes).map(|topic| &*topic.name).collect();
+    let mut topics: Vec<_> = topics(member, check, class).filter(|(declared, on_bus)| declared != on_bus).collect();
     topics.sort_unstable();
     topics.dedup();
-    let on_bus = |declared: &'s str| {
-        (declared, on_bus(&member.site, renames.map_or(declared, |renames| renames.name(declared))))
-    };
-    topics.into_iter().map(on_bus).filter(|(declared, on_bus)| declared != on_bus).collect()
+    topics
+}
+
+/// The topics of a component, and their names on the bus.
+fn topics<'s>(
+    member: &'s Member<'_>,
+    check: &'s ComponentCheck<'_>,
+    class: &ClassIndex<'s>,
+) -> impl Iterator<Item = (&'s str, Cow<'s, str>)> {
+    let renames = check.task.as_ref().map(|task| &task.topic_rename);
+    let all = class.publishes.iter().chain(&class.subscribes).map(|topic| topic.name.as_str());
+    all.map(move |name| (name, on_bus(&member.site, renames.map_or(name, |renames| renames.name(name)))))
 }
 
 /// The views of classes with their loops, each made once.

@@ -1,0 +1,94 @@
+//! Who hears whom, by the names that topics have on the bus.
+//!
+//! A site and `topicRename` give topics other names, so that two components that use one topic may not hear each other,
+//! and two of different sites may.
+
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::rc::Rc;
+
+use saoms_api::rule::{Fact, FleetView};
+
+use super::robots::publishers_beside_robots;
+use crate::master::MasterEnvironment;
+use crate::messages::{ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, FAULT, ROBOT_LIST};
+use crate::world::World;
+
+/// The components that hear environments, or may.
+pub(super) struct Hearing {
+    /// Masters of the environment, by the topic of the events that they pass on.
+    masters: ByTopic,
+    /// Components beside these and robots that publish what masters do: whom they listen to is not known.
+    others: Vec<usize>,
+    /// Worlds, by the topic of the events that they hear.
+    worlds: ByTopic,
+    /// Worlds, by the topic of the states of robots that they hear.
+    of_robots: ByTopic,
+}
+
+type ByTopic = HashMap<String, Vec<usize>>;
+
+/// Help where two components do not hear each other.
+pub(super) const TOGETHER: &str = "let both use one name of the topic: put them into one site, or give both the same new \
+    name with `topicRename`; one that begins with `/` is outside all sites";
+
+/// What masters of the environment publish.
+const PASSED_ON: [&str; 3] = [EVENT_LUGGAGE.name(), EXCEPTIONAL_EVENT.name(), FAULT.name()];
+
+impl Fact for Hearing {
+    fn of(fleet: &FleetView<'_>) -> Hearing {
+        let components = fleet.components();
+        let by_topic = |all: &mut dyn Iterator<Item = usize>, topic: &'static str| {
+            let mut sorted = ByTopic::new();
+            for index in all {
+                sorted.entry(components[index].topic(topic).to_owned()).or_default().push(index);
+            }
+            sorted
+        };
+        let known: HashSet<usize> = fleet.indices::<MasterEnvironment>().collect();
+        let others: BTreeSet<usize> =
+            PASSED_ON.iter().flat_map(|topic| publishers_beside_robots(fleet, topic)).collect();
+        let others = others.into_iter().filter(|index| !known.contains(index)).collect();
+        Hearing {
+            masters: by_topic(&mut fleet.indices::<MasterEnvironment>(), ENVIRONMENT.name()),
+            others,
+            worlds: by_topic(&mut fleet.indices::<World>(), ENVIRONMENT.name()),
+            of_robots: by_topic(&mut fleet.indices::<World>(), ROBOT_LIST.name()),
+        }
+    }
+}
+
+impl Hearing {
+    /// The masters that pass on events of this name on the bus.
+    pub(super) fn masters(&self, events: &str) -> &[usize] {
+        self.masters.get(events).map_or(&[], Vec::as_slice)
+    }
+
+    /// The worlds that hear events of this name on the bus.
+    pub(super) fn worlds(&self, events: &str) -> &[usize] {
+        self.worlds.get(events).map_or(&[], Vec::as_slice)
+    }
+
+    /// The worlds that hear of robots with this name of their list on the bus.
+    pub(super) fn worlds_of_robots(&self, list: &str) -> &[usize] {
+        self.of_robots.get(list).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// Who hears environments.
+pub(super) fn hearing(fleet: &FleetView<'_>) -> Rc<Hearing> {
+    fleet.fact()
+}
+
+/// The name on the bus of the events of an environment.
+pub(super) fn events<'f>(fleet: &FleetView<'f>, environment: usize) -> &'f str {
+    fleet.components()[environment].topic(ENVIRONMENT.name())
+}
+
+/// The names on the bus of a topic, one that masters publish, on which events of this name on the bus are passed on;
+/// none if nobody does that, which another rule reports.
+pub(super) fn passed_on<'f>(fleet: &FleetView<'f>, events: &str, topic: &'static str) -> BTreeSet<&'f str> {
+    let components = fleet.components();
+    let hearing = hearing(fleet);
+    let others = hearing.others.iter().filter(|index| components[**index].class.publishes.contains(&topic));
+    hearing.masters(events).iter().chain(others).map(|index| components[*index].topic(topic)).collect()
+}
