@@ -27,12 +27,12 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let said = said(fleet);
+    let (said, misses) = (said(fleet), fleet.misses::<World>());
     let (mut findings, mut budget) = (Vec::new(), Budget::default());
     for (events, luggage) in by_events(fleet) {
         let area = area(fleet, events);
         for (piece, spot) in luggage.iter().flat_map(|piece| [(piece, &piece.from), (piece, &piece.to)]) {
-            let is_drawn = spot.value == Spot::Anywhere && !fleet.misses::<World>();
+            let is_drawn = spot.value == Spot::Anywhere && !misses;
             if is_drawn && !said.contains_key(fleet.components()[piece.index].topic(AREA.name())) {
                 findings.extend(unless_elsewhere(fleet, vec![nothing_to_draw(fleet, piece, spot, &said)]));
             } else if let Some(area) = &area {

@@ -22,7 +22,8 @@ pub struct Diagnostics {
     /// Stretches of files, each with its end, in which something may be missing because of a fault of the text; none
     /// overlaps another.
     damaged: BTreeMap<(FileId, u32), u32>,
-    hidden: HiddenNames,
+    /// What faults of their texts hide in files.
+    hidden: HashMap<FileId, HiddenNames>,
 }
 
 /// The kinds of names that faults of texts may hide: one of them that is found nowhere may be there.
@@ -57,9 +58,15 @@ impl Diagnostics {
     /// in it, nor from unresolved names of the hidden kinds.
     pub(crate) fn add_damage(&mut self, stretch: Location, hidden: HiddenNames) {
         self.damaged.insert((stretch.file, stretch.span.start), stretch.span.end);
-        self.hidden.composites |= hidden.composites;
-        self.hidden.components |= hidden.components;
-        self.hidden.others |= hidden.others;
+        let all = self.hidden.entry(stretch.file).or_default();
+        all.composites |= hidden.composites;
+        all.components |= hidden.components;
+        all.others |= hidden.others;
+    }
+
+    /// The kinds of names that faults of its text may hide in a file.
+    pub(crate) fn hidden_in(&self, file: FileId) -> HiddenNames {
+        self.hidden.get(&file).copied().unwrap_or_default()
     }
 
     /// True if a diagnostic says only what comes of a fault of the text.
@@ -70,9 +77,9 @@ impl Diagnostics {
         };
         let is_hidden = natures(code.id).into_iter().flatten().find_map(|nature| match nature {
             Nature::AbsentPart => Some(false),
-            Nature::AbsentComposite => Some(self.hidden.composites),
-            Nature::AbsentComponent => Some(self.hidden.components),
-            Nature::AbsentName => Some(self.hidden.others),
+            Nature::AbsentComposite => Some(self.hidden.values().any(|hidden| hidden.composites)),
+            Nature::AbsentComponent => Some(self.hidden.values().any(|hidden| hidden.components)),
+            Nature::AbsentName => Some(self.hidden.values().any(|hidden| hidden.others)),
             _ => None,
         });
         is_hidden.is_some_and(|is_hidden| is_hidden || is_inside())

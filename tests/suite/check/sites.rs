@@ -4,6 +4,9 @@ use std::fmt::Write;
 
 use saoms_testkit::Fleet;
 
+/// Events outside of all sites.
+const SHARED: &str = "topicRename=ETOPIC,/ETOPIC";
+
 /// A component as `Name:Class:Site@target properties`. Properties have
 /// `|` between them. The ID is the name without the letter of its site.
 fn component(line: &str) -> String {
@@ -298,4 +301,54 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
             && found.iter().zip(*expected).all(|(found, expected)| found.starts_with(expected));
         assert!(is_expected, "{name}: {found:#?}");
     }
+}
+
+#[test]
+fn a_site_that_cannot_be_read_is_one_of_its_own() {
+    let (folder, part) = (tempfile::tempdir().unwrap(), |lines: &str| lines.lines().map(component).collect::<String>());
+    let composite = |name: &str, inside: &str| {
+        let text = format!(
+            "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:saoms=\"urn:saoms:1\" \
+             xmlns:t=\"urn:t\" name=\"{name}\" targetNamespace=\"urn:t\">\n{inside}</composite>"
+        );
+        std::fs::write(folder.path().join(format!("{name}.composite")), &text).unwrap();
+        text
+    };
+    let use_of_inner = |inside: &str| {
+        let implementation = "<implementation.composite name=\"t:inner\"/>";
+        format!("<component name=\"North\" saoms:site=\"North\">{implementation}{inside}</component>\n")
+    };
+    let inner = composite(
+        "inner",
+        &part(
+            "Environment:Environment: scenario=at 1s luggage random to (2,2); at 2s breakdown Robot7\n\
+             World:World:\nMaster:MasterEnvironment:\nRobot7:Robot:@World",
+        ),
+    );
+    let codes = |text: &str, outer: &str| {
+        std::fs::write(folder.path().join("inner.composite"), text).unwrap();
+        composite("outer", outer);
+        let found = Fleet::of_file(folder.path().join("outer.composite")).diagnostics();
+        let mut codes: Vec<&str> = found.lines().filter_map(|line| line.split(' ').nth(1)).collect();
+        codes.sort_unstable();
+        codes.join(" ")
+    };
+    assert_eq!(codes(&inner, &use_of_inner("")), "");
+    let at = inner.find("</component>").unwrap();
+    let (cut, other) = (inner[..at].to_owned(), inner.replace("composite", "compo"));
+    // What the site has, or takes, is not known.
+    let property = use_of_inner("<property name=\"table\">x</property><reference name=\"hall\" target=\"Hall\"/>");
+    let property = property + &part("Hall:World:\nRobot1:Robot:");
+    assert_eq!(codes(&cut, &use_of_inner("")), "S0103");
+    assert_eq!(codes(&cut, &property), "S0103");
+    assert_eq!(codes("", &property), "S0005");
+    assert_eq!(codes(&other, &property), "S1001");
+    // The others are judged all the same, but where what they say may be heard in it.
+    let south = |renamed: &str| {
+        let south = format!("Environment:Environment:South scenario=at 1s luggage (1,1) to (2,2)|{renamed}");
+        use_of_inner("") + &part(&south)
+    };
+    assert_eq!(codes("", &south("")), "S0005 S5008");
+    assert_eq!(codes(&cut, &south("")), "S0103 S5008");
+    assert_eq!(codes("", &south(SHARED)), "S0005");
 }

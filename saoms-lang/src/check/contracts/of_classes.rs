@@ -33,7 +33,10 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 fn whose(member: usize, fleet: &Fleet<'_>) -> Option<String> {
     match fleet.class_of(member) {
         Some(class) => Some(format!("class {}", quoted(class.class.name()))),
-        None => Some(format!("composite {}", quoted(&fleet.inner(member)?.main().name))),
+        None => {
+            let inner = fleet.inner(member).filter(|inner| !inner.hides_names)?;
+            Some(format!("composite {}", quoted(&inner.main().name)))
+        }
     }
 }
 

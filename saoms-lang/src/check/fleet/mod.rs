@@ -80,6 +80,8 @@ pub(crate) struct Unit<'a> {
     pub(crate) composites: Vec<&'a Composite>,
     /// True if a condition keeps it away.
     pub(crate) is_absent: bool,
+    /// True if faults of texts may hide names of it.
+    pub(crate) hides_names: bool,
 }
 
 impl<'a> Unit<'a> {

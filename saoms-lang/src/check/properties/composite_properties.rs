@@ -37,7 +37,7 @@ pub(crate) fn check(member: &Member<'_>, inner: &Unit<'_>, report: &mut Report<'
                 check_match(own, *declared, None, report);
             }
             // It is the one without a name, which is reported.
-            None if names.contains(&"") => {}
+            None if names.contains(&"") || inner.hides_names => {}
             None => unknown(property, &names, inner, report),
         }
     }

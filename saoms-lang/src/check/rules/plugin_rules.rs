@@ -1,8 +1,9 @@
 //! Rules of plugins and component crates over the whole fleet.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use saoms_api::rule::{ClassView, ComponentView, FleetView};
 
@@ -22,6 +23,25 @@ fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
     std::iter::once(class.class.declaration_json()).chain(class.class.extended_json()).collect()
 }
 
+/// The components of a site, or of sites that are connected.
+#[derive(Default)]
+struct Site<'s> {
+    /// Those that are resolved, in document order.
+    parts: Vec<usize>,
+    /// The classes of the others, and of those whose wires are not known: one of each is enough, and `None` for all
+    /// whose class is not known.
+    missing: HashMap<Option<*const RegisteredClass>, Option<&'s ClassIndex<'s>>>,
+    /// True if there are others.
+    is_part: bool,
+}
+
+impl<'s> Site<'s> {
+    fn miss(&mut self, class: Option<&'s ClassIndex<'s>>, is_part: bool) {
+        self.is_part |= is_part;
+        self.missing.entry(class.map(|class| Arc::as_ptr(class.class))).or_insert(class);
+    }
+}
+
 /// Asks the rules about the components of each site that are resolved; where some are not, or where their wires lead is
 /// not known, only the rules that can judge a part of a fleet.
 pub(crate) fn check<'s>(
@@ -32,71 +52,77 @@ pub(crate) fn check<'s>(
     rules: impl Iterator<Item = &'s RegisteredRule>,
     report: &mut Report<'_>,
 ) {
-    let mut sites: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    // One of each class is enough, and one for all whose class is not known.
-    let mut missing: Vec<Option<Vec<&'s str>>> = Vec::new();
-    let mut known: HashSet<Option<*const ClassIndex<'_>>> = HashSet::new();
-    let mut miss = |missing: &mut Vec<_>, class: Option<&'s ClassIndex<'_>>| {
-        let key = class.map(std::ptr::from_ref);
-        if known.insert(key) {
-            missing.push(class.map(declarations));
-        }
-    };
-    if fleet.scopes.iter().any(|scope| scope.fault.is_some()) {
-        miss(&mut missing, None);
+    let mut sites: BTreeMap<&str, Site<'s>> = BTreeMap::new();
+    let around = |scope: usize| fleet.scopes[scope].owner.map_or("", |owner| &fleet.members[owner].site);
+    // What is inside a component, nobody knows, may be wired to what is around it.
+    let outer = |member: &Member<'_>| (!member.component.references.is_empty()).then(|| around(member.scope));
+    for (scope, unknown) in fleet.scopes.iter().enumerate().filter(|(_, one)| one.fault.is_some()) {
+        let owner = unknown.owner.and_then(|owner| outer(&fleet.members[owner]));
+        owner.into_iter().chain([around(scope)]).for_each(|site| sites.entry(site).or_default().miss(None, true));
     }
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate().filter(|(_, (one, _))| one.runs()) {
-        let class = fleet.class_of(place);
+        let (site, class) = (sites.entry(&member.site).or_default(), fleet.class_of(place));
         // Which of two components of one name is meant is not known.
-        if member.repeated.is_none() && check.is_sound() && class.is_some() {
-            sites.entry(&member.site).or_default().push(place);
-        } else {
-            miss(&mut missing, class);
+        if member.repeated.is_some() || !check.is_sound() || class.is_none() {
+            site.miss(class, true);
+            if let Some(site) = outer(member).filter(|_| class.is_none()) {
+                sites.entry(site).or_default().miss(None, true);
+            }
+            continue;
         }
-    }
-    let is_whole = missing.is_empty();
-    for (place, class) in sites.values().flatten().filter_map(|place| Some((*place, fleet.class_of(*place)?))) {
+        site.parts.push(place);
         if wiring[place].iter().any(Option::is_none) {
-            miss(&mut missing, Some(class));
+            site.miss(class, false);
         }
     }
-    let rules: Vec<&RegisteredRule> = rules.filter(|rule| rule.judges_parts() || is_whole).collect();
-    let facts = Facts { fleet, checks, wiring, repeated, missing };
-    for parts in connected(sites, (fleet, checks, wiring)) {
+    let rules: Vec<&RegisteredRule> = rules.collect();
+    for Site { parts, missing, is_part } in connected(sites, (fleet, checks, wiring)) {
+        let rules = rules.iter().filter(|rule| rule.judges_parts() || !is_part);
+        let rules: Vec<&RegisteredRule> = rules.copied().collect();
+        let missing = missing.into_values().map(|class| class.map(declarations)).collect();
         let indices = parts.iter().enumerate().map(|(index, place)| (*place, index)).collect();
+        let facts = Facts { fleet, checks, wiring, repeated, missing };
         facts.check_sites(&parts, &indices, &rules, report);
     }
 }
 
-/// The components of sites in document order, those of sites that wires or topics connect together: robots of several
-/// sites may have one world, and those of two sites hear each other on a topic outside of both.
-fn connected(
-    sites: BTreeMap<&str, Vec<usize>>,
+/// The sites in document order, those that wires or topics connect together: robots of several sites may have one world,
+/// and those of two sites hear each other on a topic outside of both. What a site says outside of it may be heard in one
+/// that is not known.
+fn connected<'s>(
+    mut sites: BTreeMap<&str, Site<'s>>,
     (fleet, checks, wiring): (&Fleet<'_>, &[ComponentCheck<'_>], &Wiring),
-) -> Vec<Vec<usize>> {
-    if sites.len() < 2 {
-        return sites.into_values().collect();
-    }
+) -> Vec<Site<'s>> {
     // A site that another one is connected to leads to it.
     let mut leads: HashMap<&str, &str> = sites.keys().map(|site| (*site, *site)).collect();
     let mut first: HashMap<Cow<'_, str>, &str> = HashMap::new();
-    for (site, place) in sites.iter().flat_map(|(site, parts)| parts.iter().map(move |place| (*site, *place))) {
+    let unknown: Vec<&str> = sites.iter().filter(|(_, one)| one.is_part).map(|(site, _)| *site).collect();
+    let all = sites.iter().filter(|_| leads.len() > 1);
+    let all: Vec<(&str, usize)> = all.flat_map(|(site, one)| one.parts.iter().map(|place| (*site, *place))).collect();
+    for (site, place) in all {
         for provider in wiring[place].iter().flatten().flatten() {
             join(&mut leads, site, &fleet.members[provider.member].site);
         }
         let class = fleet.class_of(place).into_iter();
         for (_, on_bus) in class.flat_map(|class| topics(&fleet.members[place], &checks[place], class)) {
+            let is_inside = on_bus.strip_prefix(site).is_some_and(|rest| site.is_empty() || rest.starts_with('/'));
+            if !first.contains_key(&on_bus) && !is_inside {
+                unknown.iter().for_each(|other| join(&mut leads, site, other));
+            }
             let other = *first.entry(on_bus).or_insert(site);
             join(&mut leads, site, other);
         }
     }
-    let mut groups: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-    for (site, parts) in sites {
-        groups.entry(end(&mut leads, site)).or_default().extend(parts);
+    let mut groups: BTreeMap<&str, Site<'s>> = BTreeMap::new();
+    while let Some((site, one)) = sites.pop_first() {
+        let group = groups.entry(end(&mut leads, site)).or_default();
+        group.parts.extend(one.parts);
+        group.missing.extend(one.missing);
+        group.is_part |= one.is_part;
     }
-    let mut groups: Vec<Vec<usize>> = groups.into_values().collect();
-    groups.iter_mut().for_each(|parts| parts.sort_unstable());
-    groups.sort_unstable_by_key(|parts| parts.first().copied());
+    let mut groups: Vec<Site<'s>> = groups.into_values().collect();
+    groups.iter_mut().for_each(|group| group.parts.sort_unstable());
+    groups.sort_unstable_by_key(|group| group.parts.first().copied());
     groups
 }
 

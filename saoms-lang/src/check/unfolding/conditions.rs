@@ -144,8 +144,8 @@ impl<'a> Unfolding<'a, '_, '_> {
 
     /// A unit of its own for a composite that is included in `unit` and kept away.
     pub(crate) fn absent_unit(&mut self, unit: usize) -> usize {
-        let Unit { scope, composites, .. } = &self.fleet.units[unit];
-        let absent = Unit { scope: *scope, composites: composites.clone(), is_absent: true };
+        let Unit { scope, ref composites, hides_names, .. } = self.fleet.units[unit];
+        let absent = Unit { scope, composites: composites.clone(), is_absent: true, hides_names };
         self.fleet.units.push(absent);
         self.fleet.units.len() - 1
     }

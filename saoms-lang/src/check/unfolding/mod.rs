@@ -165,7 +165,7 @@ impl<'a> Open<'a> {
 
 impl<'a> Unfolding<'a, '_, '_> {
     fn unit(&mut self, scope: usize) -> usize {
-        self.fleet.units.push(Unit { scope, composites: Vec::new(), is_absent: false });
+        self.fleet.units.push(Unit { scope, composites: Vec::new(), is_absent: false, hides_names: false });
         let unit = self.fleet.units.len() - 1;
         self.fleet.scopes[scope].units.push(unit);
         unit
@@ -178,6 +178,11 @@ impl<'a> Unfolding<'a, '_, '_> {
         let autowire = composite.autowire.map_or(around, |autowire| autowire.value);
         let is_absent = self.fleet.units[unit].is_absent;
         self.fleet.units[unit].composites.push(composite);
+        let hidden = self.report.diagnostics().hidden_in(composite.file());
+        self.fleet.units[unit].hides_names |= hidden.others;
+        if hidden.components {
+            self.fault(unit);
+        }
         self.open.push(Open {
             place,
             composite,
