@@ -28,8 +28,8 @@ pub(super) fn areas<'f>(fleet: &'f FleetView<'_>) -> impl Iterator<Item = WorldM
     worlds.filter_map(|(index, properties)| WorldMap::of(index, properties))
 }
 
-/// The map of the world that hears the events of this name on the bus; `None` if there is none, or if several worlds, or
-/// one with a fault, make it ambiguous.
+/// The map of the world that hears the events of this name on the bus; `None` if there is none, or if several worlds,
+/// or one with a fault, make it ambiguous.
 pub(super) fn area(fleet: &FleetView<'_>, events: &str) -> Option<WorldMap> {
     let hearing = hearing(fleet);
     let [index] = *hearing.worlds(events) else { return None };

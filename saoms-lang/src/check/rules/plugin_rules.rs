@@ -86,9 +86,9 @@ pub(crate) fn check<'s>(
     }
 }
 
-/// The sites in document order, those that wires or topics connect together: robots of several sites may have one world,
-/// and those of two sites hear each other on a topic outside of both. What a site says outside of it may be heard in one
-/// that is not known.
+/// The sites in document order, those that wires or topics connect together: robots of several sites may have one
+/// world, and those of two sites hear each other on a topic outside of both. What a site says outside of it may be
+/// heard in one that is not known.
 fn connected<'s>(
     mut sites: BTreeMap<&str, Site<'s>>,
     (fleet, checks, wiring): (&Fleet<'_>, &[ComponentCheck<'_>], &Wiring),
