@@ -109,11 +109,13 @@ static void turn_around(Patrol *patrol, const SaomsHostHandle *host, uint32_t ro
     value.kind = 1;
     value.bits = robot;
     memset(&record, 0, sizeof record);
+    record.id = saoms_text("robot_in_the_way");
     record.text = saoms_text("robot {robot} is in its way");
     record.names = saoms_text("robot,");
     record.values = &value;
     record.count = 1;
     host->functions->journal(host->state, 0, &record);
+    record.id = saoms_text("turns_around");
     record.text = saoms_text("turns around");
     record.names = saoms_text("");
     record.count = 0;

@@ -35,7 +35,7 @@ struct SaomsHostHandle;
 #define SAOMS_MAX_BYTES (64 << 20)
 
 // The version of the boundary. A program loads libraries of its own version alone.
-#define SAOMS_ABI_VERSION 1
+#define SAOMS_ABI_VERSION 2
 
 // Bytes that are lent for the time of a call.
 typedef struct SaomsBytes {
@@ -270,9 +270,11 @@ typedef struct SaomsLoopInstance {
     const struct SaomsLoopTable *table;
 } SaomsLoopInstance;
 
-// A record of the journal. Text and names have to be part of the library.
+// A record of the journal. Id, text and names have to be part of the library.
 typedef struct SaomsRecordView {
-    // The text, with `{name}` where a value goes.
+    // What the record is found by, in `snake_case`: it stays when the text is reworded. Empty: the text is the id.
+    struct SaomsBytes id;
+    // The text, with `{name}` where a value goes, and `{name:one|several}` where a word depends on its being 1.
     struct SaomsBytes text;
     // The names of the values, each with a comma behind it.
     struct SaomsBytes names;

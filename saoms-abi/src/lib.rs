@@ -48,4 +48,4 @@ pub use status::Status;
 pub use value::{PropertyView, RecordView, ReportView, ValueView};
 
 /// The version of the boundary. A program loads libraries of its own version alone.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;

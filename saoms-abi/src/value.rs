@@ -29,11 +29,13 @@ pub struct ValueView {
     pub word: Bytes,
 }
 
-/// A record of the journal. Text and names have to be part of the library.
+/// A record of the journal. Id, text and names have to be part of the library.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct RecordView {
-    /// The text, with `{name}` where a value goes.
+    /// What the record is found by, in `snake_case`: it stays when the text is reworded. Empty: the text is the id.
+    pub id: Bytes,
+    /// The text, with `{name}` where a value goes, and `{name:one|several}` where a word depends on its being 1.
     pub text: Bytes,
     /// The names of the values, each with a comma behind it.
     pub names: Bytes,

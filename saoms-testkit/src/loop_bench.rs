@@ -63,11 +63,11 @@ use crate::Bench;
 ///
 ///     fn analyze(&mut self, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
 ///         let dark = self.brightness.get(lamp)? < 10.0 && !self.is_on.get(lamp)?;
-///         Ok(dark.then(|| record!("is dark")))
+///         Ok(dark.then(|| record!(is_dark: "is dark")))
 ///     }
 ///
 ///     fn plan(&mut self, _: Record, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
-///         Ok(Some(record!("switches it on")))
+///         Ok(Some(record!(switches_on: "switches it on")))
 ///     }
 ///
 ///     fn execute(&mut self, _: Record, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {

@@ -61,8 +61,10 @@ pub struct ChargeAt(f64);
 impl Recordable for Symptom {
     fn record(&self) -> Record {
         match *self {
-            Symptom::Deep(lowest) => record!("was down to {lowest} %, which is too low", lowest),
-            Symptom::Shallow(lowest) => record!("never had less than {lowest} %, and charged early", lowest),
+            Symptom::Deep(lowest) => record!(charged_late: "was down to {lowest} %, which is too low", lowest),
+            Symptom::Shallow(lowest) => {
+                record!(charged_early: "never had less than {lowest} %, and charged early", lowest)
+            }
         }
     }
 }
@@ -70,7 +72,7 @@ impl Recordable for Symptom {
 impl Recordable for ChargeAt {
     fn record(&self) -> Record {
         let percent = self.0;
-        record!("charges at {percent} % from now on", percent)
+        record!(sets_threshold: "charges at {percent} % from now on", percent)
     }
 }
 

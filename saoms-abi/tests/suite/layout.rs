@@ -57,7 +57,7 @@ fn layout() -> String {
         MessageView { bytes, sent, cause, key, sender, has_key }
         Inbox { messages, count }
         ValueView { kind, bits, word }
-        RecordView { text, names, values, count }
+        RecordView { id, text, names, values, count }
         HostHandle { state, functions, inboxes, inbox_count }
         TopicView { name, message, schema, kind }
         HostFunctions { size, name, sender, name_of, now, date, due, execution, period, cancelled, chance, next_random, publish, subscribe, send, reference, is_wired, targets, call, listens, log, report, count, vote, chosen_loops, chosen_loop, name_loop, enter_loop, because, cause, journal, changed }

@@ -60,7 +60,8 @@ use crate::{Failure, Loop, Properties};
 ///
 ///     fn analyze(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
 ///         let battery = self.battery.get(knowledge)?;
-///         Ok((battery < self.properties.threshold).then(|| record!("has {battery} % left", battery)))
+///         let is_low = battery < self.properties.threshold;
+///         Ok(is_low.then(|| record!(low_battery: "battery is low: {battery} %", battery)))
 ///     }
 ///
 ///     fn plan(
@@ -69,7 +70,7 @@ use crate::{Failure, Loop, Properties};
 ///         knowledge: &mut dyn Knowledge,
 ///         _: &mut Context<'_>,
 ///     ) -> Result<Option<Record>, Failure> {
-///         Ok((!self.busy.get(knowledge)?).then(|| record!("takes no job")))
+///         Ok((!self.busy.get(knowledge)?).then(|| record!(takes_no_job: "takes no job")))
 ///     }
 ///
 ///     fn execute(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {

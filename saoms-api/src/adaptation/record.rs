@@ -69,18 +69,14 @@ impl Value {
 /// Maximum number of values in a record.
 const VALUES: usize = 6;
 
-/// A record of a symptom, decision or effect: a text with placeholders, and the values. Constructing one formats and
-/// allocates nothing.
+/// A record of a symptom, decision or effect: an id, a text with placeholders, and the values. Constructing one formats
+/// and allocates nothing.
 ///
-/// ```
-/// use saoms_api::record;
-///
-/// let battery = 34.0;
-/// let record = record!("has {battery} % left and needs {home} executions home", battery, home = 12);
-/// assert_eq!(record.to_string(), "has 34 % left and needs 12 executions home");
-/// ```
+/// Records are the same where id and values are: the text is for people alone. It can be reworded, and neither the
+/// `trace_hash` of a run changes nor what finds records by their id. [`record!`](crate::record) makes one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
+    id: &'static str,
     text: &'static str,
     /// The names of the values, each with a comma behind it.
     names: &'static str,
@@ -88,18 +84,28 @@ pub struct Record {
 }
 
 impl Record {
-    /// For [`record!`](crate::record): a text with `{name}` where a value goes, the names with a comma behind each, and
-    /// their values in the same order; values beyond the sixth are left out.
+    /// For [`record!`](crate::record): the id, a text with `{name}` where a value goes, the names with a comma behind
+    /// each, and their values in the same order; values beyond the sixth are left out.
     #[doc(hidden)]
     #[must_use]
-    pub const fn new<const N: usize>(text: &'static str, names: &'static str, values: [Value; N]) -> Record {
+    pub const fn new<const N: usize>(
+        id: &'static str,
+        text: &'static str,
+        names: &'static str,
+        values: [Value; N],
+    ) -> Record {
         let mut all = [Value::Bool(false); VALUES];
         let mut place = 0;
         while place < N && place < VALUES {
             all[place] = values[place];
             place += 1;
         }
-        Record { text, names, values: all }
+        Record { id, text, names, values: all }
+    }
+
+    /// The id, which stays when the text is reworded; the text itself where none was given.
+    pub const fn id(&self) -> &'static str {
+        self.id
     }
 
     /// The text with its places.
@@ -132,9 +138,12 @@ impl fmt::Display for Record {
         while let Some((before, after)) = rest.split_once('{') {
             formatter.write_str(before)?;
             let Some((name, after)) = after.split_once('}') else { return formatter.write_str(after) };
-            match self.values().find(|(known, _)| *known == name) {
-                Some((_, value)) => value.fmt(formatter)?,
-                None => write!(formatter, "{{{name}}}")?,
+            let (name, nouns) = name.split_once(':').map_or((name, None), |(name, nouns)| (name, Some(nouns)));
+            match (self.values().find(|(known, _)| *known == name), nouns.and_then(|nouns| nouns.split_once('|'))) {
+                (Some((_, value)), None) => value.fmt(formatter)?,
+                (Some((_, Value::Integer(1))), Some((one, _))) => formatter.write_str(one)?,
+                (Some(_), Some((_, several))) => formatter.write_str(several)?,
+                (None, _) => write!(formatter, "{{{name}}}")?,
             }
             rest = after;
         }
@@ -142,12 +151,44 @@ impl fmt::Display for Record {
     }
 }
 
-/// Makes a [`Record`]: a text with `{name}` where a value goes, then the values, as `name` or `name = expression`.
+/// Makes a [`Record`]: its id, a text with `{name}` where a value goes, then the values, as `name` or
+/// `name = expression`.
+///
+/// Give each record an id, a few words in `snake_case` that say what it is: programs find the record by it, and the
+/// `trace_hash` of a run takes it, so that the text can be reworded later. Without one the text is the id. Within a
+/// loop an id stands for one text: of two records with the same id and values in one phase, the journal takes the
+/// second for a repetition of the first.
+///
+/// The values hold data, no words of the sentence: `{name:one|several}` is the first of the two words where the value
+/// is 1, and the second where it is another one.
+///
+/// ```
+/// use saoms_api::record;
+///
+/// let battery = 34.0;
+/// let record = record!(
+///     low_battery: "has {battery} % left: {home} {home:execution|executions} home",
+///     battery,
+///     home = 12
+/// );
+/// assert_eq!(record.id(), "low_battery");
+/// assert_eq!(record.to_string(), "has 34 % left: 12 executions home");
+///
+/// // Without an id, the text is the id: then it has to stay as it is.
+/// assert_eq!(record!("luggage {piece} waits", piece = 3).id(), "luggage {piece} waits");
+/// ```
 #[macro_export]
 macro_rules! record {
-    ($text:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {{
+    ($id:ident: $text:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {
+        $crate::record!(@new stringify!($id), $text $(, $name $(= $value)?)*)
+    };
+    ($text:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {
+        $crate::record!(@new $text, $text $(, $name $(= $value)?)*)
+    };
+    (@new $id:expr, $text:literal $(, $name:ident $(= $value:expr)?)*) => {{
         const _: () = ::core::assert!((&[$(stringify!($name)),*] as &[&str]).len() <= 6, "a record holds at most 6 values");
         $crate::Record::new(
+            $id,
             $text,
             concat!($(stringify!($name), ","),*),
             [$($crate::Value::from($crate::record!(@value $name $(= $value)?))),*],

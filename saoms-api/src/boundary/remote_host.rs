@@ -280,6 +280,7 @@ impl Host for RemoteHost<'_> {
             count += 1;
         }
         let view = RecordView {
+            id: Bytes::text(record.id()),
             text: Bytes::text(record.text()),
             names: Bytes::text(record.names()),
             values: values.as_ptr(),

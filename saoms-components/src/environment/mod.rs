@@ -210,7 +210,9 @@ impl Environment {
                 context.console(format_args!("Environment: Test{test}: {request} at {now}"));
                 context.info(format_args!("luggage {} waits at {from} to be brought to {to}", self.luggage));
                 let luggage = self.luggage;
-                context.symptom(record!("luggage {luggage} waits at {from} to be brought to {to}", luggage, from, to));
+                context.symptom(
+                    record!(new_luggage: "luggage {luggage} waits at {from} to be brought to {to}", luggage, from, to),
+                );
                 context.send(&self.events, request.into())
             }
             Some(ScenarioEvent::Exceptional(event)) => {
@@ -218,8 +220,12 @@ impl Environment {
                 context.info(format_args!("{event}"));
                 let pieces = event.pieces;
                 context.symptom(match event.kind {
-                    ExceptionalKind::Landing => record!("an airplane lands with {pieces} pieces", pieces),
-                    ExceptionalKind::Takeoff => record!("an airplane takes off with {pieces} pieces", pieces),
+                    ExceptionalKind::Landing => {
+                        record!(airplane_lands: "an airplane lands with {pieces} pieces", pieces)
+                    }
+                    ExceptionalKind::Takeoff => {
+                        record!(airplane_takes_off: "an airplane takes off with {pieces} pieces", pieces)
+                    }
                 });
                 context.send(&self.events, event.into())
             }
@@ -228,7 +234,7 @@ impl Environment {
                 let fault = Fault::breakdown(robot);
                 context.console(format_args!("Environment: Test{test}: New event: {fault}."));
                 context.info(format_args!("{fault}"));
-                context.symptom(record!("robot {robot} breaks down", robot));
+                context.symptom(record!(robot_breaks_down: "robot {robot} breaks down", robot));
                 context.send(&self.events, fault.into())
             }
         }

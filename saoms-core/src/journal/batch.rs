@@ -10,8 +10,9 @@ pub(crate) struct Head {
     pub(crate) id: Cause,
     pub(crate) time: u64,
     pub(crate) cause: Cause,
-    /// A digest of phase, text and values.
+    /// A digest of phase, id and values.
     pub(crate) fingerprint: u64,
+    record_id: &'static str,
     text: &'static str,
     names: &'static str,
     /// Index of its first value among those of the batch.
@@ -55,12 +56,13 @@ impl Batch {
         let values = self.values.len() as u32;
         self.values.extend_from_slice(record.used());
         let count = (self.values.len() as u32 - values) as u8;
-        let (text, names) = (record.text(), record.names());
+        let (record_id, text, names) = (record.id(), record.text(), record.names());
         self.heads.push(Head {
             id,
             time,
             cause,
             fingerprint,
+            record_id,
             text,
             names,
             values,
@@ -105,7 +107,7 @@ impl Batch {
         for (place, value) in values.iter_mut().zip(self.values_of(head)) {
             *place = *value;
         }
-        Record::new(head.text, head.names, values)
+        Record::new(head.record_id, head.text, head.names, values)
     }
 
     pub(crate) fn len(&self) -> usize {

@@ -19,14 +19,19 @@ pub struct JournalEntry {
     pub(super) what: Content,
 }
 
-/// Text and values.
+/// Id, text and values.
 #[derive(Clone, Debug)]
 pub(super) enum Content {
-    /// Text and values as written by a component.
+    /// As written by a component.
     Noted(Record),
-    /// Text and values as read from a file.
-    Read { text: String, values: Map<String, Value> },
+    /// As read from a file.
+    Read { id: String, text: String, values: Map<String, Value> },
+    /// A message from outside.
+    Outside { text: String },
 }
+
+/// The id of all records of messages from outside.
+const FROM_OUTSIDE: &str = "message_from_outside";
 
 /// A change of what a component knows.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +55,7 @@ impl JournalEntry {
             phase: Phase::Symptom,
             cause: Cause::default(),
             change: false,
-            what: Content::Read { text, values: Map::new() },
+            what: Content::Outside { text },
         }
     }
 
@@ -85,11 +90,21 @@ impl JournalEntry {
         self.cause
     }
 
+    /// The id of the record, which stays when its text is reworded: as `low_battery`, or the text of a record without
+    /// one; of a change of the knowledge the name of the entry.
+    pub fn record_id(&self) -> &str {
+        match &self.what {
+            Content::Noted(record) => record.id(),
+            Content::Read { id, .. } => id,
+            Content::Outside { .. } => FROM_OUTSIDE,
+        }
+    }
+
     /// The text with the values inserted.
     pub fn text(&self) -> String {
         match &self.what {
             Content::Noted(record) => record.to_string(),
-            Content::Read { text, .. } => text.clone(),
+            Content::Read { text, .. } | Content::Outside { text } => text.clone(),
         }
     }
 
@@ -98,6 +113,7 @@ impl JournalEntry {
         match &self.what {
             Content::Noted(record) => record.values().find(|(known, _)| *known == name).map(|(_, value)| json(value)),
             Content::Read { values, .. } => values.get(name).cloned(),
+            Content::Outside { .. } => None,
         }
     }
 
@@ -106,6 +122,7 @@ impl JournalEntry {
         match &self.what {
             Content::Noted(record) => record.values().map(|(name, value)| (name.to_owned(), json(value))).collect(),
             Content::Read { values, .. } => values.clone(),
+            Content::Outside { .. } => Map::new(),
         }
     }
 
@@ -113,7 +130,7 @@ impl JournalEntry {
     pub fn change(&self) -> Option<Change> {
         let value = |name| self.value(name).unwrap_or_default();
         self.change.then(|| Change {
-            entry: value("entry").as_str().unwrap_or_default().to_owned(),
+            entry: self.record_id().to_owned(),
             before: value("before"),
             after: value("after"),
         })
@@ -126,6 +143,7 @@ impl PartialEq for JournalEntry {
         (self.id, self.time, self.phase, self.cause, self.change)
             == (other.id, other.time, other.phase, other.cause, other.change)
             && (&self.component, &self.loop_name) == (&other.component, &other.loop_name)
+            && self.record_id() == other.record_id()
             && self.text() == other.text()
             && self.values() == other.values()
     }
@@ -139,7 +157,7 @@ impl fmt::Display for JournalEntry {
         write!(formatter, "{time} {component} {by} {phase}: ")?;
         match &self.what {
             Content::Noted(record) => record.fmt(formatter),
-            Content::Read { text, .. } => formatter.write_str(text),
+            Content::Read { text, .. } | Content::Outside { text } => formatter.write_str(text),
         }
     }
 }

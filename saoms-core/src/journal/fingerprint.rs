@@ -3,10 +3,22 @@ use saoms_api::{Record, Value};
 
 use crate::hash::fold;
 
-/// A digest of a record: its phase, its text and its values, the same on every machine.
+/// Stands where the phase of a record does, so that no record has the digest of a change.
+const CHANGE: u64 = 3;
+
+/// A digest of a record: its phase, its id and its values, the same on every machine.
 pub(super) fn fingerprint(phase: Phase, record: &Record) -> u64 {
-    let mut hash = text(phase as u64, record.text());
-    for value in record.used() {
+    digest(phase as u64, record.id(), record.used())
+}
+
+/// A digest of a change of an entry of the knowledge.
+pub(super) fn fingerprint_of_change(entry: &str, before: Value, after: Value) -> u64 {
+    digest(CHANGE, entry, &[before, after])
+}
+
+fn digest(kind: u64, id: &str, values: &[Value]) -> u64 {
+    let mut hash = text(kind, id);
+    for value in values {
         hash = match *value {
             Value::Nothing => fold(hash, 0),
             Value::Bool(value) => fold(fold(hash, 1), u64::from(value)),

@@ -22,9 +22,12 @@ struct Line<'a> {
     #[serde(rename = "loop", skip_serializing_if = "Option::is_none")]
     loop_name: Option<&'a str>,
     phase: &'static str,
+    /// The id of the record, unless it is a change.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    record: Option<&'a str>,
     /// The entry of the knowledge that changed.
     #[serde(skip_serializing_if = "Option::is_none")]
-    entry: Option<Value>,
+    entry: Option<&'a str>,
     text: Text<'a>,
     #[serde(skip_serializing_if = "Map::is_empty")]
     values: Map<String, Value>,
@@ -43,7 +46,7 @@ impl Serialize for Text<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self.0 {
             Content::Noted(record) => serializer.collect_str(record),
-            Content::Read { text, .. } => serializer.serialize_str(text),
+            Content::Read { text, .. } | Content::Outside { text } => serializer.serialize_str(text),
         }
     }
 }
@@ -51,14 +54,17 @@ impl Serialize for Text<'_> {
 impl Serialize for JournalEntry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut values = self.values();
-        let entry = if self.change { values.remove("entry") } else { None };
+        if self.change {
+            values.remove("entry");
+        }
         let line = Line {
             id: self.id.0,
             time_s: self.time.as_secs_f64(),
             component: &self.component,
             loop_name: self.loop_name(),
             phase: self.phase.name(),
-            entry,
+            record: (!self.change).then(|| self.record_id()),
+            entry: self.change.then(|| self.record_id()),
             text: Text(&self.what),
             values,
             cause: self.cause.0,
@@ -76,6 +82,9 @@ struct ReadLine {
     #[serde(rename = "loop", default)]
     loop_name: Option<String>,
     phase: PhaseName,
+    /// Absent in journals of earlier versions.
+    #[serde(default)]
+    record: Option<String>,
     #[serde(default)]
     entry: Option<String>,
     text: String,
@@ -102,6 +111,7 @@ impl<'de> Deserialize<'de> for JournalEntry {
             return Err(D::Error::custom(wrong));
         }
         let change = line.entry.is_some();
+        let record_id = line.entry.clone().or(line.record).unwrap_or_else(|| line.text.clone());
         line.values.extend(line.entry.map(|entry| ("entry".to_owned(), Value::from(entry))));
         Ok(JournalEntry {
             id: Cause(id),
@@ -115,7 +125,7 @@ impl<'de> Deserialize<'de> for JournalEntry {
             },
             cause: Cause(cause),
             change,
-            what: Content::Read { text: line.text, values: line.values },
+            what: Content::Read { id: record_id, text: line.text, values: line.values },
         })
     }
 }

@@ -4,7 +4,7 @@ use saoms_api::host::Phase;
 use saoms_api::{Cause, Record, Value};
 
 use super::batch::{Batch, Note, OUTSIDE};
-use super::fingerprint::fingerprint;
+use super::fingerprint::{fingerprint, fingerprint_of_change};
 
 /// The journal records of a component while its code runs, and the state of each of its loops on the way from
 /// symptom to effect.
@@ -214,9 +214,10 @@ impl Recorder {
             return;
         }
         self.acted();
-        let record = saoms_api::record!("{entry}: {before} -> {after}", entry, before, after);
+        let values = [Value::Word(entry), before, after];
+        let record = Record::new(entry, "{entry}: {before} -> {after}", "entry,before,after,", values);
         let cause = self.chain().cause_of_effect();
-        let fingerprint = fingerprint(Phase::Effect, &record);
+        let fingerprint = fingerprint_of_change(entry, before, after);
         let id = self.push(stamp, Phase::Effect, fingerprint, cause, true, &record).id;
         if cause == Cause::default() {
             // A measured value explains nothing: what follows has its own reasons.

@@ -49,6 +49,12 @@ impl<'a> Selection<'a> {
         self.only(|entry| entry.phase() == Phase::Effect)
     }
 
+    /// The records with this id, as `low_battery`: unlike their texts, it stays.
+    #[must_use]
+    pub fn of_record(self, id: &str) -> Selection<'a> {
+        self.only(|entry| !entry.change && entry.record_id() == id)
+    }
+
     /// The changes of this entry of the knowledge.
     #[must_use]
     pub fn changes(self, entry: &str) -> Selection<'a> {

@@ -58,6 +58,15 @@ fn a_value_that_is_no_number_is_the_same_value_again() {
 }
 
 #[test]
+fn no_record_is_taken_for_a_change_of_what_is_named_alike() {
+    let (mut recorder, ids) = recorder();
+    recorder.changed(stamp(&ids), "level", Value::Integer(1), Value::Integer(2));
+    recorder.write(stamp(&ids), Phase::Effect, &record!(level: "", before = 1, after = 2), &[]);
+    let digests: Vec<_> = recorder.batch.heads().iter().map(|head| head.fingerprint).collect();
+    assert_ne!(digests[0], digests[1]);
+}
+
+#[test]
 fn a_loop_that_paused_begins_anew() {
     let (mut recorder, ids) = recorder();
     for execution in [0, 1, 3] {
@@ -128,6 +137,18 @@ fn records_that_are_missing_in_a_file_are_counted() {
     assert_eq!((journal.records, journal.lost), (3, 2));
     let why = journal.why("A", None).unwrap();
     assert_eq!(why.chains[0].missing, Some(Cause(2)));
+}
+
+#[test]
+fn records_of_earlier_versions_have_their_text_as_the_id() {
+    let old = r#"{"id":1,"time_s":1.0,"component":"A","phase":"effect","text":"acts"}"#;
+    let new = r#"{"id":2,"time_s":1.0,"component":"A","phase":"effect","record":"acts_well","text":"acts"}"#;
+    let change = r#"{"id":3,"time_s":1.0,"component":"A","phase":"effect","entry":"acts","text":"acts: 1 -> 2"}"#;
+    let journal = read(&format!("{HEAD}\n{old}\n{new}\n{change}\n")).unwrap().journal;
+    let ids: Vec<_> = journal.entries().iter().map(super::JournalEntry::record_id).collect();
+    assert_eq!(ids, ["acts", "acts_well", "acts"]);
+    assert_eq!(journal.all().of_record("acts").len(), 1, "a change is no record");
+    assert_eq!(journal.all().changes("acts").len(), 1);
 }
 
 fn journal(entries: &str) -> Journal {

@@ -242,3 +242,25 @@ fn a_call_follows_from_what_its_caller_does() {
     );
     assert_eq!(report.journal.loops[0].without_effect, 0, "the call is what followed");
 }
+
+#[test]
+fn the_hash_of_a_run_takes_ids_and_values_and_no_words() {
+    let hash = |record: &str| run(&format!("A speaker period=100 record={record}"), simulated(200)).trace_hash.unwrap();
+    let plain = hash("plain");
+    assert_eq!(hash("reworded"), plain);
+    let others = ["other-id", "other-value", "plain-text", "other-text"].map(hash);
+    assert!(!others.contains(&plain), "{plain}: {others:?}");
+    assert_ne!(others[2], others[3], "without an id the text is the id");
+}
+
+#[test]
+fn records_are_found_by_their_ids() {
+    let report = run("A speaker period=100 record=plain\nB speaker period=100 record=other-text", simulated(100));
+    assert_eq!(report.journal.all().of_record("low_battery").texts(), ["has 34 % left"]);
+    assert_eq!(report.journal.all().of_record("battery is at {battery} %").texts(), ["battery is at 34 %"]);
+    let json = serde_json::to_string(&report.journal.entries()[0]).unwrap();
+    assert_eq!(
+        json,
+        r#"{"id":1,"time_s":0.0,"component":"A","phase":"symptom","record":"low_battery","text":"has 34 % left","values":{"battery":34}}"#
+    );
+}

@@ -97,11 +97,19 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     SaomsBuffer message = saoms_writer(memory, sizeof memory);
     act(actor, "execute");
     if (strcmp(actor->does, "null views") == 0) {
-        SaomsRecordView record = {saoms_text("text"), saoms_text("a,"), NULL, 1};
+        SaomsRecordView record = {saoms_text("id"), saoms_text("text"), saoms_text("a,"), NULL, 1};
         host->functions->report(host->state, saoms_text("c.null"), NULL);
         host->functions->journal(host->state, 0, NULL);
         host->functions->journal(host->state, 0, &record);
         host->functions->changed(host->state, saoms_text("entry"), NULL, NULL);
+    }
+    if (strcmp(actor->does, "records") == 0) {
+        SaomsValueView pieces = {.kind = 1, .bits = 1};
+        SaomsRecordView record = {saoms_text("piece_waits"), saoms_text("{n} {n:piece waits|pieces wait}"),
+                                  saoms_text("n,"), &pieces, 1};
+        host->functions->journal(host->state, 0, &record);
+        record.id.data = NULL, record.id.length = 0;
+        host->functions->journal(host->state, 0, &record);
     }
 #ifdef UNBOUND
     if (strcmp(actor->does, "turn") == 0) {

@@ -103,3 +103,13 @@ fn null_in_a_loop_is_a_failure_of_its_component() {
     }
     assert_eq!(run(&[], "").code, Some(0));
 }
+
+#[test]
+fn a_record_has_the_id_that_it_was_given_or_its_text() {
+    let run = run(&[], &property("does", "records"));
+    let entries = run.report["journal"]["entries"].as_array().unwrap();
+    let shown =
+        |place: usize| [&entries[place]["record"], &entries[place]["text"]].map(|value| value.as_str().unwrap());
+    assert_eq!(shown(0), ["piece_waits", "1 piece waits"], "{}", run.text);
+    assert_eq!(shown(1), ["{n} {n:piece waits|pieces wait}", "1 piece waits"], "{}", run.text);
+}

@@ -7,3 +7,4 @@ mod messages;
 mod pages;
 mod programs;
 mod readme;
+mod records;

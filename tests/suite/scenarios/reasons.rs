@@ -5,15 +5,15 @@ use saoms_testkit::Fleet;
 use super::fleet::fleet;
 use super::run::Run;
 
-/// Checks of each record of these loops whose text begins so that the way back ends in the environment; how many those
+/// Checks of each record of these loops with one of these ids that the way back ends in the environment; how many those
 /// are.
 #[track_caller]
-fn begin_outside(run: &Run, loops: &[&str], texts: &[&str]) -> usize {
+fn begin_outside(run: &Run, loops: &[&str], ids: &[&str]) -> usize {
     let journal = &run.report.journal;
     let name = |of: &str| loops.contains(&of);
     let mut seen = 0;
     for entry in journal.entries().iter().filter(|entry| entry.loop_name().is_some_and(name)) {
-        if !texts.iter().any(|text| entry.text().starts_with(text)) {
+        if !ids.contains(&entry.record_id()) {
             continue;
         }
         seen += 1;
@@ -28,8 +28,9 @@ fn begin_outside(run: &Run, loops: &[&str], texts: &[&str]) -> usize {
 fn jobs_and_the_way_of_luggage_begin_with_the_request() {
     for composite in ["usecase-luggage.composite", "scenario1.composite", "scenario2.composite"] {
         let run = Run::of(composite, 200);
-        let taken = begin_outside(&run, &["EventLuggageMS"], &["would bring", "brings", "leaves"]);
-        let carried = begin_outside(&run, &["PathFollowerMS", "GripperMS"], &["hasLuggage", "collects"]);
+        let of_luggage = ["offers_to_carry", "offers_to_carry_luggage", "takes_luggage", "withdraws_offer_for_luggage"];
+        let taken = begin_outside(&run, &["EventLuggageMS"], &of_luggage);
+        let carried = begin_outside(&run, &["PathFollowerMS", "GripperMS"], &["hasLuggage", "collects_luggage"]);
         assert!(taken > 3 && carried > 1, "{composite}: {taken}, {carried}");
     }
 }
@@ -40,9 +41,12 @@ fn help_begins_with_the_breakdown_and_shifts_with_the_landing() {
     let robots = ["1", "3", "5", "7 asleep=true", "8 asleep=true"];
     for policy in ["safe", "classic"] {
         let run = Run::with(&fleet(policy, "", scenario, &robots), 100);
-        let healed = begin_outside(&run, &["CriticalSituationMS"], &["would h", "awakes", "collects", "heals"]);
-        let called = begin_outside(&run, &["AwakeAsleepMS"], &["awakes", "the shift", "sends"]);
-        let slept = begin_outside(&run, &["RobotMS"], &["awakes", "is awake", "finishes", "sleeps", "goes"]);
+        let help = ["offers_help", "helps_robot", "wakes_robot", "wakes_substitute", "takes_over_luggage_on_board"];
+        let healed = begin_outside(&run, &["CriticalSituationMS"], &help);
+        let calls = ["wakes_robots", "wakes_robot", "shift_ends", "sends_robots_to_charge", "sends_robot_to_charge"];
+        let called = begin_outside(&run, &["AwakeAsleepMS"], &calls);
+        let sleep = ["wakes", "wakes_as_substitute", "sleeps_after_job", "sleeps", "charges_after_job"];
+        let slept = begin_outside(&run, &["RobotMS"], &sleep);
         assert!(healed > 2 && called > 3 && slept > 1, "{policy}: {healed}, {called}, {slept}");
     }
 }
@@ -64,7 +68,7 @@ fn luggage_for_which_nobody_is_awake_awakes_a_robot() {
     let run = Run::with(&fleet("safe", "", "at 1s luggage (3,1) to (3,10)", &robots), 300);
     assert_eq!(run.count("luggage", "delivered"), 1);
     assert_eq!(run.log("Robot002"), [""; 0], "one is enough");
-    assert_eq!(begin_outside(&run, &["RobotMS"], &["luggage 1 waits, and no robot that is awake can bring it"]), 1);
+    assert_eq!(begin_outside(&run, &["RobotMS"], &["no_awake_robot_can_carry"]), 1);
 }
 
 #[test]

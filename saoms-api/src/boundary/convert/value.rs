@@ -58,6 +58,8 @@ pub(in crate::boundary) unsafe fn read_record(view: &RecordView) -> Result<Recor
         for (place, value) in values.iter_mut().enumerate().take(view.count) {
             *value = read_value(*view.values.add(place))?;
         }
-        Ok(Record::new(view.text.get_text()?, view.names.get_text()?, values))
+        let text = view.text.get_text()?;
+        let id = if view.id.length == 0 { text } else { view.id.get_text()? };
+        Ok(Record::new(id, text, view.names.get_text()?, values))
     }
 }

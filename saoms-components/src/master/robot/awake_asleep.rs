@@ -60,19 +60,17 @@ impl Recordable for Workload {
         let Workload { pieces, needed, released } = *self;
         match (needed, released) {
             (0, _) => {
-                record!("the shift of {released} {robots} is over", released, robots = robots(released))
+                record!(shift_ends: "the shift of {released} {released:robot|robots} is over", released)
             }
             (_, 0) => record!(
-                "expects luggage, {pieces} more: needs {needed} {robots}",
+                luggage_expected: "expects luggage, {pieces} more: needs {needed} {needed:robot|robots}",
                 pieces,
-                needed,
-                robots = robots(needed)
+                needed
             ),
             _ => record!(
-                "expects luggage, {pieces} more: needs {needed} {robots}, while the shift of {released} is over",
+                luggage_expected_as_shift_ends: "expects luggage, {pieces} more: needs {needed} {needed:robot|robots}, while the shift of {released} is over",
                 pieces,
                 needed,
-                robots = robots(needed),
                 released
             ),
         }
@@ -83,10 +81,10 @@ impl Recordable for AwakeAsleepDecision {
     fn record(&self) -> Record {
         match *self {
             AwakeAsleepDecision::Awake { robots: count, .. } => {
-                record!("awakes {count} {robots}", count, robots = robots(count))
+                record!(wakes_robots: "awakes {count} {count:robot|robots}", count)
             }
             AwakeAsleepDecision::Asleep { robots: count, .. } => {
-                record!("sends {count} {robots} under charge", count, robots = robots(count))
+                record!(sends_robots_to_charge: "sends {count} {count:robot|robots} under charge", count)
             }
         }
     }
@@ -176,8 +174,8 @@ impl MasterAwakeAsleep {
             let Some(robot) = next else { break };
             knowledge.note_call(robot, awake);
             context.effect(match awake {
-                true => record!("awakes robot {robot}", robot),
-                false => record!("sends robot {robot} under charge", robot),
+                true => record!(wakes_robot: "awakes robot {robot}", robot),
+                false => record!(sends_robot_to_charge: "sends robot {robot} under charge", robot),
             });
             context.send(&self.states, RobotState { robot, awake, emulate: 0 })?;
             called.push(robot);
@@ -191,7 +189,9 @@ impl MasterAwakeAsleep {
             let missing = u32::try_from(missing).unwrap_or(u32::MAX);
             let robots = robots(missing);
             context.info(format_args!("finds {missing} {robots} too few asleep"));
-            context.effect(record!("finds {missing} {robots} too few asleep", missing, robots));
+            context.effect(
+                record!(too_few_robots_asleep: "finds {missing} {missing:robot|robots} too few asleep", missing),
+            );
         }
         Ok(u32::try_from(called.len()).unwrap_or(u32::MAX))
     }

@@ -54,9 +54,8 @@ impl Loop for MasterRobotList {
         }
         context.report("robots.active", i64::from(robots));
         Ok(Some(record!(
-            "knows of {count} {robots}, asleep: {asleep}",
+            robots_known: "knows of {count} {count:robot|robots}, asleep: {asleep}",
             count = robots,
-            robots = if robots == 1 { "robot" } else { "robots" },
             asleep = knowledge.asleep
         )))
     }

@@ -36,8 +36,8 @@ pub enum ClassicBatteryDecision {
 impl Recordable for ClassicBatterySymptom {
     fn record(&self) -> Record {
         match *self {
-            ClassicBatterySymptom::Low(battery) => record!("has low battery: {battery} %", battery),
-            ClassicBatterySymptom::Full => record!("is fully charged"),
+            ClassicBatterySymptom::Low(battery) => record!(low_battery: "battery is low: {battery} %", battery),
+            ClassicBatterySymptom::Full => record!(fully_charged: "is fully charged"),
         }
     }
 }
@@ -45,8 +45,8 @@ impl Recordable for ClassicBatterySymptom {
 impl Recordable for ClassicBatteryDecision {
     fn record(&self) -> Record {
         match self {
-            ClassicBatteryDecision::Charge => record!("goes under charge after its job"),
-            ClassicBatteryDecision::Sleep => record!("sleeps until it is awaked or heals a robot"),
+            ClassicBatteryDecision::Charge => record!(charges_after_job: "goes under charge after its job"),
+            ClassicBatteryDecision::Sleep => record!(sleeps_until_needed: "sleeps until it is awaked or heals a robot"),
         }
     }
 }

@@ -51,9 +51,9 @@ impl Recordable for ClassicCollisionSymptom {
     fn record(&self) -> Record {
         match *self {
             ClassicCollisionSymptom::Risk { robot, block } => {
-                record!("robot {robot} goes to {block}, too", robot, block)
+                record!(block_contested: "robot {robot} goes to {block}, too", robot, block)
             }
-            ClassicCollisionSymptom::Over => record!("no other robot goes there any more"),
+            ClassicCollisionSymptom::Over => record!(block_uncontested: "no other robot goes there any more"),
         }
     }
 }
@@ -62,10 +62,10 @@ impl Recordable for ClassicCollisionDecision {
     fn record(&self) -> Record {
         match *self {
             ClassicCollisionDecision::Stop { robot, .. } => {
-                record!("stops for a period: robot {robot} has the lower number", robot)
+                record!(waits_one_period: "stops for a period: robot {robot} has the lower number", robot)
             }
-            ClassicCollisionDecision::GoOn => record!("goes on: it has the lower number"),
-            ClassicCollisionDecision::GoOnAgain => record!("goes on"),
+            ClassicCollisionDecision::GoOn => record!(goes_first: "goes on: it has the lower number"),
+            ClassicCollisionDecision::GoOnAgain => record!(goes_on: "goes on"),
         }
     }
 }

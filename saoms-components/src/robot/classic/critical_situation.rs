@@ -65,17 +65,21 @@ impl Recordable for ClassicCriticalSymptom {
     fn record(&self) -> Record {
         match *self {
             ClassicCriticalSymptom::Broken(CriticalKind::CarriesLuggage) => {
-                record!("breaks down with luggage")
+                record!(breaks_down_while_carrying: "breaks down with luggage")
             }
             ClassicCriticalSymptom::Broken(CriticalKind::OnTheWay) => {
-                record!("breaks down on its way to luggage")
+                record!(breaks_down_while_fetching: "breaks down on its way to luggage")
             }
-            ClassicCriticalSymptom::Broken(CriticalKind::Idle) => record!("breaks down without a job"),
-            ClassicCriticalSymptom::NeedsHelp(robot) => record!("robot {robot} needs help", robot),
+            ClassicCriticalSymptom::Broken(CriticalKind::Idle) => {
+                record!(breaks_down_while_idle: "breaks down without a job")
+            }
+            ClassicCriticalSymptom::NeedsHelp(robot) => record!(robot_needs_help: "robot {robot} needs help", robot),
             ClassicCriticalSymptom::Closest(robot) => {
-                record!("no other robot that would heal robot {robot} is closer", robot)
+                record!(closest_to_robot: "no other robot that would heal robot {robot} is closer", robot)
             }
-            ClassicCriticalSymptom::Beaten => record!("another robot is closer to the one that needs help"),
+            ClassicCriticalSymptom::Beaten => {
+                record!(other_robot_closer_to_robot: "another robot is closer to the one that needs help")
+            }
         }
     }
 }
@@ -83,10 +87,10 @@ impl Recordable for ClassicCriticalSymptom {
 impl Recordable for ClassicCriticalDecision {
     fn record(&self) -> Record {
         match *self {
-            ClassicCriticalDecision::AskForHelp(_) => record!("asks for help and shuts down"),
-            ClassicCriticalDecision::Intend(robot) => record!("would heal robot {robot}", robot),
-            ClassicCriticalDecision::Heal(robot) => record!("heals robot {robot}", robot),
-            ClassicCriticalDecision::Forget => record!("is free again"),
+            ClassicCriticalDecision::AskForHelp(_) => record!(asks_for_help: "asks for help and shuts down"),
+            ClassicCriticalDecision::Intend(robot) => record!(offers_help: "offers to help robot {robot}", robot),
+            ClassicCriticalDecision::Heal(robot) => record!(helps_robot: "heals robot {robot}", robot),
+            ClassicCriticalDecision::Forget => record!(is_free: "is free again"),
         }
     }
 }
@@ -242,10 +246,10 @@ impl ClassicCriticalSituation {
             context.console(format_args!("{name} is a healer and awakes another robot"));
             if let Some(robot) = best_charged(knowledge, critical) {
                 let state = RobotState { robot, awake: true, emulate: critical };
-                context.effect(record!("awakes robot {robot}", robot));
+                context.effect(record!(wakes_robot: "awakes robot {robot}", robot));
                 context.send(&self.states, state)?;
             } else {
-                context.effect(record!("finds no robot that it could awake"));
+                context.effect(record!(no_robot_to_wake: "finds no robot that it could awake"));
             }
         }
         match job {

@@ -51,12 +51,14 @@ impl Recordable for ClassicLuggageSymptom {
     fn record(&self) -> Record {
         match *self {
             ClassicLuggageSymptom::Waiting(Job { luggage, from, .. }) => {
-                record!("luggage {luggage} waits at {from}", luggage, from)
+                record!(oldest_luggage_waits: "luggage {luggage} waits at {from}", luggage, from)
             }
             ClassicLuggageSymptom::Closest(Job { luggage, .. }) => {
-                record!("no other robot that is interested in luggage {luggage} is closer", luggage)
+                record!(closest_to_luggage: "no other robot that is interested in luggage {luggage} is closer", luggage)
             }
-            ClassicLuggageSymptom::Beaten => record!("another robot is closer to the luggage"),
+            ClassicLuggageSymptom::Beaten => {
+                record!(other_robot_closer_to_luggage: "another robot is closer to the luggage")
+            }
         }
     }
 }
@@ -64,11 +66,11 @@ impl Recordable for ClassicLuggageSymptom {
 impl Recordable for ClassicLuggageDecision {
     fn record(&self) -> Record {
         match *self {
-            ClassicLuggageDecision::TakeInterest => record!("would bring it"),
+            ClassicLuggageDecision::TakeInterest => record!(offers_to_carry: "would bring it"),
             ClassicLuggageDecision::Take(Job { luggage, from, to }) => {
-                record!("brings luggage {luggage} from {from} to {to}", luggage, from, to)
+                record!(takes_luggage: "brings luggage {luggage} from {from} to {to}", luggage, from, to)
             }
-            ClassicLuggageDecision::Forget => record!("is free again"),
+            ClassicLuggageDecision::Forget => record!(is_free: "is free again"),
         }
     }
 }

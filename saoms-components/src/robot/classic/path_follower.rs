@@ -78,11 +78,13 @@ pub enum ClassicPathDecision {
 impl Recordable for ClassicPathSymptom {
     fn record(&self) -> Record {
         match *self {
-            ClassicPathSymptom::Stopped => record!("has to stop for this period"),
-            ClassicPathSymptom::Working => record!("is still at work"),
-            ClassicPathSymptom::AtDestination(block) => record!("is at its destination {block}", block),
-            ClassicPathSymptom::OnTheWay { to, .. } => record!("is on the way to {to}", to),
-            ClassicPathSymptom::ToCharger { to, .. } => record!("is on the way to its charger at {to}", to),
+            ClassicPathSymptom::Stopped => record!(has_to_wait: "has to stop for this period"),
+            ClassicPathSymptom::Working => record!(action_running: "is still at work"),
+            ClassicPathSymptom::AtDestination(block) => record!(at_destination: "is at its destination {block}", block),
+            ClassicPathSymptom::OnTheWay { to, .. } => record!(on_the_way: "is on the way to {to}", to),
+            ClassicPathSymptom::ToCharger { to, .. } => {
+                record!(on_the_way_to_charger: "is on the way to its charger at {to}", to)
+            }
         }
     }
 }
@@ -90,15 +92,15 @@ impl Recordable for ClassicPathSymptom {
 impl Recordable for ClassicPathDecision {
     fn record(&self) -> Record {
         match *self {
-            ClassicPathDecision::Stop => record!("stands still"),
-            ClassicPathDecision::Announce => record!("says again where it goes"),
+            ClassicPathDecision::Stop => record!(waits: "stands still"),
+            ClassicPathDecision::Announce => record!(repeats_position: "says again where it goes"),
             ClassicPathDecision::Handle(Action { kind: ActionKind::Collect, luggage, .. }) => {
-                record!("collects luggage {luggage}", luggage)
+                record!(collects_luggage: "collects luggage {luggage}", luggage)
             }
             ClassicPathDecision::Handle(Action { luggage, .. }) => {
-                record!("deposits luggage {luggage}", luggage)
+                record!(deposits_luggage: "deposits luggage {luggage}", luggage)
             }
-            ClassicPathDecision::Go { .. } | ClassicPathDecision::GoCharging { .. } => record!("goes on"),
+            ClassicPathDecision::Go { .. } | ClassicPathDecision::GoCharging { .. } => record!(goes_on: "goes on"),
         }
     }
 }

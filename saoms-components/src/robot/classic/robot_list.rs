@@ -51,9 +51,8 @@ impl Loop for ClassicRobotList {
         let changed = std::mem::replace(&mut self.known, robots) != robots;
         Ok(changed.then(|| {
             record!(
-                "knows of {count} other {robots}",
-                count = u32::try_from(robots).unwrap_or(u32::MAX),
-                robots = if robots == 1 { "robot" } else { "robots" }
+                other_robots_known: "knows of {count} other {count:robot|robots}",
+                count = u32::try_from(robots).unwrap_or(u32::MAX)
             )
         }))
     }

@@ -39,9 +39,11 @@ pub enum ClassicRobotDecision {
 impl Recordable for ClassicRobotSymptom {
     fn record(&self) -> Record {
         match *self {
-            ClassicRobotSymptom::Awake(0) => record!("is called to be awake"),
-            ClassicRobotSymptom::Awake(robot) => record!("is called to stand in for robot {robot}", robot),
-            ClassicRobotSymptom::Asleep => record!("is called to go under charge"),
+            ClassicRobotSymptom::Awake(0) => record!(woken: "is woken"),
+            ClassicRobotSymptom::Awake(robot) => {
+                record!(woken_as_substitute: "is woken to stand in for robot {robot}", robot)
+            }
+            ClassicRobotSymptom::Asleep => record!(sent_to_charge: "is called to go under charge"),
         }
     }
 }
@@ -49,8 +51,8 @@ impl Recordable for ClassicRobotSymptom {
 impl Recordable for ClassicRobotDecision {
     fn record(&self) -> Record {
         match self {
-            ClassicRobotDecision::Wake(_) => record!("is awake"),
-            ClassicRobotDecision::Charge => record!("goes under charge after its job"),
+            ClassicRobotDecision::Wake(_) => record!(wakes: "wakes up"),
+            ClassicRobotDecision::Charge => record!(charges_after_job: "goes under charge after its job"),
         }
     }
 }

@@ -94,26 +94,32 @@ impl Recordable for SafeBatterySymptom {
     fn record(&self) -> Record {
         match *self {
             SafeBatterySymptom::Low { battery, left, home } => record!(
-                "has {battery} % left: enough for {left} executions, and the way to its charger takes {home}",
+                low_battery_for_way_home: "has {battery} % left: enough for {left} executions, and the way to its charger takes {home}",
                 battery,
                 left,
                 home
             ),
-            SafeBatterySymptom::Empty => record!("has an empty battery"),
+            SafeBatterySymptom::Empty => record!(battery_empty: "has an empty battery"),
             SafeBatterySymptom::OutOfReach { charger, other } => record!(
-                "its charger at {charger} is out of reach by now, and the one at {other} is free",
+                charger_out_of_reach: "its charger at {charger} is out of reach by now, and the one at {other} is free",
                 charger,
                 other
             ),
             SafeBatterySymptom::CutOff { charger, other } => {
-                record!("no way leads to its charger at {charger} any more, but one to {other}", charger, other)
+                record!(
+                    charger_cut_off: "no way leads to its charger at {charger} any more, but one to {other}",
+                    charger,
+                    other
+                )
             }
-            SafeBatterySymptom::Charged { battery } => record!("has charged up to {battery} %", battery),
+            SafeBatterySymptom::Charged { battery } => {
+                record!(charged_enough: "has charged up to {battery} %", battery)
+            }
             SafeBatterySymptom::Charge { begins: true, battery } => {
-                record!("is at its charger with {battery} %", battery)
+                record!(at_charger: "is at its charger with {battery} %", battery)
             }
             SafeBatterySymptom::Charge { begins: false, battery } => {
-                record!("gains nothing from its charger any more, with {battery} %", battery)
+                record!(charging_is_over: "gains nothing from its charger any more, with {battery} %", battery)
             }
         }
     }
@@ -122,13 +128,13 @@ impl Recordable for SafeBatterySymptom {
 impl Recordable for SafeBatteryDecision {
     fn record(&self) -> Record {
         match *self {
-            SafeBatteryDecision::Charge => record!("goes to its charger"),
-            SafeBatteryDecision::Stop => record!("stays where it is"),
-            SafeBatteryDecision::Leave => record!("has enough for what it has to do"),
-            SafeBatteryDecision::Use(other) => record!("charges at {other} from now on", other),
-            SafeBatteryDecision::Borrow(other) => record!("charges at {other} this time", other),
-            SafeBatteryDecision::BeInCharge(true) => record!("is in charge"),
-            SafeBatteryDecision::BeInCharge(false) => record!("is in charge no more"),
+            SafeBatteryDecision::Charge => record!(goes_to_charge: "goes to its charger"),
+            SafeBatteryDecision::Stop => record!(stops_with_empty_battery: "stays where it is"),
+            SafeBatteryDecision::Leave => record!(leaves_charger: "has enough for what it has to do"),
+            SafeBatteryDecision::Use(other) => record!(changes_charger: "charges at {other} from now on", other),
+            SafeBatteryDecision::Borrow(other) => record!(borrows_charger: "charges at {other} this time", other),
+            SafeBatteryDecision::BeInCharge(true) => record!(starts_charging: "is in charge"),
+            SafeBatteryDecision::BeInCharge(false) => record!(stops_charging: "is in charge no more"),
         }
     }
 }

@@ -48,9 +48,9 @@ impl Recordable for SafeCollisionSymptom {
     fn record(&self) -> Record {
         match *self {
             SafeCollisionSymptom::Taken { block, robot } => {
-                record!("robot {robot} holds or wants {block}", robot, block)
+                record!(block_taken: "robot {robot} holds or wants {block}", robot, block)
             }
-            SafeCollisionSymptom::Clear => record!("nobody is in its way any more"),
+            SafeCollisionSymptom::Clear => record!(way_clear: "nobody is in its way any more"),
         }
     }
 }
@@ -58,8 +58,8 @@ impl Recordable for SafeCollisionSymptom {
 impl Recordable for SafeCollisionDecision {
     fn record(&self) -> Record {
         match *self {
-            SafeCollisionDecision::Wait(_, robot) => record!("waits for robot {robot}", robot),
-            SafeCollisionDecision::GoOn => record!("goes on"),
+            SafeCollisionDecision::Wait(_, robot) => record!(waits_for_robot: "waits for robot {robot}", robot),
+            SafeCollisionDecision::GoOn => record!(goes_on: "goes on"),
         }
     }
 }

@@ -47,16 +47,16 @@ impl Recordable for SafeGripperSymptom {
     fn record(&self) -> Record {
         match *self {
             SafeGripperSymptom::AtLuggage(Job { luggage, from, .. }) => {
-                record!("is at {from}, where luggage {luggage} is", from, luggage)
+                record!(at_luggage: "is at {from}, where luggage {luggage} is", from, luggage)
             }
             SafeGripperSymptom::AtDestination(Job { luggage, to, .. }) => {
-                record!("is at {to}, where luggage {luggage} has to go", to, luggage)
+                record!(at_destination_of_luggage: "is at {to}, where luggage {luggage} has to go", to, luggage)
             }
             SafeGripperSymptom::Deposited(Job { luggage, .. }) => {
-                record!("has deposited luggage {luggage}", luggage)
+                record!(luggage_deposited: "has deposited luggage {luggage}", luggage)
             }
             SafeGripperSymptom::Failed(Job { luggage, from, .. }) => {
-                record!("cannot collect luggage {luggage} at {from}", luggage, from)
+                record!(cannot_collect_luggage: "cannot collect luggage {luggage} at {from}", luggage, from)
             }
         }
     }
@@ -66,16 +66,16 @@ impl Recordable for SafeGripperDecision {
     fn record(&self) -> Record {
         match *self {
             SafeGripperDecision::Collect(Job { luggage, .. }) => {
-                record!("collects luggage {luggage}", luggage)
+                record!(collects_luggage: "collects luggage {luggage}", luggage)
             }
             SafeGripperDecision::Deposit(Job { luggage, .. }) => {
-                record!("deposits luggage {luggage}", luggage)
+                record!(deposits_luggage: "deposits luggage {luggage}", luggage)
             }
             SafeGripperDecision::Tell(Job { luggage, .. }) => {
-                record!("tells that luggage {luggage} is delivered", luggage)
+                record!(announces_delivery: "tells that luggage {luggage} is delivered", luggage)
             }
             SafeGripperDecision::Return(Job { luggage, .. }) => {
-                record!("leaves luggage {luggage} to others", luggage)
+                record!(leaves_luggage: "leaves luggage {luggage} to others", luggage)
             }
         }
     }

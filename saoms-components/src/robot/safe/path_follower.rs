@@ -61,9 +61,11 @@ pub enum SafePathDecision {
 impl Recordable for SafePathSymptom {
     fn record(&self) -> Record {
         match *self {
-            SafePathSymptom::Bound { block } => record!("is bound to {block}", block),
-            SafePathSymptom::OnTheWay { at, goal } => record!("is at {at} on its way to {goal}", at, goal),
-            SafePathSymptom::There { block } => record!("rests at {block}", block),
+            SafePathSymptom::Bound { block } => record!(cannot_leave_block: "is bound to {block}", block),
+            SafePathSymptom::OnTheWay { at, goal } => {
+                record!(on_the_way_from: "is at {at} on its way to {goal}", at, goal)
+            }
+            SafePathSymptom::There { block } => record!(rests: "rests at {block}", block),
         }
     }
 }
@@ -71,9 +73,9 @@ impl Recordable for SafePathSymptom {
 impl Recordable for SafePathDecision {
     fn record(&self) -> Record {
         match *self {
-            SafePathDecision::Hold => record!("lets nobody pass"),
-            SafePathDecision::Go(block) => record!("moves to {block}", block),
-            SafePathDecision::Stay => record!("stays for now"),
+            SafePathDecision::Hold => record!(holds_block: "lets nobody pass"),
+            SafePathDecision::Go(block) => record!(moves: "moves to {block}", block),
+            SafePathDecision::Stay => record!(stays: "stays for now"),
         }
     }
 }

@@ -40,16 +40,18 @@ impl Recordable for SafeRobotListSymptom {
     fn record(&self) -> Record {
         let battery = self.battery;
         match self.in_charge {
-            _ if self.critical => record!("is out of order, and asked for help"),
-            true => record!("is in charge with {battery} %, which the others do not know", battery),
-            false => record!("has {battery} % left, which the others do not know", battery),
+            _ if self.critical => record!(out_of_order: "is out of order, and asked for help"),
+            true => {
+                record!(charging_not_announced: "is in charge with {battery} %, which the others do not know", battery)
+            }
+            false => record!(battery_not_announced: "has {battery} % left, which the others do not know", battery),
         }
     }
 }
 
 impl Recordable for SayRobot {
     fn record(&self) -> Record {
-        record!("tells the others")
+        record!(announces_state: "tells the others")
     }
 }
 

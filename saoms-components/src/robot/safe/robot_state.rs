@@ -71,16 +71,24 @@ pub enum SafeRobotDecision {
 impl Recordable for SafeRobotSymptom {
     fn record(&self) -> Record {
         match *self {
-            SafeRobotSymptom::Woken { emulate: 0 } => record!("is awaked"),
-            SafeRobotSymptom::Woken { emulate } => record!("is awaked in place of robot {emulate}", emulate),
-            SafeRobotSymptom::SentToSleep => record!("is sent to sleep"),
+            SafeRobotSymptom::Woken { emulate: 0 } => record!(woken: "is woken"),
+            SafeRobotSymptom::Woken { emulate } => {
+                record!(woken_as_substitute: "is woken to stand in for robot {robot}", robot = emulate)
+            }
+            SafeRobotSymptom::SentToSleep => record!(sent_to_sleep: "is sent to sleep"),
             SafeRobotSymptom::NobodyAwake { critical } => {
-                record!("robot {critical} needs help, and no robot that is awake can give it", critical)
+                record!(
+                    no_awake_robot_can_help: "robot {robot} needs help, and no robot that is awake can give it",
+                    robot = critical
+                )
             }
             SafeRobotSymptom::NobodyForLuggage { luggage } => {
-                record!("luggage {luggage} waits, and no robot that is awake can bring it", luggage)
+                record!(
+                    no_awake_robot_can_carry: "luggage {luggage} waits, and no robot that is awake can bring it",
+                    luggage
+                )
             }
-            SafeRobotSymptom::AtRest => record!("is at its charger and was sent to sleep"),
+            SafeRobotSymptom::AtRest => record!(at_charger_to_sleep: "is at its charger and was sent to sleep"),
         }
     }
 }
@@ -88,13 +96,13 @@ impl Recordable for SafeRobotSymptom {
 impl Recordable for SafeRobotDecision {
     fn record(&self) -> Record {
         match *self {
-            SafeRobotDecision::Awake { emulate: 0 } => record!("awakes"),
+            SafeRobotDecision::Awake { emulate: 0 } => record!(wakes: "wakes up"),
             SafeRobotDecision::Awake { emulate } => {
-                record!("awakes and stands in for robot {emulate}", emulate)
+                record!(wakes_as_substitute: "awakes and stands in for robot {robot}", robot = emulate)
             }
-            SafeRobotDecision::StayAwake => record!("is awake already"),
-            SafeRobotDecision::Finish => record!("finishes its job, then sleeps"),
-            SafeRobotDecision::Sleep => record!("sleeps"),
+            SafeRobotDecision::StayAwake => record!(already_awake: "is awake already"),
+            SafeRobotDecision::Finish => record!(sleeps_after_job: "finishes its job, then sleeps"),
+            SafeRobotDecision::Sleep => record!(sleeps: "sleeps"),
         }
     }
 }

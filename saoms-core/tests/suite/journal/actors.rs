@@ -293,6 +293,41 @@ impl Echo for Helper {
     }
 }
 
+/// The record that a speaker writes.
+#[derive(Clone, Properties)]
+struct SpeakerProperties {
+    /// `plain`, `reworded`, `other-id`, `other-value`, or `plain-text` and `other-text` of records without an id.
+    record: String,
+}
+
+/// Writes one record in each execution.
+#[derive(Class)]
+#[class(name = "speaker", periodic)]
+struct Speaker {
+    record: String,
+}
+
+impl Component for Speaker {
+    type Properties = SpeakerProperties;
+
+    fn new(properties: SpeakerProperties) -> Result<Self, Failure> {
+        Ok(Speaker { record: properties.record })
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.symptom(match &*self.record {
+            "plain" => record!(low_battery: "has {battery} % left", battery = 34),
+            "reworded" => record!(low_battery: "battery is at {level} %", level = 34),
+            "other-id" => record!(empty_battery: "has {battery} % left", battery = 34),
+            "other-value" => record!(low_battery: "has {battery} % left", battery = 35),
+            "plain-text" => record!("has {battery} % left", battery = 34),
+            "other-text" => record!("battery is at {battery} %", battery = 34),
+            other => return Err(Failure::new(format!("there is no record `{other}`"))),
+        });
+        Ok(())
+    }
+}
+
 /// A fleet of them.
 pub(super) fn fleet(text: &str) -> Assembly {
     let mut registry = Registry::new();
@@ -301,5 +336,6 @@ pub(super) fn fleet(text: &str) -> Assembly {
     registry.add(Registration::of::<Robot>()).unwrap();
     registry.add(Registration::of::<Asker>()).unwrap();
     registry.add(Registration::of::<Helper>()).unwrap();
+    registry.add(Registration::of::<Speaker>()).unwrap();
     assembly_of(text, &registry)
 }

@@ -174,7 +174,8 @@ unsafe extern "C" fn execute(this: *mut c_void, handle: *const HostHandle, error
                 (functions.log)(host.state, 99, Bytes { data: ptr::dangling(), length: LONG });
                 (functions.count)(host.state, NOT_TEXT, 1);
                 (functions.name_loop)(host.state, 77, NOT_TEXT);
-                let record = RecordView { text: NOT_TEXT, names: NOT_TEXT, values: ptr::null(), count: 7 };
+                let record =
+                    RecordView { id: NOT_TEXT, text: NOT_TEXT, names: NOT_TEXT, values: ptr::null(), count: 7 };
                 (functions.journal)(host.state, 9, &raw const record);
                 (functions.journal)(host.state, 1, &raw const record);
                 let value = ValueView { kind: 99, bits: 0, word: NOT_TEXT };
@@ -281,7 +282,7 @@ static CLASS: ClassTable =
 static CLASSES: &[&ClassTable] = &[&CLASS];
 
 const TEXT: ConstText = ConstText::Joined(&[
-    ConstText::Plain(r#"{"saoms":"plugin","abi":1,"package":"test-raw","entry":"raw_entry","classes":["#),
+    ConstText::Plain(r#"{"saoms":"plugin","abi":2,"package":"test-raw","entry":"raw_entry","classes":["#),
     ConstText::Plain(<Actor as Class>::DECLARATION),
     ConstText::Plain("]}"),
 ]);

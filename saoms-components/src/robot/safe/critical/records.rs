@@ -116,45 +116,80 @@ impl Recordable for SafeCriticalSymptom {
     fn record(&self) -> Record {
         match *self {
             SafeCriticalSymptom::Broken { trouble, kind, block } => {
-                record!("{trouble} at {block} {doing}", trouble = trouble.words(), block, doing = doing(kind))
+                let trouble = trouble.name();
+                match kind {
+                    CriticalKind::CarriesLuggage => {
+                        record!(stops_while_carrying: "stops at {block} with luggage: {trouble}", block, trouble)
+                    }
+                    CriticalKind::OnTheWay => record!(
+                        stops_while_fetching: "stops at {block} on its way to luggage: {trouble}",
+                        block,
+                        trouble
+                    ),
+                    CriticalKind::Idle => {
+                        record!(stops_while_idle: "stops at {block} without a job: {trouble}", block, trouble)
+                    }
+                }
             }
             SafeCriticalSymptom::NeedsHelp { ref situation, distance } => {
                 let CriticalSituation { critical, block, kind, .. } = *situation;
-                record!(
-                    "robot {critical} broke down at {block} {doing}, {distance} blocks away",
-                    critical,
-                    block,
-                    doing = doing(kind),
-                    distance
-                )
+                match kind {
+                    CriticalKind::CarriesLuggage => record!(
+                        robot_broke_down_while_carrying: "robot {robot} broke down at {block} with luggage, {distance} blocks away",
+                        robot = critical,
+                        block,
+                        distance
+                    ),
+                    CriticalKind::OnTheWay => record!(
+                        robot_broke_down_while_fetching: "robot {robot} broke down at {block} on its way to luggage, {distance} blocks away",
+                        robot = critical,
+                        block,
+                        distance
+                    ),
+                    CriticalKind::Idle => record!(
+                        robot_broke_down_while_idle: "robot {robot} broke down at {block} without a job, {distance} blocks away",
+                        robot = critical,
+                        block,
+                        distance
+                    ),
+                }
             }
             SafeCriticalSymptom::InVain(CriticalSituation { critical, .. }) => {
-                record!("could not begin to help robot {critical} for very long: others are in its way", critical)
+                record!(
+                    help_blocked: "could not begin to help robot {robot} for very long: others are in its way",
+                    robot = critical
+                )
             }
             SafeCriticalSymptom::Alone(CriticalSituation { critical, .. }) => {
-                record!("no other robot would help robot {critical}", critical)
+                record!(no_other_offer_to_help: "no other robot would help robot {robot}", robot = critical)
             }
             SafeCriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: Some(robot) } => {
-                record!("robot {robot} is closer to robot {critical}", robot, critical)
+                record!(robot_closer_to_robot: "robot {robot} is closer to robot {critical}", robot, critical)
             }
             SafeCriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: None } => {
-                record!("has to charge, and said that it would help robot {critical}", critical)
+                record!(
+                    has_to_charge_despite_offer_to_help: "has to charge, and said that it would help robot {robot}",
+                    robot = critical
+                )
             }
-            SafeCriticalSymptom::Gone => record!("another robot helps"),
+            SafeCriticalSymptom::Gone => record!(other_robot_helps: "another robot helps"),
             SafeCriticalSymptom::Woken { emulates } => {
-                record!("was awaked in place of robot {emulates}", emulates)
+                record!(was_woken_as_substitute: "was awaked in place of robot {robot}", robot = emulates)
             }
             SafeCriticalSymptom::Charges { battery } => {
-                record!("has to charge (battery {battery} %), and others sleep", battery)
+                record!(
+                    has_to_charge_while_others_sleep: "has to charge (battery {battery} %), and others sleep",
+                    battery
+                )
             }
             SafeCriticalSymptom::Missing { robot, sleeper, battery } => record!(
-                "robot {robot} is missing, and robot {sleeper} sleeps with {battery} %",
+                robot_missing: "robot {robot} is missing, and robot {sleeper} sleeps with {battery} %",
                 robot,
                 sleeper,
                 battery
             ),
             SafeCriticalSymptom::Substituted { robot, by } => {
-                record!("robot {by} stands in for robot {robot}", by, robot)
+                record!(robot_substituted: "robot {by} stands in for robot {robot}", by, robot)
             }
         }
     }
@@ -163,45 +198,65 @@ impl Recordable for SafeCriticalSymptom {
 impl Recordable for SafeCriticalDecision {
     fn record(&self) -> Record {
         match *self {
-            SafeCriticalDecision::CallForHelp { .. } => record!("calls for help and shuts down"),
+            SafeCriticalDecision::CallForHelp { .. } => record!(asks_for_help: "asks for help and shuts down"),
             SafeCriticalDecision::Offer(CriticalSituation { critical, .. }) => {
-                record!("would help robot {critical}, and asks who else would", critical)
+                record!(offers_help: "offers to help robot {robot}", robot = critical)
             }
             SafeCriticalDecision::Postpone { needs, .. } => {
-                record!("charges first: that takes {needs} executions", needs)
+                record!(charges_first: "charges first: that takes {needs} executions", needs)
             }
             SafeCriticalDecision::Refuse(CriticalSituation { critical, .. }) => {
-                record!("leaves robot {critical} to others: it can never do that", critical)
+                record!(refuses_help: "leaves robot {robot} to others: it can never do that", robot = critical)
             }
             SafeCriticalDecision::Heal(CriticalSituation { critical, kind, luggage, to, .. }) => match kind {
                 CriticalKind::CarriesLuggage => {
                     record!(
-                        "collects luggage {luggage} from robot {critical} and brings it to {to}",
+                        takes_over_luggage_on_board: "collects luggage {luggage} from robot {robot} and brings it to {to}",
                         luggage,
-                        critical,
+                        robot = critical,
                         to
                     )
                 }
                 CriticalKind::OnTheWay => {
-                    record!("brings luggage {luggage} to {to} in place of robot {critical}", luggage, to, critical)
+                    record!(
+                        takes_over_luggage: "brings luggage {luggage} to {to} in place of robot {robot}",
+                        luggage,
+                        to,
+                        robot = critical
+                    )
                 }
-                CriticalKind::Idle => record!("finds a substitute for robot {critical}", critical),
+                CriticalKind::Idle => {
+                    record!(finds_substitute: "finds a substitute for robot {robot}", robot = critical)
+                }
             },
             SafeCriticalDecision::Release(CriticalSituation { critical, .. }) => {
-                record!("leaves robot {critical} to others", critical)
+                record!(withdraws_offer_to_help: "leaves robot {robot} to others", robot = critical)
             }
-            SafeCriticalDecision::Forget => record!("is free again"),
-            SafeCriticalDecision::StandIn { critical } => record!("stands in for robot {critical}", critical),
-            SafeCriticalDecision::AskForSubstitute => record!("asks for a substitute"),
+            SafeCriticalDecision::Forget => record!(is_free: "is free again"),
+            SafeCriticalDecision::StandIn { critical } => {
+                record!(stands_in: "stands in for robot {robot}", robot = critical)
+            }
+            SafeCriticalDecision::AskForSubstitute => record!(asks_for_substitute: "asks for a substitute"),
             SafeCriticalDecision::Awake { sleeper, robot } => {
-                record!("awakes robot {sleeper} in place of robot {robot}", sleeper, robot)
+                record!(wakes_substitute: "awakes robot {sleeper} in place of robot {robot}", sleeper, robot)
             }
-            SafeCriticalDecision::Rest { robot } => record!("robot {robot} has its substitute", robot),
+            SafeCriticalDecision::Rest { robot } => {
+                record!(substitute_found: "robot {robot} has its substitute", robot)
+            }
         }
     }
 }
 
 impl Trouble {
+    /// Its name in records.
+    const fn name(self) -> &'static str {
+        match self {
+            Trouble::Breakdown => "breakdown",
+            Trouble::Hardware => "hardware",
+            Trouble::Battery => "battery",
+        }
+    }
+
     pub(super) const fn words(self) -> &'static str {
         match self {
             Trouble::Breakdown => "broke down",

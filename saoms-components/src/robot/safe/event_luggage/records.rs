@@ -123,32 +123,47 @@ impl Recordable for SafeLuggageSymptom {
     fn record(&self) -> Record {
         match *self {
             SafeLuggageSymptom::Waiting { job: Job { luggage, from, .. }, distance, .. } => {
-                record!("luggage {luggage} waits at {from}, {distance} blocks away", luggage, from, distance)
+                record!(
+                    luggage_waits: "luggage {luggage} waits at {from}, {distance} blocks away",
+                    luggage,
+                    from,
+                    distance
+                )
             }
             SafeLuggageSymptom::Alone(Job { luggage, .. }) => {
-                record!("no other robot is interested in luggage {luggage}", luggage)
+                record!(no_other_offer_for_luggage: "no other robot is interested in luggage {luggage}", luggage)
             }
             SafeLuggageSymptom::Beaten { job: Job { luggage, .. }, by: Some(robot) } => {
-                record!("robot {robot} is closer to luggage {luggage}", robot, luggage)
+                record!(robot_closer_to_luggage: "robot {robot} is closer to luggage {luggage}", robot, luggage)
             }
             SafeLuggageSymptom::Beaten { job: Job { luggage, .. }, by: None } => {
-                record!("has to charge, and said that it would bring luggage {luggage}", luggage)
+                record!(
+                    has_to_charge_despite_luggage: "has to charge, and said that it would bring luggage {luggage}",
+                    luggage
+                )
             }
-            SafeLuggageSymptom::Gone => record!("another robot takes the luggage"),
+            SafeLuggageSymptom::Gone => record!(luggage_taken: "another robot takes the luggage"),
             SafeLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
-                record!("no way leads to {to} any more, where it has to go for luggage {luggage}", to, luggage)
+                record!(
+                    luggage_cut_off: "no way leads to {to} any more, where it has to go for luggage {luggage}",
+                    to,
+                    luggage
+                )
             }
             SafeLuggageSymptom::InVain(Job { luggage, .. }) => {
-                record!("could not begin with luggage {luggage} for very long: others are in its way", luggage)
+                record!(
+                    luggage_blocked: "could not begin with luggage {luggage} for very long: others are in its way",
+                    luggage
+                )
             }
             SafeLuggageSymptom::Stuck { job: Job { luggage, .. }, executions, .. } => record!(
-                "gets nowhere with luggage {luggage}: others have been in its way for {executions} executions",
+                stuck_with_luggage: "gets nowhere with luggage {luggage}: others have been in its way for {executions} executions",
                 luggage,
                 executions
             ),
             SafeLuggageSymptom::TooFar { job: Job { luggage, .. }, to, .. } => {
                 record!(
-                    "turned back from the way to {to} again and again: no full battery lasts to bring luggage {luggage}",
+                    luggage_too_far: "turned back from the way to {to} again and again: no full battery lasts to bring luggage {luggage}",
                     to,
                     luggage
                 )
@@ -161,26 +176,26 @@ impl Recordable for SafeLuggageDecision {
     fn record(&self) -> Record {
         match *self {
             SafeLuggageDecision::TakeInterest { job: Job { luggage, .. }, .. } => {
-                record!("would bring luggage {luggage}, and asks who else would", luggage)
+                record!(offers_to_carry_luggage: "would bring luggage {luggage}, and asks who else would", luggage)
             }
             SafeLuggageDecision::Postpone { needs, .. } => {
-                record!("charges first: that takes {needs} executions", needs)
+                record!(charges_first: "charges first: that takes {needs} executions", needs)
             }
             SafeLuggageDecision::Refuse { job: Job { luggage, .. }, .. } => {
-                record!("leaves luggage {luggage} to others: it can never bring that", luggage)
+                record!(refuses_luggage: "leaves luggage {luggage} to others: it can never bring that", luggage)
             }
             SafeLuggageDecision::Take(Job { luggage, from, to }) => {
-                record!("brings luggage {luggage} from {from} to {to}", luggage, from, to)
+                record!(takes_luggage: "brings luggage {luggage} from {from} to {to}", luggage, from, to)
             }
             SafeLuggageDecision::Release(Job { luggage, .. }) => {
-                record!("leaves luggage {luggage} to others", luggage)
+                record!(withdraws_offer_for_luggage: "takes back its offer for luggage {luggage}", luggage)
             }
-            SafeLuggageDecision::Forget => record!("looks for other luggage"),
+            SafeLuggageDecision::Forget => record!(looks_for_other_luggage: "looks for other luggage"),
             SafeLuggageDecision::Return(Job { luggage, .. }) => {
-                record!("leaves luggage {luggage} to others", luggage)
+                record!(leaves_luggage: "leaves luggage {luggage} to others", luggage)
             }
             SafeLuggageDecision::GiveUp { job: Job { luggage, .. }, .. } => {
-                record!("gives luggage {luggage} up", luggage)
+                record!(gives_up_luggage: "gives luggage {luggage} up", luggage)
             }
         }
     }

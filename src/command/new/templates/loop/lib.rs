@@ -44,7 +44,7 @@ impl Loop for MyPlugin {
     ) -> Result<Option<Record>, Failure> {
         let (battery, threshold) = (self.battery.get(knowledge)?, self.properties.threshold);
         let set = self.charge_at.get(knowledge)? == threshold;
-        Ok((!set).then(|| record!("has {battery} % left, and would charge late", battery)))
+        Ok((!set).then(|| record!(would_charge_late: "has {battery} % left, and would charge late", battery)))
     }
 
     fn plan(
@@ -53,7 +53,7 @@ impl Loop for MyPlugin {
         _: &mut dyn Knowledge,
         _: &mut Context<'_>,
     ) -> Result<Option<Record>, Failure> {
-        Ok(Some(record!("lets it charge at {threshold} %", threshold = self.properties.threshold)))
+        Ok(Some(record!(sets_charge_level: "lets it charge at {threshold} %", threshold = self.properties.threshold)))
     }
 
     fn execute(
