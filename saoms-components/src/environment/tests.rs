@@ -322,3 +322,19 @@ fn what_can_follow_is_what_the_grammar_says() {
         assert_eq!(words(line), [], "{line}");
     }
 }
+
+#[test]
+fn a_site_in_a_scenario_is_told_to_belong_to_events_from_outside() {
+    for (line, site) in [
+        ("North: at 3s luggage (1,1) to (2,2)", "North:"),
+        ("at 3s Paris/Hall1: luggage (1,1) to (2,2)", "Paris/Hall1:"),
+        ("North : end", "North :"),
+    ] {
+        let findings = Scenario::read(&["# a: b", line]).unwrap_err();
+        let expected = format!("found the site `{site}`, which stands only before events from outside (`--events`)");
+        assert_eq!(findings.iter().map(saoms_api::Finding::message).collect::<Vec<_>>(), [expected]);
+    }
+    for line in ["at: 3s end", "at 10:30 end", "at 3s luggage: (1,1) to (2,2)"] {
+        assert!(!Scenario::read(&[line]).unwrap_err()[0].message().contains("site"), "{line}");
+    }
+}

@@ -135,7 +135,7 @@ fn pair<'a>(
     let found: Vec<Name<'a>> = names.iter().map(|range| trimmed(text, range)).collect();
     let count = found.iter().filter(|name| !name.text.is_empty()).count();
     match &found[..] {
-        [_, new] if count == 2 && new.text.trim_start_matches('/').is_empty() => {
+        [_, new] if count == 2 && new.text.strip_prefix('/').unwrap_or(new.text).split('/').any(str::is_empty) => {
             let message = format!("`{}` is not a name of a topic", new.text);
             faults.push(RenameFault { at: new.at.clone(), message, other: None });
         }

@@ -9,16 +9,16 @@ use crate::diagnostic::Diagnostics;
 use crate::expression::has_expression;
 use crate::model::{ComponentElement, Contribution};
 use crate::registry::Registry;
-use crate::source::{Sources, Text};
+use crate::source::{Location, Sources, Text};
 
-/// The files of the tables that a fleet needs and that are not read yet: each name at the attribute `overrides` that
-/// comes to it. What is wrong with the fleet is left to the check.
+/// The files of the tables that a fleet needs and that are not read yet: each name where it is written, and the place
+/// of the attribute `overrides` that comes to it. What is wrong with the fleet is left to the check.
 pub fn wanted_tables(
     contribution: &Contribution,
     registry: &Registry,
     options: &Options,
     sources: &Sources,
-) -> Vec<Text> {
+) -> Vec<(Text, Location)> {
     let is_open = |component: &ComponentElement| {
         let overrides = component.replicas.as_ref().and_then(|replicas| replicas.overrides.as_ref());
         overrides.is_some_and(|file| has_expression(file))

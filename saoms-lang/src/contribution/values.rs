@@ -13,7 +13,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
 use crate::expression::has_expression;
 use crate::load::read;
 use crate::model::{Composite, Contribution, Table};
-use crate::source::{FileId, Sources, Text};
+use crate::source::{FileId, Location, Sources, Text};
 
 /// Reads the files that properties of the composite's components and their loops name with `file`, each of at most
 /// `max_size` bytes. A name is a URI (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the
@@ -57,11 +57,21 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
             (details.from_file, details.document) = (text, document);
         }
     }
-    let components = composite.components.iter_mut();
+    let (components, properties) = (composite.components.iter_mut(), &composite.properties);
     for replicas in components.filter_map(|component| component.replicas.as_mut()) {
         // Which file an expression names is known when composites are unfolded: see `read_tables`.
         if let Some(file) = replicas.overrides.as_ref().filter(|file| !has_expression(file)) {
-            replicas.table = read_table(file, max_size, sources, diagnostics);
+            replicas.table = read_table(file, file.location, max_size, sources, diagnostics).unwrap_or_else(|fault| {
+                let name = file.strip_prefix('$').unwrap_or(file);
+                let is_property = !name.is_empty() && properties.iter().any(|one| *one.name == *name);
+                diagnostics.push(match is_property {
+                    true => {
+                        Diagnostic { help: Vec::new(), ..*fault }.replace(file, file.location, &format!("${{{name}}}"))
+                    }
+                    false => *fault,
+                });
+                None
+            });
         }
     }
 }
@@ -73,17 +83,18 @@ pub fn read_tables(
     max_size: u64,
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
-    wanted: impl Fn(&Contribution, &Sources) -> Vec<Text>,
+    wanted: impl Fn(&Contribution, &Sources) -> Vec<(Text, Location)>,
 ) {
     let mut known: HashSet<(FileId, SmolStr)> = HashSet::new();
     loop {
         let count = known.len();
-        for name in wanted(contribution, sources) {
+        for (name, attribute) in wanted(contribution, sources) {
             let file = name.location.file;
-            if known.insert((file, name.value.clone()))
-                && let Some(table) = read_table(&name, max_size, sources, diagnostics)
-            {
-                contribution.add_table(file, &name, table);
+            if known.insert((file, name.value.clone())) {
+                match read_table(&name, attribute, max_size, sources, diagnostics) {
+                    Ok(table) => table.into_iter().for_each(|table| contribution.add_table(file, &name, table)),
+                    Err(fault) => diagnostics.push(*fault),
+                }
             }
         }
         if known.len() == count {
@@ -92,22 +103,28 @@ pub fn read_tables(
     }
 }
 
-/// The table in a file that is named in a composite, from whose folder its path is.
-fn read_table(name: &Text, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Arc<Table>> {
+/// The table that an `attribute` names, in a file whose path is from the folder of the file in which it is written.
+fn read_table(
+    name: &Text,
+    attribute: Location,
+    max_size: u64,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Result<Option<Arc<Table>>, Box<Diagnostic>> {
     let folder = Path::new(sources.get(name.location.file).path()).parent().unwrap_or(Path::new(""));
     let path = folder.join(name.as_str());
     match read::value(&path, max_size, name.location, sources.open()) {
         Ok(text) => {
             let file = sources.add(path.display().to_string(), text);
-            table(file, sources, diagnostics).map(Arc::new)
+            Ok(table(file, sources, diagnostics).map(Arc::new))
         }
         Err(mut diagnostic) => {
             // An expression stands for several names.
             if sources.snippet(name.location) != name.as_str() {
                 diagnostic.message = format!("{}: {}", quoted(name), diagnostic.message);
             }
-            diagnostics.push(*diagnostic);
-            None
+            let is_here = attribute == name.location;
+            Err(if is_here { diagnostic } else { Box::new(diagnostic.label(attribute, "the table of these")) })
         }
     }
 }

@@ -154,14 +154,15 @@ impl Contribution {
         all
     }
 
-    /// The table that a composite names so by an expression; see [`read_tables`](crate::contribution::read_tables).
-    pub fn table(&self, composite: FileId, name: &str) -> Option<&Table> {
-        self.tables.get(&(composite, SmolStr::from(name))).map(|table| &**table)
+    /// The table whose name is written so in a file, and comes to a composite by an expression; see
+    /// [`read_tables`](crate::contribution::read_tables).
+    pub fn table(&self, file: FileId, name: &str) -> Option<&Table> {
+        self.tables.get(&(file, SmolStr::from(name))).map(|table| &**table)
     }
 
     /// Adds such a table.
-    pub fn add_table(&mut self, composite: FileId, name: &str, table: Arc<Table>) {
-        self.tables.insert((composite, name.into()), table);
+    pub fn add_table(&mut self, file: FileId, name: &str, table: Arc<Table>) {
+        self.tables.insert((file, name.into()), table);
     }
 
     /// Every composite: those asked for, then those that they name.

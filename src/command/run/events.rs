@@ -7,6 +7,7 @@ use std::thread;
 
 use saoms_api::extension::{EventLanguage, EventReader, LineFault};
 use saoms_api::host::is_invisible;
+use saoms_api::rule::nearest;
 use saoms_api::{Level, Time};
 use saoms_core::schedule::{Handle, Hold, InjectError, InjectedContent, Injection};
 
@@ -131,12 +132,25 @@ fn refused(site: &str, topic: &str, error: &InjectError) -> String {
     let InjectError::UnknownTopic { known, .. } = error else { return error.to_string() };
     let of_site = |name: &String| name.strip_suffix(topic)?.strip_suffix('/').map(str::to_owned);
     let sites: Vec<String> = known.iter().filter_map(of_site).collect();
+    // Who writes it behind the time means the word before the colon.
+    let (before, site) = site.rsplit_once(char::is_whitespace).unwrap_or(("", site));
+    let meant = sites.iter().find(|name| *name == site).map(String::as_str);
+    let meant = meant.or_else(|| nearest(site, sites.iter().map(String::as_str)));
     match (site, sites.first()) {
+        (_, Some(_))
+            if !before.is_empty()
+                && let Some(meant) = meant =>
+        {
+            format!("the site stands first: write `{meant}: {before} ...`")
+        }
         ("", None) => error.to_string(),
         (site, None) => format!("this fleet has no sites: write the event without `{site}:`"),
         ("", Some(first)) => {
             let sites = sites.join(", ");
             format!("this fleet has sites: write for which one it is, as in `{first}: at 3s ...`; they are {sites}")
+        }
+        (site, Some(_)) if let Some(meant) = meant => {
+            format!("the fleet has no site `{site}`; did you mean `{meant}`?")
         }
         (site, Some(_)) => format!("the fleet has no site `{site}`; its sites are {}", sites.join(", ")),
     }

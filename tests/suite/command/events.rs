@@ -112,20 +112,30 @@ fn an_event_says_its_site() {
         + "</composite>";
     fs::write(folder.path().join("yard.composite"), outer).unwrap();
     let yard = Yard { folder };
-    let lines =
-        "North: luggage (3,1) to (3,4)\nluggage (1,1) to (5,5)\nNort: luggage (1,1) to (5,5)\nSouth: lugage (1,1)\n";
+    let lines = "North: luggage (3,1) to (3,4)\nluggage (1,1) to (5,5)\nNort: luggage (1,1) to (5,5)\n\
+                 South: lugage (1,1)\nnorth: luggage (1,1) to (5,5)\nat 3s South: luggage (1,1) to (5,5)\n\
+                 at 3s south: luggage (1,1) to (5,5)\nat 3s Paris: luggage (1,1) to (5,5)\nParis: luggage (1,1) to (5,5)\n";
     let (output, text) = yard.run(&["--virtual", "--events", "-", "--for", "10min"], lines);
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
     assert!(text.contains("North/Robot001    deposited luggage 1000001"), "{text}");
     assert!(text.contains("line 2 of the events is ignored: this fleet has sites: write for which one"), "{text}");
     assert!(
-        text.contains("line 3 of the events is ignored: the fleet has no site `Nort`; its sites are North, South"),
+        text.contains("line 3 of the events is ignored: the fleet has no site `Nort`; did you mean `North`?"),
         "{text}"
     );
+    let told = |line: usize, problem: &str| {
+        assert!(text.contains(&format!("line {line} of the events is ignored: {problem}\n")), "{text}");
+    };
+    told(5, "the fleet has no site `north`; did you mean `North`?");
+    told(6, "the site stands first: write `South: at 3s ...`");
+    told(7, "the site stands first: write `South: at 3s ...`");
+    told(8, "the fleet has no site `Paris`; its sites are North, South");
+    told(9, "the fleet has no site `Paris`; its sites are North, South");
     assert!(text.contains("    South: lugage (1,1)\n           ^^^^^^\n"), "{text}");
-    let (_, text) =
-        Yard::new().run(&["--virtual", "--events", "-", "--for", "10min"], "North: luggage (3,1) to (3,4)\n");
-    assert!(text.contains("this fleet has no sites: write the event without `North:`"), "{text}");
+    for line in ["North: luggage (3,1) to (3,4)\n", "at 2s North: luggage (3,1) to (3,4)\n"] {
+        let (_, text) = Yard::new().run(&["--virtual", "--events", "-", "--for", "10min"], line);
+        assert!(text.contains("this fleet has no sites: write the event without `North:`"), "{text}");
+    }
 }
 
 #[test]

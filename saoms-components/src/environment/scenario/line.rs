@@ -31,7 +31,7 @@ pub(in crate::environment) fn read_outside(line: &str, endless: bool) -> Result<
     let mut words = Tokenizer::of(line, line);
     let first = words.peek().unwrap_or_default();
     if STARTS.contains(&first) {
-        return read(line, line, endless).map(|line| (line, false));
+        return read_line(line, line, endless).map(|line| (line, false));
     }
     if !event::KINDS.contains(&first) {
         let near = nearest(first, event::KINDS.into_iter().chain(STARTS));
@@ -48,8 +48,26 @@ pub(in crate::environment) fn read_outside(line: &str, endless: bool) -> Result<
     Ok((line, true))
 }
 
-/// Reads a line of the text. `endless`: true if the line before has no last event.
+/// Reads a line of the text of a scenario. `endless`: true if the line before has no last event.
 pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
+    read_line(text, line, endless).map_err(|fault| {
+        let Some(site) = site(line) else { return fault };
+        let message = format!("found the site `{site}`, which stands only before events from outside (`--events`)");
+        let fault = Tokenizer::of(text, line).fault(site, message);
+        fault.help("remove it: the events of a scenario are for the site in which its environment is")
+    })
+}
+
+/// The site that a line names, with its colon, as events from outside do.
+fn site(line: &str) -> Option<&str> {
+    let before = &line[..line.find(':')?];
+    let name = before.split_whitespace().last().filter(|name| name.starts_with(char::is_alphabetic))?;
+    let is_word = STARTS.iter().chain(&event::KINDS).chain(&["every", "until", "times"]).any(|word| *word == name);
+    let start = before.trim_end().len() - name.len();
+    (!is_word).then(|| &line[start..=before.len()])
+}
+
+fn read_line(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
     let mut words = Tokenizer::of(text, line);
     let start = words.next("`at`, `from` or `then`")?;
     if !STARTS.contains(&start) {

@@ -51,8 +51,9 @@ pub(crate) struct Fleet<'a> {
     pub(crate) names: Vec<Option<Rc<Names>>>,
     /// The values with a fault that is reported.
     pub(crate) faulty_values: Rc<FaultyValues>,
-    /// The files of tables that are not read, since their names are expressions: each at its attribute.
-    pub(crate) wanted_tables: Vec<Text>,
+    /// The files of tables that are not read, since their names are expressions: each where it is written, and where
+    /// the attribute is.
+    pub(crate) wanted_tables: Vec<(Text, Location)>,
     /// The rest of the elements that paths of sources may look at.
     pub(crate) elements: Rc<Budget>,
 }

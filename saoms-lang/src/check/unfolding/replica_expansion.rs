@@ -97,9 +97,12 @@ impl<'a> Unfolding<'a, '_, '_> {
                 self.faults(names, &[(file.clone(), faults)]);
                 Faulty
             })?;
-            let table = self.fleet.contribution.table(file.location.file, &name);
+            // A whole path is from the folder of who writes it, a part of one from that of the rest.
+            let property = file.strip_prefix("${").and_then(|rest| rest.strip_suffix('}'));
+            let value = property.and_then(|name| names.place(name.trim())).unwrap_or(file.location);
+            let table = self.fleet.contribution.table(value.file, &name);
             if table.is_none() {
-                self.fleet.wanted_tables.push(Text::new(name.into(), file.location));
+                self.fleet.wanted_tables.push((Text::new(name.into(), value), file.location));
             }
             table
         };

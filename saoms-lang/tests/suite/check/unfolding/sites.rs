@@ -116,11 +116,13 @@ fn a_name_of_a_site_has_no_blanks_and_no_empty_parts() {
 }
 
 #[test]
-fn a_topic_outside_all_sites_needs_a_name() {
+fn a_name_of_a_topic_has_no_empty_parts() {
     let fleet = around("fleet", &site("N", "hall"));
-    let renamed = hall("", "<property name=\"topicRename\">POSTOPIC,/</property>");
-    let found = topics(&[&fleet, &renamed]);
-    assert!(found.contains("S4002: bad `topicRename`: `/` is not a name of a topic"), "{found}");
+    for name in ["/", "//", "//all", "/all//positions", "all/", "a//b"] {
+        let renamed = hall("", &format!("<property name=\"topicRename\">POSTOPIC,{name}</property>"));
+        let found = topics(&[&fleet, &renamed]);
+        assert!(found.contains(&format!("S4002: bad `topicRename`: `{name}` is not a name of a topic")), "{found}");
+    }
 }
 
 #[test]
@@ -174,5 +176,58 @@ fn each_use_of_a_composite_has_its_own_table() {
     ["south.csv", "north.csv"].iter().for_each(|name| fs::remove_file(folder.path().join(name)).unwrap());
     let found = compiled();
     let message: Vec<String> = found.reported().map(|one| format!("{} {}", one.code.id, one.message)).collect();
-    assert_eq!(message, ["S0001 `north.csv`: there is no such file", "S0001 `south.csv`: there is no such file"]);
+    assert_eq!(message, ["S0001 there is no such file", "S0001 there is no such file"]);
+}
+
+#[test]
+fn a_table_is_beside_the_file_that_names_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    fs::create_dir(folder.path().join("halls")).unwrap();
+    let property = "<property name=\"table\" mustSupply=\"true\"/>\n<component";
+    let hall =
+        |overrides: &str| hall(&format!("saoms:overrides=\"{overrides}\""), "").replacen("<component", property, 1);
+    let inner = |name: &str, of: &str, property: &str| {
+        format!("<component name=\"{name}\"><implementation.composite name=\"t:{of}\"/>{property}</component>")
+    };
+    let value = "<property name=\"table\">one.csv</property>";
+    let middle = "<property name=\"table\">none.csv</property>".to_owned()
+        + &inner("Hall", "hall", "<property name=\"table\" source=\"$table\"/>");
+    write("fleet.composite", &around("fleet", &inner("Middle", "middle", value)));
+    write("halls/middle.composite", &around("middle", &middle));
+    let found = |overrides: &str| {
+        write("halls/hall.composite", &hall(overrides));
+        let found = Project::new().file(folder.path().join("fleet.composite")).compile(&registry());
+        let place = |at: saoms_lang::source::Location| {
+            let path = found.sources.get(at.file).path().rsplit('/').next().unwrap_or_default().to_owned();
+            format!("{path} {}", found.sources.snippet(at))
+        };
+        let told = |one: &saoms_lang::diagnostic::Diagnostic| {
+            let labels: Vec<String> = one.labels.iter().map(|label| place(label.location)).collect();
+            format!("{} at {} [{}]", one.message, place(one.location), labels.join(", "))
+        };
+        found.reported().map(told).collect::<Vec<_>>()
+    };
+    // Where the value is written, with the attribute beside it.
+    assert_eq!(found("${table}"), ["there is no such file at fleet.composite one.csv [hall.composite ${table}]"]);
+    assert_eq!(found("./${table}"), ["`./one.csv`: there is no such file at hall.composite ./${table} []"]);
+    write("halls/one.csv", "index,speed\n1,2\n");
+    assert_eq!(found("./${table}"), [""; 0], "the path is written in the inner composite");
+    assert_eq!(found("${table}").len(), 1);
+    write("one.csv", "index,speed\n1,2\n");
+    assert_eq!(found("${table}"), [""; 0]);
+}
+
+#[test]
+fn a_property_in_place_of_a_table_is_told_its_expression() {
+    let folder = tempfile::tempdir().unwrap();
+    for (written, is_told) in [("$table", true), ("table", true), ("$tables", false), ("table.csv", false)] {
+        let hall = hall(&format!("saoms:overrides=\"{written}\""), "");
+        let hall = hall.replacen("<component", "<property name=\"table\">a.csv</property>\n<component", 1);
+        fs::write(folder.path().join("hall.composite"), hall).unwrap();
+        let found = Project::new().file(folder.path().join("hall.composite")).compile(&registry());
+        let told = human_of(&found);
+        assert!(told.starts_with("error[S0001") && told.matches("error[").count() == 1, "{told}");
+        assert_eq!(told.contains(&format!("replace `{written}` with `${{table}}`")), is_told, "{told}");
+    }
 }
