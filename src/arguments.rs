@@ -41,10 +41,6 @@ pub(crate) struct PluginArguments {
     /// Use the classes of this plugin, or of all plugins in this folder; may be repeated
     #[arg(long = "plugin", value_name = "PATH")]
     pub(crate) plugins: Vec<PathBuf>,
-
-    /// True if copies of libraries are loaded, because they may change.
-    #[arg(skip)]
-    pub(crate) copies: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

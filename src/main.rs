@@ -6,6 +6,7 @@
 mod arguments;
 mod command;
 mod fleet;
+mod guard;
 mod lsp;
 mod output;
 mod plugins;
@@ -30,6 +31,7 @@ enum Exit {
 fn main() -> ExitCode {
     // clap itself ends with 2 on a wrong command line, which is wrong input too.
     let exit = command::execute();
+    guard::ends_by_itself();
     // Whatever else there is to say of it: who reads the output lacks a part.
     let exit = if output::has_failed() { Exit::Failed } else { exit };
     ExitCode::from(exit as u8)

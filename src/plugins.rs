@@ -87,7 +87,7 @@ pub(crate) fn usable(problems: &[PluginFault]) -> Result<(), Exit> {
 /// The places where plugins are looked for.
 pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
     let path = env::var_os(SEARCH_PATH).unwrap_or_default();
-    let folders = env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
+    let folders: Vec<PathBuf> = env::split_paths(&path).filter(|path| !path.as_os_str().is_empty()).collect();
     let mut around = Vec::new();
     for file in files {
         let beside =
@@ -95,5 +95,8 @@ pub(crate) fn search(arguments: &PluginArguments, files: &[PathBuf]) -> Search {
         around.extend(beside.into_iter().flat_map(|beside| [beside.join("plugins"), beside]));
     }
     around.push("plugins".into());
-    Search { named: arguments.plugins.clone(), folders, around, copies: arguments.copies, runs_all: false }
+    if !arguments.plugins.is_empty() || !path.is_empty() {
+        crate::guard::install();
+    }
+    Search { named: arguments.plugins.clone(), folders, around, runs_all: false }
 }

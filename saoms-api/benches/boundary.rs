@@ -106,7 +106,7 @@ impl Component for Reader {
 fn both<C: Class>(host: &mut FakeHost) -> [Box<dyn DynComponent>; 2] {
     let linked = Registration::of::<C>().construct(&[]).unwrap();
     // SAFETY: the tables are made by this crate, whose functions keep the rules.
-    let imported = unsafe { ImportedClass::new(&class_table::<C>()) }.construct(&[]).unwrap();
+    let imported = unsafe { ImportedClass::new(&class_table::<C>(), "bench") }.construct(&[]).unwrap();
     [linked, imported].map(|mut component| {
         component.initialize(&mut Context::new(host, &[])).unwrap();
         component

@@ -63,7 +63,7 @@ impl Component for Asking {
 fn an_execution_across_the_boundary_allocates_nothing() {
     let mut host = FakeHost::new();
     // SAFETY: the functions of the table are this crate's own.
-    let class = unsafe { ImportedClass::new(&class_table::<Asking>()) };
+    let class = unsafe { ImportedClass::new(&class_table::<Asking>(), "test") };
     let mut asking = class.construct(&[]).unwrap();
     asking.initialize(&mut Context::new(&mut host, &[])).unwrap();
     let before = COUNT.get();

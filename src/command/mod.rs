@@ -16,14 +16,13 @@ mod why;
 
 use std::io::{self, Write};
 use std::path::Path;
-use std::process;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 use saoms_api::host::is_invisible;
 
-use crate::Exit;
 use crate::output::{eprint, has_failed, printed};
+use crate::{Exit, guard};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -103,12 +102,13 @@ fn parsed() -> Arguments {
             let plain = error.render().to_string();
             if plain.contains(|one| one != '\n' && is_invisible(one)) {
                 eprint(&plain);
-                process::exit(error.exit_code());
+                guard::exit(error.exit_code());
             }
+            guard::ends_by_itself();
             error.exit();
         }
         // Help and version.
         printed(|_| error.print().and_then(|()| io::stdout().flush()));
-        process::exit(if has_failed() { Exit::Failed } else { Exit::Done } as i32)
+        guard::exit(if has_failed() { Exit::Failed } else { Exit::Done } as i32)
     })
 }

@@ -7,6 +7,7 @@ use saoms_abi::{Bytes, HostFunctions, HostHandle, LoopInstance, PropertyView, Re
 
 use crate::host::Host;
 use crate::host::contain::contained;
+use crate::host::present;
 use crate::host::{
     DynLoop, LoopRegistration, NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
 };
@@ -66,7 +67,7 @@ impl<'a> RemoteHost<'a> {
             let make = self.functions.chosen_loop;
             outcome(make(self.handle.state, place, given.as_mut_ptr(), sink(&mut error)), &error.bytes)?;
             let given = given.assume_init();
-            import_loop(given.instance, *given.table)
+            import_loop(given.instance, *given.table, present::subject(""))
         }
     }
 

@@ -4,6 +4,7 @@
 pub mod cdr;
 pub mod contain;
 pub mod declaration;
+pub mod present;
 mod visible;
 mod xml;
 

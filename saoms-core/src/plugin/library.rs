@@ -1,37 +1,25 @@
 //! The code of a library.
 
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::{env, error, fmt, fs, io, process};
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::{error, fmt, fs};
 
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW, Symbol};
 use saoms_abi::{EntryPoint, PluginTable, VERSION};
+use saoms_api::host::present::{Function, Owner, enter};
 
+use super::copy::PrivateCopy;
 use super::tables::{all, whole};
 use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
 
 /// Loads a library. It is never unloaded.
-pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
+pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code, PluginError> {
     let unloadable =
         |message: String| PluginError::Unloadable { path: path.to_owned(), package: metadata.package.clone(), message };
-    // A name without a slash would be searched for in the system's folders.
-    let absolute = std::path::absolute(path).map_err(|error| unloadable(error.to_string()))?;
-    let copy = match copied {
-        true => Some(copy(&absolute).map_err(|error| unloadable(format!("no copy of it: {error}")))?),
-        false => None,
-    };
-    let file = copy.as_deref().unwrap_or(&absolute);
-    // All that it calls is bound now: a function that nobody has would end the program when it is called first.
-    // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
-    let library =
-        unsafe { Library::open(Some(file), RTLD_NOW | RTLD_LOCAL) }.map_err(|error| unloadable(why(&error, file)));
-    if let Some(copy) = &copy {
-        // The loaded library does not need the file name any more.
-        let _ = fs::remove_file(copy);
-    }
-    let library = library?;
-    // Never unloaded: its functions, texts and threads are in use until the program ends.
-    let library: &'static Library = Box::leak(Box::new(library));
+    let name: &'static str = path.display().to_string().leak();
+    let _entered = enter(Owner::of("the code", name), Function::Load);
+    let library = loaded(path).map_err(unloadable)?;
     let table = {
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
         let entry: Symbol<EntryPoint> = unsafe { library.get(metadata.entry.as_bytes()) }
@@ -67,39 +55,49 @@ pub(super) fn load(path: &Path, copied: bool, metadata: &Metadata, text: &str) -
     let code = || unsafe {
         let mut code = Code { classes: Vec::new(), loops: Vec::new(), rules: Vec::new() };
         let names = metadata.class_names();
-        for (class, name) in all(table.classes, "class", &names)?.into_iter().zip(&names) {
-            whole((*class).component, &format!("class `{name}`"))?;
-            code.classes.push(ImportedClass::new(&*class));
+        for (class, of) in all(table.classes, "class", &names)?.into_iter().zip(&names) {
+            whole((*class).component, &format!("class `{of}`"))?;
+            code.classes.push(ImportedClass::new(&*class, name));
         }
         let names = metadata.loop_names();
-        for (looping, name) in all(table.loops, "loop", &names)?.into_iter().zip(&names) {
-            whole((*looping).looping, &format!("loop `{name}`"))?;
-            code.loops.push(ImportedLoopClass::new(&*looping));
+        for (looping, of) in all(table.loops, "loop", &names)?.into_iter().zip(&names) {
+            whole((*looping).looping, &format!("loop `{of}`"))?;
+            code.loops.push(ImportedLoopClass::new(&*looping, name));
         }
         let names: Vec<String> = metadata.rules.iter().map(|rule| rule.code.id.to_owned()).collect();
-        for rule in all(table.rules, "rule", &names)? {
-            code.rules.push(ImportedRule::new(*rule));
+        for (rule, of) in all(table.rules, "rule", &names)?.into_iter().zip(&names) {
+            code.rules.push(ImportedRule::new(*rule, Owner::of(&format!("rule `{of}`"), name)));
         }
         Ok(code)
     };
     code().map_err(unloadable)
 }
 
-/// A copy of a library: beside it, where it finds what it depends on, or among the temporary files.
-fn copy(path: &Path) -> io::Result<PathBuf> {
-    static NUMBER: AtomicU32 = AtomicU32::new(0);
-    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = format!(".{name}.{}-{number}", process::id());
-    let beside = path.with_file_name(&name);
-    fs::copy(path, &beside).map(|_| beside).or_else(|_| {
-        let elsewhere = env::temp_dir().join(&name);
-        fs::copy(path, &elsewhere).map(|_| elsewhere)
-    })
+/// The code of a file: that which is loaded already, if it is the same file.
+fn loaded(path: &Path) -> Result<&'static Library, String> {
+    /// Device, inode, size, and the times of the last change of content and file.
+    type Stamp = (u64, u64, u64, [i64; 4]);
+    static LOADED: Mutex<Vec<(Stamp, &'static Library)>> = Mutex::new(Vec::new());
+    let about = fs::metadata(path).map_err(|error| error.to_string())?;
+    let times = [about.mtime(), about.mtime_nsec(), about.ctime(), about.ctime_nsec()];
+    let stamp = (about.dev(), about.ino(), about.size(), times);
+    let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, library)) = loaded.iter().find(|(known, _)| *known == stamp) {
+        return Ok(library);
+    }
+    let copy = PrivateCopy::of(path).map_err(|error| format!("no copy of it can be made: {error}"))?;
+    copy.load_dependencies(path)?;
+    // All that it calls is bound now: a function that nobody has would end the program when it is called first.
+    // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
+    let library = unsafe { Library::open(Some(&copy.path), RTLD_NOW | RTLD_LOCAL) };
+    // Never unloaded: its functions, texts and threads are in use until the program ends.
+    let library: &'static Library = Box::leak(Box::new(library.map_err(|error| why(&error, &copy.path))?));
+    loaded.push((stamp, library));
+    Ok(library)
 }
 
 /// What keeps the system from loading a library, without the name of the file that it was loaded from, and what to do.
-fn why(error: &dyn error::Error, file: &Path) -> String {
+pub(super) fn why(error: &dyn error::Error, file: &Path) -> String {
     let text = with_causes(error);
     let text = text.replace(&format!("{}: ", file.display()), "");
     match text.contains("undefined symbol") {

@@ -1,10 +1,11 @@
 //! Plugins: libraries with classes, loops and rules over whole fleets.
 //!
 //! A [`Plugin`] is known by its metadata, which lie in a section of the file and are read before anything in it runs
-//! (see [`saoms_abi`]). Its code is loaded when the first component of its classes is constructed, and stays until the
-//! program ends.
+//! (see [`saoms_abi`]). Its code is loaded when the first component of its classes is constructed, from a private copy
+//! of the file, and stays until the program ends.
 
 mod boundary;
+mod copy;
 mod error;
 mod file;
 mod library;
@@ -40,8 +41,6 @@ struct Code {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CodeUse {
     Load,
-    /// A copy of the file is loaded, so that the file may change.
-    LoadCopy,
     /// Nobody named the library: none of its code may run.
     Nothing,
 }
@@ -65,15 +64,6 @@ impl Plugin {
     /// It is no library for this machine, has no metadata, or was built for another version of the boundary.
     pub fn open(path: &Path) -> Result<Arc<Plugin>, PluginError> {
         Plugin::read(path, CodeUse::Load)
-    }
-
-    /// The same; a copy is loaded then, so that the file may be written anew while the program runs, and a new build of
-    /// it loaded beside this one.
-    ///
-    /// # Errors
-    /// As [`open`](Plugin::open).
-    pub fn open_copy(path: &Path) -> Result<Arc<Plugin>, PluginError> {
-        Plugin::read(path, CodeUse::LoadCopy)
     }
 
     fn read(path: &Path, use_of_code: CodeUse) -> Result<Arc<Plugin>, PluginError> {
@@ -122,15 +112,11 @@ impl Plugin {
 
     /// Loads its code, at the first call.
     fn code(&self) -> Result<&Code, Failure> {
-        let copied = match self.use_of_code {
-            CodeUse::Load => false,
-            CodeUse::LoadCopy => true,
-            CodeUse::Nothing => {
-                let path = self.path.display();
-                return Err(Failure::new(format!("nobody named the library: `--plugin {path}` lets its code run")));
-            }
-        };
-        let code = self.code.get_or_init(|| library::load(&self.path, copied, &self.metadata, &self.text));
+        if self.use_of_code == CodeUse::Nothing {
+            let path = self.path.display();
+            return Err(Failure::new(format!("nobody named the library: `--plugin {path}` lets its code run")));
+        }
+        let code = self.code.get_or_init(|| library::load(&self.path, &self.metadata, &self.text));
         code.as_ref().map_err(|error| Failure::new(error.to_string()))
     }
 }

@@ -22,8 +22,6 @@ pub struct Search {
     pub around: Vec<PathBuf>,
     /// True if the code of libraries that nobody named runs, too: for tests, whose composites are their own.
     pub runs_all: bool,
-    /// True if copies are loaded, so that the files may be overwritten while the program runs.
-    pub copies: bool,
 }
 
 /// Result of a search.
@@ -40,11 +38,8 @@ pub struct FoundLibraries {
 impl Search {
     /// Reads the metadata of one library.
     pub(super) fn plugin(&self, path: &Path) -> Result<Arc<Plugin>, PluginError> {
-        let use_of_code = match (self.runs_all || self.is_named(path), self.copies) {
-            (false, _) => CodeUse::Nothing,
-            (true, true) => CodeUse::LoadCopy,
-            (true, false) => CodeUse::Load,
-        };
+        let is_used = self.runs_all || self.is_named(path);
+        let use_of_code = if is_used { CodeUse::Load } else { CodeUse::Nothing };
         Plugin::read(path, use_of_code)
     }
 

@@ -1,11 +1,9 @@
 //! What ends a run from outside: signals, and a reader of standard output that goes away.
 
-use std::io;
 use std::mem::MaybeUninit;
-use std::process;
 use std::ptr;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Duration;
 
@@ -13,44 +11,89 @@ use saoms_core::schedule::Handle;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
-use crate::Exit;
 use crate::output::{Place, eprint, limit_patience, wait_for_no_reader};
+use crate::{Exit, guard};
 
-/// The signals that end a run. Those that arrive before it starts wait for it.
-pub(super) struct Signalled {
-    signals: io::Result<Signals>,
-    has_come: Arc<AtomicBool>,
+/// The signals that end a run, handled from its first moment on.
+pub(super) struct Signalled(Arc<State>);
+
+#[derive(Default)]
+struct State {
+    has_come: AtomicBool,
+    /// True while the fleet starts.
+    starts: AtomicBool,
+    /// The fleet, once it runs.
+    fleet: OnceLock<Handle>,
 }
 
 impl Signalled {
-    pub(super) fn new() -> Signalled {
+    /// The first signal ends every component through its shutdown; Ctrl-C or SIGTERM after it ends the process at once.
+    /// So does the first one before the fleet starts, and while it starts after `grace`, which is also the time for a
+    /// reader of standard output that reads nothing.
+    pub(super) fn new(grace: Duration) -> Signalled {
         // Who starts it with `nohup` wants it to outlive the terminal.
         let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
         let signals = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup));
-        Signalled { signals, has_come: Arc::default() }
-    }
-
-    /// The first signal ends every component through its shutdown; Ctrl-C or SIGTERM after it ends the process at once.
-    /// `grace` is the time for a reader of standard output that reads nothing. The flag says whether one has come.
-    pub(super) fn end(self, fleet: Handle, grace: Duration) -> Arc<AtomicBool> {
-        let has_come = Arc::clone(&self.has_come);
-        let spawned = self.signals.and_then(|mut signals| {
-            thread::Builder::new().name("signals".to_owned()).spawn(move || {
-                for signal in signals.forever() {
-                    // Of a terminal that is closed, the system and the shell tell one after the other.
-                    if self.has_come.swap(true, Ordering::SeqCst) && signal != SIGHUP {
-                        process::exit(Exit::Interrupted as i32);
-                    }
-                    limit_patience(grace);
-                    fleet.stop();
-                }
-            })
+        let state: Arc<State> = Arc::default();
+        let handled = Arc::clone(&state);
+        let spawned = signals.and_then(|mut signals| {
+            let handle = move || signals.forever().for_each(|signal| handled.handle(signal, grace));
+            thread::Builder::new().name("signals".to_owned()).spawn(handle)
         });
         if let Err(error) = spawned {
             eprint(&format!("warning: Ctrl-C will end the process without a report: {error}\n"));
         }
-        has_come
+        Signalled(state)
     }
+
+    /// Says that the fleet starts.
+    pub(super) fn starts(&self) {
+        self.0.starts.store(true, Ordering::SeqCst);
+    }
+
+    /// Ends this fleet from now on, and at once if a signal has come.
+    pub(super) fn end(&self, fleet: Handle) {
+        let fleet = self.0.fleet.get_or_init(|| fleet);
+        if self.has_come() {
+            fleet.stop();
+        }
+    }
+
+    /// True if one has come.
+    pub(super) fn has_come(&self) -> bool {
+        self.0.has_come.load(Ordering::SeqCst)
+    }
+}
+
+impl State {
+    fn handle(self: &Arc<State>, signal: i32, grace: Duration) {
+        // Of a terminal that is closed, the system and the shell tell one after the other.
+        let is_second = self.has_come.swap(true, Ordering::SeqCst) && signal != SIGHUP;
+        if is_second || !self.starts.load(Ordering::SeqCst) {
+            end_now();
+        }
+        limit_patience(grace);
+        if let Some(fleet) = self.fleet.get() {
+            return fleet.stop();
+        }
+        let state = Arc::clone(self);
+        let give_up = move || {
+            thread::sleep(grace);
+            if state.fleet.get().is_none() {
+                end_now();
+            }
+        };
+        // Without it, a second signal ends the process.
+        let _ = thread::Builder::new().name("saoms-grace".to_owned()).spawn(give_up);
+    }
+}
+
+/// Ends the process although something runs, and says what it is.
+fn end_now() -> ! {
+    if let Some(waits) = guard::waited_for() {
+        eprint(&format!("error: interrupted while {waits}\n"));
+    }
+    guard::exit(Exit::Interrupted as i32)
 }
 
 fn is_ignored(signal: i32) -> bool {

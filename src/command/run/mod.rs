@@ -12,7 +12,6 @@ mod summary;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -130,8 +129,8 @@ pub(crate) enum ConsoleStyle {
 }
 
 pub(crate) fn run(arguments: &RunArguments) -> Exit {
-    let mut files = arguments.fleet.clone();
-    files.plugins.copies = arguments.reload;
+    let signals = Signalled::new(arguments.grace);
+    let files = &arguments.fleet;
     if arguments.reload && files.files.iter().any(|path| path == Path::new(INPUT)) {
         eprint("error: `--reload` reads composites again, which standard input cannot be\n");
         return Exit::WrongInput;
@@ -143,7 +142,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         );
         return Exit::WrongInput;
     }
-    let Some((assembly, read)) = assembly(arguments, &files) else { return Exit::WrongInput };
+    let Some((assembly, read)) = assembly(arguments, files) else { return Exit::WrongInput };
     let events = arguments.events.as_deref().map(|path| (path, Events::open(path, arguments.seed)));
     let events = match events {
         Some((path, Err(error))) => {
@@ -182,8 +181,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
-    // Before the start, which may take a while in a large fleet: a signal that arrives then waits for its handler.
-    let signals = Signalled::new();
+    signals.starts();
     let fleet = match RunningFleet::start(assembly, settings(arguments), observers) {
         Ok(fleet) => fleet,
         Err(error) => {
@@ -192,11 +190,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
             return Exit::Failed;
         }
     };
-    let is_signalled = signals.end(fleet.handle(), arguments.grace);
+    signals.end(fleet.handle());
     if needs_reader {
         end_without_reader(fleet.handle());
     }
-    let reload = watched.map(|watched| Reload::start(&files, &watched, fleet.handle()));
+    let reload = watched.map(|watched| Reload::start(files, &watched, fleet.handle()));
     if let Some(events) = events {
         events.play(fleet.handle(), arguments.virtual_time);
     }
@@ -210,7 +208,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     match outcome.status {
         RunStatus::Done | RunStatus::Elapsed => Exit::Done,
         RunStatus::Incomplete | RunStatus::Failed => Exit::Failed,
-        RunStatus::Interrupted if is_signalled.load(Ordering::SeqCst) => Exit::Interrupted,
+        RunStatus::Interrupted if signals.has_come() => Exit::Interrupted,
         // Its reader has seen enough.
         RunStatus::Interrupted => Exit::Done,
     }

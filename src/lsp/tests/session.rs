@@ -47,7 +47,7 @@ fn fixes(id: i32) -> Event {
 }
 
 fn classes() -> Arc<ClassCache> {
-    Arc::new(ClassCache::new(PluginArguments { plugins: Vec::new(), copies: false }))
+    Arc::new(ClassCache::new(PluginArguments { plugins: Vec::new() }))
 }
 
 /// The event of a check of this text.

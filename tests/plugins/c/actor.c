@@ -1,4 +1,5 @@
 /* A component and a loop in C that misbehave: tables with holes by `-D`, the rest by the properties `at` and `does`. */
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,6 +36,11 @@ static int overflow(volatile int depth) {
     return overflow(depth + 1) + block[depth % 4096];
 }
 
+static void *end(void *nothing) {
+    (void)nothing;
+    exit(0);
+}
+
 static void act(const Actor *actor, const char *place) {
     if (strcmp(actor->at, place) != 0) {
         return;
@@ -53,6 +59,11 @@ static void act(const Actor *actor, const char *place) {
         zero = overflow(1);
     } else if (strcmp(actor->does, "exit") == 0) {
         exit(0);
+    } else if (strcmp(actor->does, "exit on a thread") == 0) {
+        pthread_t thread;
+        if (pthread_create(&thread, NULL, end, NULL) == 0) {
+            pthread_join(thread, NULL);
+        }
     } else if (strcmp(actor->does, "hang") == 0) {
         for (;;) {
             sleep(1);
@@ -96,6 +107,9 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     uint8_t memory[64];
     SaomsBuffer message = saoms_writer(memory, sizeof memory);
     act(actor, "execute");
+    if (strcmp(actor->does, "speak") == 0) {
+        saoms_log(host, SAOMS_INFO, "speaks");
+    }
     if (strcmp(actor->does, "null views") == 0) {
         SaomsRecordView record = {saoms_text("id"), saoms_text("text"), saoms_text("a,"), NULL, 1};
         host->functions->report(host->state, saoms_text("c.null"), NULL);

@@ -92,7 +92,9 @@ fn write(path: &Path, text: &str) {
 pub(crate) fn c_library(folder: &Path, definitions: &[&str]) -> PathBuf {
     let library = folder.join("libactor.so");
     let mut cc = Command::new("cc");
-    cc.args(["-std=gnu99", "-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-Wno-overlength-strings", "-I"]);
+    cc.args([
+        "-std=gnu99", "-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-Wno-overlength-strings", "-pthread", "-I",
+    ]);
     cc.arg(root().join("saoms-abi/include")).arg("-o").args([&library, &root().join("tests/plugins/c/actor.c")]);
     let output = cc.args(definitions.iter().map(|one| format!("-D{one}"))).output().unwrap();
     assert!(output.status.success(), "{cc:?}: {}", String::from_utf8_lossy(&output.stderr));

@@ -3,6 +3,8 @@
 
 mod alike;
 mod build;
+mod crash;
+mod hang;
 mod misbehaving;
 mod named;
 mod refused;

@@ -7,6 +7,7 @@ use saoms_abi::{EntriesHandle, LoopTable, Step};
 
 use crate::boundary::entries::{OwnedRemoteEntries, RemoteEntries};
 use crate::boundary::lease::Lease;
+use crate::host::present::{Function, Owner, enter};
 use crate::host::{DynEntries, DynLoop, Snapshot};
 use crate::{Context, Failure, Knowledge};
 
@@ -17,9 +18,13 @@ use crate::{Context, Failure, Knowledge};
 ///
 /// # Safety
 /// It is given away to the caller, and its functions keep the rules of the boundary for as long as the program runs.
-pub unsafe fn import_loop(instance: *mut c_void, table: LoopTable) -> Result<Box<dyn DynLoop>, Failure> {
+pub unsafe fn import_loop(
+    instance: *mut c_void,
+    table: LoopTable,
+    owner: &'static Owner,
+) -> Result<Box<dyn DynLoop>, Failure> {
     let mut imported =
-        ImportedLoop { instance, table, effects: &[], lease: Lease::default(), fault: RefCell::default() };
+        ImportedLoop { instance, table, owner, effects: &[], lease: Lease::default(), fault: RefCell::default() };
     let mut effects = Vec::new();
     for number in 0.. {
         // SAFETY: as the caller promises; the names stay by the rules.
@@ -49,6 +54,7 @@ fn kept(list: Vec<&'static str>) -> &'static [&'static str] {
 struct ImportedLoop {
     instance: *mut c_void,
     table: LoopTable,
+    owner: &'static Owner,
     effects: &'static [&'static str],
     lease: Lease,
     /// What is wrong with its entries: told when it initializes, as it has none then.
@@ -59,8 +65,15 @@ struct ImportedLoop {
 unsafe impl Send for ImportedLoop {}
 
 impl ImportedLoop {
-    fn step(&mut self, step: Step, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+    fn step(
+        &mut self,
+        function: Function,
+        step: Step,
+        knowledge: &mut dyn Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
         let instance = self.instance;
+        let _entered = enter(self.owner, function);
         self.lease.step(knowledge, context, |knowledge, host, error| {
             // SAFETY: the functions keep the rules, the instance is theirs, and the handles are lent to this call.
             unsafe { step(instance, knowledge, host, error) }
@@ -94,11 +107,11 @@ impl DynLoop for ImportedLoop {
         if let Some(failure) = self.fault.take() {
             return Err(Failure::new(format!("the entries that it adds cannot be used: {failure}")));
         }
-        self.step(self.table.initialize, knowledge, context)
+        self.step(Function::Initialize, self.table.initialize, knowledge, context)
     }
 
     fn monitor(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.step(self.table.monitor, knowledge, context)
+        self.step(Function::Monitor, self.table.monitor, knowledge, context)
     }
 
     fn adapt(
@@ -109,17 +122,18 @@ impl DynLoop for ImportedLoop {
     ) -> Result<(), Failure> {
         // A decision of the loop is not seen from here, so the entries are compared in any case.
         snapshot.take(knowledge);
-        let result = self.step(self.table.adapt, knowledge, context);
+        let result = self.step(Function::Adapt, self.table.adapt, knowledge, context);
         result.and(snapshot.record(knowledge, context))
     }
 
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.step(self.table.shutdown, knowledge, context)
+        self.step(Function::Shutdown, self.table.shutdown, knowledge, context)
     }
 }
 
 impl Drop for ImportedLoop {
     fn drop(&mut self) {
+        let _entered = enter(self.owner, Function::Destroy);
         // SAFETY: the instance was given away to this, and is given back once.
         unsafe { (self.table.destroy)(self.instance) }
     }

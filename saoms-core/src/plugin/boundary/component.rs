@@ -4,6 +4,7 @@ use std::ptr;
 
 use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
 use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_findings};
+use saoms_api::host::present::{Function, Owner, enter, subject};
 use saoms_api::host::{DynComponent, Invocation, PropertyValue, SmolStr};
 use saoms_api::{CallError, Context, Failure, Saved};
 
@@ -12,16 +13,17 @@ use saoms_api::{CallError, Context, Failure, Saved};
 pub struct ImportedClass {
     construct: Construct,
     component: ComponentTable,
+    library: &'static str,
 }
 
 impl ImportedClass {
-    /// A class from its table.
+    /// A class from its table, and the path of its library.
     ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](saoms_abi), for as long as the program runs.
-    pub unsafe fn new(table: &ClassTable) -> ImportedClass {
+    pub unsafe fn new(table: &ClassTable, library: &'static str) -> ImportedClass {
         // SAFETY: as the caller promises, the pointer leads to a table.
-        ImportedClass { construct: table.construct, component: unsafe { read(table.component) } }
+        ImportedClass { construct: table.construct, component: unsafe { read(table.component) }, library }
     }
 
     /// Makes a component.
@@ -29,9 +31,10 @@ impl ImportedClass {
     /// # Errors
     /// The class refuses the values, or panics.
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
+        let owner = subject(self.library);
         // SAFETY: `new`'s caller promised that the function keeps the rules.
-        let instance = unsafe { construct(self.construct, values) }?;
-        Ok(Box::new(ImportedComponent { table: self.component, instance, lease: Lease::default() }))
+        let instance = unsafe { construct(self.construct, owner, values) }?;
+        Ok(Box::new(ImportedComponent { table: self.component, instance, owner, lease: Lease::default() }))
     }
 }
 
@@ -56,10 +59,12 @@ unsafe fn read(table: *const ComponentTable) -> ComponentTable {
 /// The function keeps the rules of the boundary.
 pub(super) unsafe fn construct(
     construct: Construct,
+    owner: &'static Owner,
     values: &[(SmolStr, PropertyValue)],
 ) -> Result<*mut c_void, Failure> {
     let views = PropertyViews::of(values);
     let mut instance = ptr::null_mut();
+    let _entered = enter(owner, Function::Construct);
     // SAFETY: as the caller promises; the rest is lent to this call.
     let (result, findings) = call_with_findings(|findings, error| unsafe {
         construct(views.top.as_ptr(), views.top.len(), &raw mut instance, findings, error)
@@ -78,6 +83,7 @@ pub(super) unsafe fn construct(
 struct ImportedComponent {
     table: ComponentTable,
     instance: *mut c_void,
+    owner: &'static Owner,
     lease: Lease,
 }
 
@@ -89,9 +95,11 @@ impl ImportedComponent {
     fn call(
         &mut self,
         context: &mut Context<'_>,
+        called: Function,
         function: unsafe extern "C" fn(*mut c_void, *const HostHandle, Sink) -> Status,
     ) -> Result<(), Failure> {
         let instance = self.instance;
+        let _entered = enter(self.owner, called);
         // SAFETY: the functions keep the rules, the instance is theirs, and the handle is lent to this call.
         self.lease.call(context, |handle, error| unsafe { function(instance, handle, error) })
     }
@@ -99,21 +107,22 @@ impl ImportedComponent {
 
 impl DynComponent for ImportedComponent {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.call(context, self.table.initialize)
+        self.call(context, Function::Initialize, self.table.initialize)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.call(context, self.table.execute)
+        self.call(context, Function::Execute, self.table.execute)
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.call(context, self.table.shutdown)
+        self.call(context, Function::Shutdown, self.table.shutdown)
     }
 
     fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError> {
         let arguments = invocation.call.arguments();
         let (service, operation) = (Bytes::text(invocation.service), invocation.call.operation());
         let (serve, instance) = (self.table.serve, self.instance);
+        let _entered = enter(self.owner, Function::Serve);
         let reply = self.lease.serve(context, |handle, reply, error| {
             // SAFETY: the functions keep the rules, the instance is theirs, and the rest is lent to this call.
             unsafe { serve(instance, handle, service, operation, Bytes::lend(&arguments), reply, error) }
@@ -124,6 +133,7 @@ impl DynComponent for ImportedComponent {
     fn save(&mut self) -> Result<Saved, Failure> {
         let Some(save) = self.table.save else { return Ok(Saved::default()) };
         let (instance, mut bytes) = (self.instance, Vec::new());
+        let _entered = enter(self.owner, Function::Save);
         // SAFETY: the functions keep the rules, the instance is theirs, and the sinks are lent to this call.
         call_for_bytes(&mut bytes, |saved, error| unsafe { save(instance, saved, error) })?;
         Ok(Saved::from_bytes(bytes))
@@ -134,6 +144,7 @@ impl DynComponent for ImportedComponent {
             return Err("the earlier build saved its state, and this one has no function `restore`".into());
         };
         let instance = self.instance;
+        let _entered = enter(self.owner, Function::Restore);
         // SAFETY: as in `save`.
         call(|error| unsafe { restore(instance, Bytes::lend(saved.bytes()), error) })
     }
@@ -141,6 +152,7 @@ impl DynComponent for ImportedComponent {
     fn waits_for(&self) -> Result<Option<String>, Failure> {
         let Some(waits_for) = self.table.waits_for else { return Ok(None) };
         let (instance, mut bytes) = (self.instance, Vec::new());
+        let _entered = enter(self.owner, Function::WaitsFor);
         // SAFETY: as in `save`.
         call_for_bytes(&mut bytes, |text, error| unsafe { waits_for(instance, text, error) })?;
         let text = String::from_utf8(bytes).map_err(|_| Failure::new("what it waits for is no text in UTF-8"))?;
@@ -150,6 +162,7 @@ impl DynComponent for ImportedComponent {
 
 impl Drop for ImportedComponent {
     fn drop(&mut self) {
+        let _entered = enter(self.owner, Function::Destroy);
         // SAFETY: the instance is the one that `construct` gave, and is given back once.
         unsafe { (self.table.destroy)(self.instance) }
     }

@@ -1,6 +1,7 @@
 use saoms_abi::{Construct, LoopClassTable, LoopTable};
 use saoms_api::Failure;
 use saoms_api::boundary::import_loop;
+use saoms_api::host::present::subject;
 use saoms_api::host::{DynLoop, PropertyValue, SmolStr};
 
 use super::component::construct;
@@ -10,16 +11,17 @@ use super::component::construct;
 pub struct ImportedLoopClass {
     construct: Construct,
     looping: LoopTable,
+    library: &'static str,
 }
 
 impl ImportedLoopClass {
-    /// A loop class from its table.
+    /// A loop class from its table, and the path of its library.
     ///
     /// # Safety
     /// The functions of the table keep the rules of [the boundary](saoms_abi), for as long as the program runs.
-    pub const unsafe fn new(table: &LoopClassTable) -> ImportedLoopClass {
+    pub const unsafe fn new(table: &LoopClassTable, library: &'static str) -> ImportedLoopClass {
         // SAFETY: as the caller promises, the pointer leads to a table.
-        ImportedLoopClass { construct: table.construct, looping: unsafe { *table.looping } }
+        ImportedLoopClass { construct: table.construct, looping: unsafe { *table.looping }, library }
     }
 
     /// Makes a loop.
@@ -27,7 +29,8 @@ impl ImportedLoopClass {
     /// # Errors
     /// The loop refuses the values, or panics.
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+        let owner = subject(self.library);
         // SAFETY: `new`'s caller promised that the functions keep the rules; the loop is given away to this.
-        unsafe { import_loop(construct(self.construct, values)?, self.looping) }
+        unsafe { import_loop(construct(self.construct, owner, values)?, self.looping, owner) }
     }
 }

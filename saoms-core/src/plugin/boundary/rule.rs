@@ -1,5 +1,6 @@
 use saoms_abi::{Bytes, FleetList, MemberView, RenamedView, RuleTable, TextList, WireView};
 use saoms_api::boundary::{PropertyViews, call_with_findings};
+use saoms_api::host::present::{Function, Owner, enter};
 use saoms_api::rule::FleetView;
 use saoms_api::{Failure, Finding};
 
@@ -7,6 +8,7 @@ use saoms_api::{Failure, Finding};
 #[derive(Clone, Copy, Debug)]
 pub struct ImportedRule {
     table: RuleTable,
+    owner: &'static Owner,
 }
 
 // SAFETY: the rules of the boundary say that a rule is pure: any thread may ask it, also several at a time.
@@ -15,12 +17,12 @@ unsafe impl Send for ImportedRule {}
 unsafe impl Sync for ImportedRule {}
 
 impl ImportedRule {
-    /// A rule from its table.
+    /// A rule from its table, and the names of rule and library.
     ///
     /// # Safety
     /// The function of the table keeps the rules of [the boundary](saoms_abi), for as long as the program runs.
-    pub const unsafe fn new(table: RuleTable) -> ImportedRule {
-        ImportedRule { table }
+    pub const unsafe fn new(table: RuleTable, owner: &'static Owner) -> ImportedRule {
+        ImportedRule { table, owner }
     }
 
     /// Checks a fleet with the rule.
@@ -81,6 +83,7 @@ impl ImportedRule {
             missing_count: missing.len(),
         };
         let table = self.table;
+        let _entered = enter(self.owner, Function::Check);
         // SAFETY: `new`'s caller promised that the function keeps the rules; the rest is lent to this call.
         let (result, findings) = call_with_findings(|findings, error| unsafe {
             (table.check)(table.state, &raw const list, findings, error)

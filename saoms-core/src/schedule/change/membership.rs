@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use saoms_lang::assembly::ComponentSpec;
 
-use super::takeover::{Predecessor, Takeover};
+use super::takeover::{Outgoing, Predecessor, Takeover};
 use crate::journal::ComponentName;
 use crate::observe::Occurrence;
 use crate::schedule::component::body::Body;
@@ -132,9 +132,15 @@ impl Engine {
         }
     }
 
-    pub(super) fn commit_takeover(&mut self, number: u32, predecessor: Predecessor, done: Takeover, now: u64) {
-        let Some(mut body) = self.slots[number as usize].body.take() else { return };
-        body.inherit(&mut self.bus, predecessor);
+    pub(super) fn commit_takeover(
+        &mut self,
+        number: u32,
+        predecessor: Predecessor,
+        done: Takeover,
+        now: u64,
+    ) -> Option<Outgoing> {
+        let mut body = self.slots[number as usize].body.take()?;
+        let outgoing = body.inherit(&mut self.bus, predecessor);
         self.release(number, &mut body, now);
         self.deliver(&mut body.part, now);
         let vote = body.part.vote.take();
@@ -159,6 +165,7 @@ impl Engine {
             }
         }
         self.resume(number, now);
+        Some(outgoing)
     }
 
     /// Sets the specification that a component which does not run has from its next start on.

@@ -1,7 +1,8 @@
-use std::sync::Arc;
+use std::sync::{Arc, mpsc};
+use std::thread;
 
-use saoms_api::host::DynComponent;
 use saoms_api::host::contain::contained;
+use saoms_api::host::{DynComponent, format_duration};
 use saoms_api::{Failure, Saved};
 use saoms_lang::assembly::ComponentSpec;
 
@@ -45,6 +46,17 @@ struct Endpoints {
     recorder: Recorder,
 }
 
+/// An instance that is no part of the fleet any more. Its destructor is the component's code, which may not return.
+pub(crate) struct Outgoing(Option<Box<dyn DynComponent>>);
+
+impl Drop for Outgoing {
+    fn drop(&mut self) {
+        let instance = self.0.take();
+        // A panic of its destructor does not concern its successor.
+        let _ = contained(|| drop(instance));
+    }
+}
+
 impl Body {
     /// Replaces the present instance: the new one is constructed, the present one [saves](saoms_api::Component::save)
     /// its state, and the new one initializes and restores it. After an error the present one stays.
@@ -53,30 +65,76 @@ impl Body {
         shared: &Arc<Shared>,
         spec: Arc<ComponentSpec>,
     ) -> Result<(Predecessor, Takeover), Refusal> {
-        let construct = || contained(|| spec.class.construct(&spec.values))?;
-        let successor = construct().map_err(Refusal::Failed)?;
+        let successor = self.successor(spec);
+        let construct = |body: &mut Body, _: &Arc<Shared>| body.construct();
+        let mut successor = successor.within(shared, "the constructor", construct).map_err(Refusal::Failed)?;
         let Some(present) = &mut self.instance else {
             return Err(Refusal::NotNow("it has just ended".to_owned()));
         };
-        let saved = contained(|| present.save()).map_err(Refusal::Failed)?;
-        let saved = saved.map_err(|failure| Refusal::NotNow(failure.to_string()))?;
-        let endpoints = Endpoints::take(&mut self.part, spec);
-        let Some(instance) = self.instance.replace(successor) else {
+        let saved = match contained(|| present.save()) {
+            Ok(Ok(saved)) => saved,
+            refused => {
+                successor.withdraw(shared);
+                return Err(refused.map_or_else(Refusal::Failed, |not_now| {
+                    Refusal::NotNow(not_now.err().map(|failure| failure.to_string()).unwrap_or_default())
+                }));
+            }
+        };
+        let (is_nothing, saved) = (saved.is_nothing(), Arc::new(saved));
+        let begin = move |body: &mut Body, shared: &Arc<Shared>| body.begin_instead(shared, &saved);
+        successor = successor.within(shared, "`initialize` or `restore`", begin).map_err(Refusal::Failed)?;
+        let endpoints = Endpoints::take(&mut self.part, &mut successor.part);
+        let (Some(instance), successor) = (self.instance.take(), successor.instance.take()) else {
             return Err(Refusal::NotNow("it has just ended".to_owned()));
         };
-        let predecessor = Predecessor { instance, endpoints };
-        if let Err(failure) = self.begin_instead(shared, &saved) {
-            self.give_back(&mut shared.lock().bus, predecessor);
-            return Err(Refusal::Failed(failure));
-        }
+        self.instance = successor;
         self.inboxes.clear();
         self.inboxes.resize_with(self.part.subscriptions.len(), Vec::new);
-        Ok((predecessor, if saved.is_nothing() { Takeover::Began } else { Takeover::Continued }))
+        let takeover = if is_nothing { Takeover::Began } else { Takeover::Continued };
+        Ok((Predecessor { instance, endpoints }, takeover))
+    }
+
+    /// The body of a new instance, apart from that of the present one, which goes on if the new one never returns.
+    fn successor(&self, spec: Arc<ComponentSpec>) -> Box<Body> {
+        let part = &self.part;
+        let mut body = Body::new(part.index, spec, Arc::clone(&part.name), part.period, Arc::clone(&part.cancelled));
+        body.part.chance = part.chance.clone();
+        (body.part.now, body.part.due, body.part.execution) = (part.now, part.due, part.execution);
+        Box::new(body)
+    }
+
+    /// Runs code of a new instance on a thread of its own, and gives it back if it returns within the time that
+    /// components have to end. Otherwise the thread is left behind with it.
+    fn within(
+        mut self: Box<Body>,
+        shared: &Arc<Shared>,
+        what: &str,
+        code: impl FnOnce(&mut Body, &Arc<Shared>) -> Result<(), Failure> + Send + 'static,
+    ) -> Result<Box<Body>, Failure> {
+        let (sender, receiver) = mpsc::channel();
+        let apart = Arc::clone(shared);
+        let run = move || {
+            let result = code(&mut self, &apart);
+            if let Err(mpsc::SendError((body, _))) = sender.send((self, result)) {
+                body.withdraw(&apart);
+            }
+        };
+        thread::Builder::new()
+            .name("saoms-change".to_owned())
+            .spawn(run)
+            .map_err(|error| Failure::new(format!("the system gives no thread: {error}")))?;
+        let limit = shared.settings.grace;
+        match receiver.recv_timeout(limit) {
+            Ok((body, Ok(()))) => Ok(body),
+            Ok((body, Err(failure))) => {
+                body.withdraw(shared);
+                Err(failure)
+            }
+            Err(_) => Err(Failure::new(format!("{what} has not returned within {}", format_duration(limit)))),
+        }
     }
 
     fn begin_instead(&mut self, shared: &Arc<Shared>, saved: &Saved) -> Result<(), Failure> {
-        self.inboxes.clear();
-        self.part.held = true;
         self.part.initializing = true;
         let result = self.call(shared, |instance, context| {
             instance.initialize(context)?;
@@ -86,9 +144,21 @@ impl Body {
         result?
     }
 
+    /// Drops a new instance that takes nothing over, with its topics.
+    fn withdraw(mut self: Box<Body>, shared: &Shared) {
+        self.discard();
+        let bus = &mut shared.lock().bus;
+        for topic in self.part.publishers {
+            bus.unpublish(topic);
+        }
+        for subscription in self.part.subscriptions {
+            bus.unsubscribe(subscription);
+        }
+    }
+
     /// Commits the takeover: the new instance gets the read positions of the earlier one; its other subscriptions are
-    /// released.
-    pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) {
+    /// released. The earlier one is given back, to be dropped where nobody waits for it.
+    pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
         let Predecessor { instance, endpoints } = predecessor;
         let Endpoints { publishers, mut subscriptions, .. } = endpoints;
         let queue = self.part.spec.task.as_ref().map(|task| task.queue);
@@ -109,14 +179,12 @@ impl Body {
             bus.unpublish(topic);
         }
         self.part.held = false;
-        // A panic of its destructor does not concern its successor.
-        let _ = contained(|| drop(instance));
+        Outgoing(Some(instance))
     }
 
-    /// Undoes the takeover: the new instance is dropped.
-    pub(crate) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) {
-        self.discard();
-        self.instance = Some(predecessor.instance);
+    /// Undoes the takeover. The new instance is given back, to be dropped where nobody waits for it.
+    pub(crate) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
+        let outgoing = Outgoing(self.instance.replace(predecessor.instance));
         let part = &mut self.part;
         part.publishers.drain(..).for_each(|topic| bus.unpublish(topic));
         for subscription in part.subscriptions.drain(..).chain(part.kept.drain(..)) {
@@ -130,17 +198,24 @@ impl Body {
         (part.subscriptions, part.recorder) = (subscriptions, recorder);
         self.inboxes.clear();
         self.inboxes.resize_with(self.part.subscriptions.len(), Vec::new);
+        outgoing
     }
 }
 
 impl Endpoints {
     /// Takes the endpoints of the present instance, and sets the specification of the new one.
-    fn take(part: &mut Part, spec: Arc<ComponentSpec>) -> Endpoints {
+    /// Takes the endpoints of the present instance, and sets those of its successor.
+    fn take(part: &mut Part, successor: &mut Part) -> Endpoints {
+        part.schemas.append(&mut successor.schemas);
+        part.outbox.append(&mut successor.outbox);
+        part.vote = successor.vote.take();
+        part.chance = successor.chance.clone();
+        part.held = true;
         Endpoints {
-            spec: std::mem::replace(&mut part.spec, spec),
-            publishers: std::mem::take(&mut part.publishers),
-            subscriptions: std::mem::take(&mut part.subscriptions),
-            recorder: std::mem::take(&mut part.recorder),
+            spec: std::mem::replace(&mut part.spec, Arc::clone(&successor.spec)),
+            publishers: std::mem::replace(&mut part.publishers, std::mem::take(&mut successor.publishers)),
+            subscriptions: std::mem::replace(&mut part.subscriptions, std::mem::take(&mut successor.subscriptions)),
+            recorder: std::mem::replace(&mut part.recorder, std::mem::take(&mut successor.recorder)),
         }
     }
 }

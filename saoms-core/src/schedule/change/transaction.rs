@@ -228,9 +228,10 @@ impl<'a> Change<'a> {
         }
         let mut engine = self.shared.lock();
         let now = engine.time_of_change(self.shared);
+        let mut outgoing = Vec::new();
         for (number, predecessor, _) in std::mem::take(&mut self.taken).into_iter().rev() {
             if let Some(mut body) = engine.take(number) {
-                body.give_back(&mut engine.bus, predecessor);
+                outgoing.push(body.give_back(&mut engine.bus, predecessor));
                 engine.slots[number as usize].state = SlotState::Active;
                 engine.return_unchanged(number, body, now);
             }
@@ -293,8 +294,9 @@ impl<'a> Change<'a> {
         for &number in &self.added {
             engine.join(number, now);
         }
+        let mut outgoing = Vec::new();
         for (number, predecessor, done) in self.taken.drain(..) {
-            engine.commit_takeover(number, predecessor, done, now);
+            outgoing.extend(engine.commit_takeover(number, predecessor, done, now));
             changed.replaced.push((name(&engine, number), done));
         }
         for (number, spec) in self.awaited.drain(..) {
@@ -310,6 +312,7 @@ impl<'a> Change<'a> {
         }
         engine.end_if_done(now);
         self.shared.release(engine);
+        drop(outgoing);
         for (number, body) in std::mem::take(&mut self.leaving) {
             self.shut_down(number, body, now);
         }

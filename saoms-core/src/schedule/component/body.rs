@@ -11,6 +11,7 @@ use crate::journal::Recorder;
 use crate::schedule::engine::votes::Ballot;
 use crate::schedule::shared::Shared;
 use saoms_api::host::contain::contained;
+use saoms_api::host::present::about;
 use saoms_lang::assembly::ComponentSpec;
 use saoms_lang::schema::Schema;
 
@@ -129,9 +130,15 @@ impl Body {
         result
     }
 
-    fn start(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
+    pub(crate) fn construct(&mut self) -> Result<(), Failure> {
         let spec = &self.part.spec;
-        self.instance = Some(contained(|| spec.class.construct(&spec.values))??);
+        let construct = || about(&subject(&self.part.name), || spec.class.construct(&spec.values));
+        self.instance = Some(contained(construct)??);
+        Ok(())
+    }
+
+    fn start(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
+        self.construct()?;
         self.part.initializing = true;
         self.part.recorder.reset();
         let result = self.call(shared, |instance, context| instance.initialize(context));
@@ -176,6 +183,11 @@ impl Body {
             let _ = contained(|| drop(instance));
         }
     }
+}
+
+/// What is constructed, by the name of its component.
+pub(crate) fn subject(name: &str) -> String {
+    format!("component `{name}`")
 }
 
 /// Carries out the injected fault of an execution.

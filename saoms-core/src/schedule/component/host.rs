@@ -3,11 +3,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use saoms_api::host::contain::contained;
+use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
 
-use super::body::Part;
+use super::body::{Part, subject};
 use crate::bus::TopicId;
 use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
@@ -280,7 +281,8 @@ impl Host for ComponentHost<'_> {
             return Err(Failure::new("a component can only take its loops in `initialize`; keep what `loops` returns"));
         }
         let one = self.spec().loops.get(place as usize).ok_or("there are not so many loops")?;
-        let constructed = contained(|| one.class.construct(&one.values)).and_then(|made| made);
+        let constructed = contained(|| about(&subject(&self.part.name), || one.class.construct(&one.values)));
+        let constructed = constructed.and_then(|made| made);
         constructed.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", one.name)))
     }
 

@@ -15,7 +15,7 @@ use crate::check::tasks::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
 use crate::registry::PropertyDeclaration;
-use saoms_api::host::{PropertyValue, contain::contained};
+use saoms_api::host::{PropertyValue, contain::contained, present};
 use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
@@ -49,7 +49,10 @@ fn partly(
     }
     let mut found: Option<Vec<Finding>> = None;
     for values in tries.iter().rev() {
-        let Err(failure) = contained(|| construct(values)).and_then(|result| result) else { return };
+        let Err(failure) = contained(|| present::about(subject.name, || construct(values))).and_then(|result| result)
+        else {
+            return;
+        };
         match &mut found {
             None => found = Some(failure.findings().to_vec()),
             Some(found) => found.retain(|one| failure.findings().contains(one)),
@@ -76,9 +79,11 @@ fn judge(
     repeated: &RepeatedValues,
     report: &mut Report<'_>,
 ) {
+    let about = format!("{} {}", subject.what, quoted(subject.name));
+    let construct = || present::about(&about, construct);
     let Err(failure) = contained(construct).and_then(|result| result) else { return };
     if failure.findings().is_empty() {
-        let message = format!("{} {}: {failure}", subject.what, quoted(subject.name));
+        let message = format!("{about}: {failure}");
         report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help(class)));
         return;
     }

@@ -1,6 +1,7 @@
 /* Counts its executions. Built several times, with other values of BUILD and one of the words below, for what a new build can be like. */
 
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "saoms_author.h"
 
@@ -25,6 +26,11 @@ static SaomsStatus counter_construct(const SaomsPropertyView *values, size_t cou
 static SaomsStatus counter_initialize(void *component, const SaomsHostHandle *host, SaomsSink error) {
     (void)component, (void)error;
     host->functions->count(host->state, saoms_text("counter.initialized"), 1);
+#ifdef HANGS
+    for (;;) {
+        sleep(1);
+    }
+#endif
 #ifdef STUMBLES
     return saoms_fail(error, "this build cannot initialize");
 #endif
@@ -56,7 +62,16 @@ static SaomsStatus counter_serve(void *component, const SaomsHostHandle *host, S
     return saoms_fail(error, "it has no services");
 }
 
-static void counter_destroy(void *component) { free(component); }
+static void counter_destroy(void *component) {
+#ifdef HANGS_AT_END
+    if (((Counter *)component)->count > 0) {
+        for (;;) {
+            sleep(1);
+        }
+    }
+#endif
+    free(component);
+}
 
 #ifndef FORGETS
 static SaomsStatus counter_save(void *component, SaomsSink saved, SaomsSink error) {

@@ -126,6 +126,28 @@ fn a_new_build_goes_on_where_the_earlier_one_was() {
 }
 
 #[test]
+fn a_build_that_hangs_leaves_the_earlier_one_running() {
+    let mut run = Run::start(&["-DBUILD=1", "-DHANGS_AT_END"]);
+    run.wait_for("build 1 counts 100");
+    run.build(&["-DBUILD=2", "-DHANGS"]);
+    run.wait_for("is not replaced, the earlier one goes on: `initialize` or `restore` has not returned within 2s");
+    let before = counted(&run.wait_for("build 1 counts"));
+    assert!(counted(&run.wait_for("build 1 counts")) > before);
+    // Nobody waits for the destructor of the earlier one.
+    run.build(&["-DBUILD=3"]);
+    run.wait_for("build 3 counts");
+    run.wait_for("build 3 counts");
+    let mut errors = BufReader::new(run.child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    for function in ["`initialize`", "the destructor"] {
+        let expected = format!("the program waits for {function} of component `Counter` of library `");
+        assert!(errors.any(|line| line.contains(&expected)), "{expected} is missing");
+    }
+    let (_, report, code) = run.end();
+    assert_eq!(report["components"][0]["replaced"], 1);
+    assert_eq!(code, Some(130));
+}
+
+#[test]
 fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.wait_for("build 1 counts 100");

@@ -1,0 +1,218 @@
+//! For hosts: the code of libraries that runs on each thread now, so that a crash and a hang are told by name.
+//!
+//! Whoever calls into a library [enters](enter) first. What is written down can be read by a signal handler on the same
+//! thread ([`here`]) and by another thread ([`everywhere`]): names are interned, and nothing of it is ever freed.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+use std::ptr;
+use std::sync::atomic::{AtomicPtr, AtomicU8, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::one_line;
+
+/// A component, or what else is called, and the library of its code, once for the life of the process.
+#[derive(Debug)]
+pub struct Owner {
+    /// The description, as ``component `Arm` of library `./libarm.so` ``.
+    pub text: String,
+}
+
+impl Owner {
+    /// The owner of these names.
+    pub fn of(subject: &str, library: &'static str) -> &'static Owner {
+        static KNOWN: Mutex<Option<HashMap<(String, &'static str), &'static Owner>>> = Mutex::new(None);
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = known.get_or_insert_default();
+        if let Some(owner) = known.get(&(subject.to_owned(), library)) {
+            return owner;
+        }
+        let subject_shown = if subject.is_empty() { "a component" } else { subject };
+        let text = format!("{subject_shown} of library `{library}`");
+        let owner: &'static Owner = Box::leak(Box::new(Owner { text: one_line(&text).into_owned() }));
+        known.insert((subject.to_owned(), library), owner);
+        owner
+    }
+}
+
+macro_rules! functions {
+    ($($(#[$doc:meta])* $function:ident $text:literal,)*) => {
+        /// A function of a library.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub enum Function {
+            $($(#[$doc])* $function,)*
+        }
+
+        impl Function {
+            const ALL: &[Function] = &[$(Function::$function),*];
+
+            /// Its name in messages.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Function::$function => $text,)*
+                }
+            }
+        }
+    };
+}
+
+functions! {
+    /// The function that gives the tables, and what runs while the library is loaded.
+    Load "its first lines",
+    /// The constructor of a component or a loop.
+    Construct "the constructor",
+    /// `initialize`.
+    Initialize "`initialize`",
+    /// `execute`.
+    Execute "`execute`",
+    /// `serve`.
+    Serve "a service",
+    /// `monitor` of a loop.
+    Monitor "`monitor` of a loop",
+    /// `adapt` of a loop.
+    Adapt "`analyze`, `plan` or `execute` of a loop",
+    /// `shutdown`.
+    Shutdown "`shutdown`",
+    /// `save`.
+    Save "`save`",
+    /// `restore`.
+    Restore "`restore`",
+    /// `waits_for`.
+    WaitsFor "`waits_for`",
+    /// The destructor of a component or a loop.
+    Destroy "the destructor",
+    /// A rule over whole fleets.
+    Check "a rule over fleets",
+}
+
+impl Function {
+    /// True if the program itself waits for it, so that nothing goes on while it hangs.
+    pub const fn holds_up(self) -> bool {
+        use Function::{Check, Construct, Destroy, Initialize, Load, Restore, Save};
+        matches!(self, Load | Construct | Initialize | Save | Restore | Destroy | Check)
+    }
+}
+
+/// The call of a thread.
+struct ThreadCall {
+    owner: AtomicPtr<Owner>,
+    function: AtomicU8,
+    /// Counts beginnings and ends, so that another thread can tell two calls from one.
+    changes: AtomicU64,
+}
+
+/// The entries of all threads that ever called a library, and those whose thread has ended.
+static ALL: Mutex<Vec<&'static ThreadCall>> = Mutex::new(Vec::new());
+static FREE: Mutex<Vec<&'static ThreadCall>> = Mutex::new(Vec::new());
+
+/// Gives the entry of a thread back when the thread ends.
+struct Registered(&'static ThreadCall);
+
+impl Drop for Registered {
+    fn drop(&mut self) {
+        // `exit` in a call ends the thread in the middle of it.
+        if !self.0.owner.load(Ordering::Relaxed).is_null() {
+            return;
+        }
+        HERE.set(None);
+        FREE.lock().unwrap_or_else(PoisonError::into_inner).push(self.0);
+    }
+}
+
+thread_local! {
+    /// Without a destructor, so that a signal handler can read it at any time.
+    static HERE: Cell<Option<&'static ThreadCall>> = const { Cell::new(None) };
+    static SUBJECT: Cell<Option<*const str>> = const { Cell::new(None) };
+    static REGISTERED: Cell<Option<Registered>> = const { Cell::new(None) };
+}
+
+#[cold]
+fn register() -> &'static ThreadCall {
+    let free = FREE.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    let call = free.unwrap_or_else(|| {
+        let new: &'static ThreadCall = Box::leak(Box::new(ThreadCall {
+            owner: AtomicPtr::default(),
+            function: AtomicU8::new(0),
+            changes: AtomicU64::new(0),
+        }));
+        ALL.lock().unwrap_or_else(PoisonError::into_inner).push(new);
+        new
+    });
+    HERE.set(Some(call));
+    // In the last moments of a thread nothing gives it back, and it is leaked.
+    let _ = REGISTERED.try_with(|registered| registered.set(Some(Registered(call))));
+    call
+}
+
+/// A call into a library, until it is dropped.
+#[derive(Debug)]
+pub struct Entered {
+    owner: *mut Owner,
+    function: u8,
+}
+
+/// Writes down that code of a library runs on this thread from now on.
+#[inline]
+pub fn enter(owner: &'static Owner, function: Function) -> Entered {
+    let call = HERE.get().unwrap_or_else(register);
+    let outer = Entered { owner: call.owner.load(Ordering::Relaxed), function: call.function.load(Ordering::Relaxed) };
+    call.set(ptr::from_ref(owner).cast_mut(), function as u8);
+    outer
+}
+
+impl Drop for Entered {
+    #[inline]
+    fn drop(&mut self) {
+        if let Some(call) = HERE.get() {
+            call.set(self.owner, self.function);
+        }
+    }
+}
+
+impl ThreadCall {
+    #[inline]
+    fn set(&self, owner: *mut Owner, function: u8) {
+        // This thread alone writes.
+        self.changes.store(self.changes.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+        self.function.store(function, Ordering::Relaxed);
+        self.owner.store(owner, Ordering::Release);
+    }
+
+    fn read(&self) -> Option<(&'static Owner, Function)> {
+        // SAFETY: owners are never freed.
+        let owner = unsafe { self.owner.load(Ordering::Acquire).as_ref() }?;
+        Function::ALL.get(usize::from(self.function.load(Ordering::Relaxed))).map(|function| (owner, *function))
+    }
+}
+
+/// The code of a library that runs on this thread. A signal handler may ask.
+pub fn here() -> Option<(&'static Owner, Function)> {
+    HERE.get().and_then(ThreadCall::read)
+}
+
+/// The code of libraries that runs on all threads, each with a number that is another one at each call of the thread.
+pub fn everywhere() -> Vec<(u64, Option<(&'static Owner, Function)>)> {
+    let all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
+    all.iter().map(|call| (call.changes.load(Ordering::Relaxed), call.read())).collect()
+}
+
+/// Runs code that constructs something for a subject, as ``component `Arm` ``, of whatever library it is.
+pub fn about<T>(subject: &str, code: impl FnOnce() -> T) -> T {
+    struct Reset(Option<*const str>);
+
+    impl Drop for Reset {
+        fn drop(&mut self) {
+            SUBJECT.set(self.0);
+        }
+    }
+
+    let _reset = Reset(SUBJECT.replace(Some(subject)));
+    code()
+}
+
+/// The owner of what is constructed now, of this library.
+pub fn subject(library: &'static str) -> &'static Owner {
+    // SAFETY: `about` lends the subject until its code has returned, of which this is a part.
+    Owner::of(SUBJECT.get().map_or("", |subject| unsafe { &*subject }), library)
+}

@@ -1,0 +1,48 @@
+//! Code of libraries that the program waits for in vain: told on standard error after a second, each once.
+
+use std::collections::HashSet;
+use std::time::Duration;
+use std::{io, thread};
+
+use saoms_api::host::present::{Function, Owner, everywhere};
+
+use crate::output::eprint;
+
+/// How long such code runs before it is told.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// The time between two looks.
+const LOOK: Duration = Duration::from_millis(250);
+
+/// Begins to watch, on a thread of its own.
+pub(super) fn watch() -> io::Result<()> {
+    thread::Builder::new().name("saoms-hang".to_owned()).spawn(look_for_ever).map(drop)
+}
+
+fn look_for_ever() {
+    let mut since: Vec<(u64, Duration)> = Vec::new();
+    let mut told = HashSet::new();
+    loop {
+        thread::sleep(LOOK);
+        let calls = everywhere();
+        since.resize(calls.len(), (u64::MAX, Duration::ZERO));
+        for (thread, (call, since)) in calls.into_iter().zip(&mut since).enumerate() {
+            let (number, present) = call;
+            *since = if since.0 == number { (number, since.1 + LOOK) } else { (number, Duration::ZERO) };
+            let Some((owner, function)) = present.filter(|(_, function)| function.holds_up()) else { continue };
+            if since.1 >= PATIENCE && told.insert((thread, number)) {
+                eprint(&format!("warning: {}\n", waits(owner, function)));
+            }
+        }
+    }
+}
+
+fn waits(owner: &Owner, function: Function) -> String {
+    format!("the program waits for {} of {}, which has not returned", function.name(), owner.text)
+}
+
+/// What the program waits for now, if it is code of a library; for the message of a program that ends in spite of it.
+pub(crate) fn waited_for() -> Option<String> {
+    let calls = everywhere().into_iter().filter_map(|(_, call)| call);
+    calls.filter(|(_, function)| function.holds_up()).map(|(owner, function)| waits(owner, function)).next()
+}
