@@ -32,7 +32,7 @@
 //! let robot = run.journal().of("Robot7");
 //! let collects = robot.decisions().with("collects luggage 1").last().unwrap();
 //! let (reasons, _) = run.journal().reasons(collects);
-//! assert_eq!(reasons[0].text(), "is at (3,1), where luggage 1 is");
+//! assert_eq!(reasons[0].text(), "is at (3,1), where luggage 1 waits");
 //! assert_eq!(run.journal().of("Robot7").changes("hasLuggage").len(), 2);
 //! assert_eq!(run.log_of("Robot7")[0], "takes luggage 1 from (3,1) to (3,10)");
 //! ```

@@ -85,7 +85,7 @@ impl Run {
     /// let run = Fleet::of_file("../composites/hall.composite").run(7, Duration::from_secs(60));
     /// let takes = run.expect("Robot7").to("takes luggage 1");
     /// let collects = run.expect("Robot7").to("collects luggage 1").after(&takes);
-    /// collects.because("is at (3,1), where luggage 1 is").before(Duration::from_secs(10));
+    /// collects.because("is at (3,1), where luggage 1 waits").before(Duration::from_secs(10));
     /// run.expect("Robot7").never_to("breaks down");
     /// assert_eq!(run.expect("Robot7").count("collects luggage 1"), 1);
     /// ```

@@ -61,9 +61,9 @@ pub struct ChargeAt(f64);
 impl Recordable for Symptom {
     fn record(&self) -> Record {
         match *self {
-            Symptom::Deep(lowest) => record!(charged_late: "was down to {lowest} %, which is too low", lowest),
+            Symptom::Deep(lowest) => record!(charged_late: "battery was down to {lowest} %, which is too low", lowest),
             Symptom::Shallow(lowest) => {
-                record!(charged_early: "never had less than {lowest} %, and charged early", lowest)
+                record!(charged_early: "battery was never below {lowest} %: it charges too early", lowest)
             }
         }
     }

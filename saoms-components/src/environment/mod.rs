@@ -8,7 +8,9 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use saoms_api::{Class, Component, Context, Failure, Level, Properties, Publisher, Subscription, Time, Work, record};
+use saoms_api::{
+    Class, Component, Context, Failure, Level, Properties, Publisher, Record, Subscription, Time, Work, record,
+};
 
 use crate::console::Timestamp;
 use crate::grid::Map;
@@ -135,7 +137,7 @@ impl Component for Environment {
         let (first, passed_on) = self.open.first_key_value().filter(|_| player.is_over())?;
         let pieces = pieces(*first, self.open.len() - 1);
         Some(match passed_on {
-            true => format!("a robot to bring {pieces}"),
+            true => format!("a robot to carry {pieces}"),
             false => format!("a master of the environment to pass on {pieces}"),
         })
     }
@@ -208,35 +210,42 @@ impl Environment {
                     context.count("luggage.open", 1);
                 }
                 context.console(format_args!("Environment: Test{test}: {request} at {now}"));
-                context.info(format_args!("luggage {} waits at {from} to be brought to {to}", self.luggage));
                 let luggage = self.luggage;
-                context.symptom(
-                    record!(new_luggage: "luggage {luggage} waits at {from} to be brought to {to}", luggage, from, to),
+                tell(
+                    context,
+                    record!(new_luggage: "luggage {luggage} waits at {from} to go to {to}", luggage, from, to),
                 );
                 context.send(&self.events, request.into())
             }
             Some(ScenarioEvent::Exceptional(event)) => {
                 context.console(format_args!("Environment: Test{test}: New event: {event}."));
-                context.info(format_args!("{event}"));
                 let pieces = event.pieces;
-                context.symptom(match event.kind {
-                    ExceptionalKind::Landing => {
-                        record!(airplane_lands: "an airplane lands with {pieces} pieces", pieces)
-                    }
-                    ExceptionalKind::Takeoff => {
-                        record!(airplane_takes_off: "an airplane takes off with {pieces} pieces", pieces)
-                    }
-                });
+                let record = match event.kind {
+                    ExceptionalKind::Landing => record!(
+                        airplane_lands: "an airplane lands with {pieces} {pieces:piece|pieces} of luggage",
+                        pieces
+                    ),
+                    ExceptionalKind::Takeoff => record!(
+                        airplane_takes_off: "an airplane takes off with {pieces} {pieces:piece|pieces} of luggage",
+                        pieces
+                    ),
+                };
+                tell(context, record);
                 context.send(&self.events, event.into())
             }
             Some(ScenarioEvent::End) => Ok(()),
             Some(ScenarioEvent::Breakdown(robot)) => {
                 let fault = Fault::breakdown(robot);
                 context.console(format_args!("Environment: Test{test}: New event: {fault}."));
-                context.info(format_args!("{fault}"));
-                context.symptom(record!(robot_breaks_down: "robot {robot} breaks down", robot));
+                tell(context, record!(robot_breaks_down: "robot {robot} breaks down", robot));
                 context.send(&self.events, fault.into())
             }
         }
     }
+}
+
+/// Writes an event to the log and, as the root of what follows from it, to the journal.
+fn tell(context: &mut Context<'_>, event: Record) {
+    context.info(format_args!("{event}"));
+    context.symptom(event);
 }

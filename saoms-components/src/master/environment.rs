@@ -95,7 +95,7 @@ impl Component for MasterEnvironment {
         for (luggage, from, to) in self.open.take_hopeless(context.now()) {
             context.log(
                 Level::Error,
-                format_args!("gives up luggage {luggage} from {from} to {to}: no robot can bring it"),
+                format_args!("gives up luggage {luggage} from {from} to {to}: no robot can carry it"),
             );
             context.vote(Work::GivenUp);
             context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
@@ -106,7 +106,7 @@ impl Component for MasterEnvironment {
     fn waits_for(&self) -> Option<String> {
         Some(match self.open.first() {
             None => "events".to_owned(),
-            Some((first, more)) => format!("a robot to bring {}", pieces(first, more)),
+            Some((first, more)) => format!("a robot to carry {}", pieces(first, more)),
         })
     }
 }

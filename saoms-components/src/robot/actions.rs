@@ -127,7 +127,7 @@ impl RobotKnowledge {
                     context.warn(format_args!("could not collect luggage {luggage} at {block}: tries again"));
                     return;
                 }
-                context.warn(format_args!("could not collect luggage {luggage} at {block}: gives the job up"));
+                context.warn(format_args!("could not collect luggage {luggage} at {block}: gives up the job"));
                 self.untold = self.job.map(|job| (job, LuggageStage::Refused));
                 self.failures = 0;
                 self.drop_job();

@@ -127,8 +127,8 @@ impl Component for World {
         let Some((first, more)) = self.stock.first_open() else { return Some("luggage".to_owned()) };
         let pieces = pieces(first, more);
         Some(match self.referee.is_empty() {
-            true => format!("a robot with a reference `world` to it, to bring {pieces}"),
-            false => format!("a robot to bring {pieces}"),
+            true => format!("a robot with a reference `world` to it, to carry {pieces}"),
+            false => format!("a robot to carry {pieces}"),
         })
     }
 }

@@ -223,7 +223,7 @@ fn who_sleeps_is_woken_when_all_others_break() {
             let time = moment * 50 * slow;
             let strokes = vec![(time, 1), (time + moment % 5 * 60, 3)];
             let fleet = Emergency { robots: 4, asleep: &[2, 4], strokes, ..variant }.check();
-            let woken = fleet.log.iter().filter(|line| line.contains("Info: awakes")).count();
+            let woken = fleet.log.iter().filter(|line| line.contains("Info: wakes up")).count();
             assert!(woken <= 4 && (woken > 0 || fleet.count("assistance") < 2), "{:#?}", fleet.log);
         }
     }
@@ -264,7 +264,7 @@ fn a_landing_awakes_robots_that_sleep_again_afterwards() {
     let asleep = &[2, 3, 4];
     let fleet = Emergency { scenario, robots: 4, asleep, counter: 50, ..Emergency::default() }.check();
     let told = |what: &str| fleet.log.iter().filter(|line| line.ends_with(what)).count();
-    assert_eq!((told("Info: awakes"), told("Info: sleeps")), (2, 2), "{:#?}", fleet.log);
+    assert_eq!((told("Info: wakes up"), told("Info: sleeps")), (2, 2), "{:#?}", fleet.log);
 }
 
 #[test]
@@ -273,8 +273,8 @@ fn a_robot_that_charges_awakes_a_substitute_and_sleeps() {
     let emergency = Emergency { scenario: &scenario, asleep: &[2], robots: 2, ..Emergency::default() };
     let fleet = emergency.check();
     let found = |what: &str| fleet.log.iter().any(|line| line.ends_with(what));
-    assert!(found("Robot001: Info: awakes robot 2 in place of robot 1"), "{:#?}", fleet.log);
-    assert!(found("Robot002: Info: awakes") && found("Robot001: Info: sleeps"), "{:#?}", fleet.log);
+    assert!(found("Robot001: Info: wakes robot 2 to stand in for robot 1"), "{:#?}", fleet.log);
+    assert!(found("Robot002: Info: wakes up") && found("Robot001: Info: sleeps"), "{:#?}", fleet.log);
     assert_eq!(fleet.count("assistance"), 0);
 }
 

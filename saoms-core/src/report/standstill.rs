@@ -35,8 +35,8 @@ const GROUPS: usize = 5;
 impl fmt::Display for Standstill {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let since = Time::from_nanos((self.since_s * 1e9).round() as u64);
-        let what = if self.ends { "can happen any more" } else { "happens any more" };
-        write!(formatter, "nothing {what} since {since}")?;
+        let more = if self.ends { ", and nothing more can" } else { "" };
+        write!(formatter, "nothing has happened since {since}{more}")?;
         let mut groups: Vec<(&Waiting, usize)> = Vec::new();
         for one in &self.waiting {
             let same =

@@ -19,7 +19,7 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
     let fleet = format!(
         "{OPEN}\nB actor period=20 delay=400 waits=[news]\nC actor period=10 waits=[news]\nD actor startup=false\nE callee"
     );
-    let told = "nothing can happen any more since 0.000 s: `A` waits for parcels; `D` is not started; `B` and 1 more wait for news";
+    let told = "nothing has happened since 0.000 s, and nothing more can: `A` waits for parcels; `D` is not started; `B` and 1 more wait for news";
     let (outcome, diary) = endless(&fleet);
     assert_eq!(outcome, format!("Incomplete after 60 s\n- {told}"));
     assert_eq!(diary, "");
@@ -33,7 +33,7 @@ fn what_may_still_happen_keeps_a_run_going() {
          B actor period=60000 each=[100: say one; 200: say two] publishes=TALK",
     );
     assert_eq!(outcome, "Done after 12060 s");
-    assert_eq!(diary, "[3600.000 s] nothing happens any more since 0.000 s: `A` waits for parcels\n");
+    assert_eq!(diary, "[3600.000 s] nothing has happened since 0.000 s: `A` waits for parcels\n");
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn with_a_limit_a_standstill_is_told_and_the_run_goes_on() {
     check(
         OPEN,
         90_000,
-        "[60.000 s] nothing happens any more since 0.000 s: `A` waits for parcels
+        "[60.000 s] nothing has happened since 0.000 s: `A` waits for parcels
          Elapsed after 90 s",
     );
     check("A actor period=10 waits=[parcels]\nB actor period=10 waits=[news]", 90_000, "Elapsed after 90 s");

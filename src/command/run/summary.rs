@@ -33,7 +33,7 @@ pub(crate) fn summary(report: &RunReport, keeps_all: bool) -> String {
 pub(crate) fn outcome(report: &RunReport) -> String {
     let how = match report.outcome.status {
         RunStatus::Done => "done",
-        RunStatus::Elapsed => "time is over",
+        RunStatus::Elapsed => "time limit reached",
         RunStatus::Incomplete => "incomplete",
         RunStatus::Failed => "failed",
         RunStatus::Interrupted => "interrupted",

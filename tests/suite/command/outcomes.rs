@@ -33,7 +33,7 @@ fn a_run_whose_luggage_was_given_up_is_incomplete() {
     assert_eq!(code(&output), 1, "{}", text(&output));
     let shown = stdout(&output);
     let line = |what: &str| shown.find(what).unwrap_or_else(|| panic!("no `{what}`: {shown}"));
-    assert!(line("Robot7         error: broke down at (2,6)") < line("gives up luggage 1"), "{shown}");
+    assert!(line("Robot7         error: breaks down at (2,6)") < line("gives up luggage 1"), "{shown}");
     let end = end(&output);
     assert!(end.starts_with("incomplete after 1.800 s: 0 of 1 pieces of luggage delivered, 1 given up, no"), "{end}");
     assert!(end.ends_with("\n  work was given up, as told by `World`, `Environment`, `Master`"), "{end}");
@@ -61,26 +61,26 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
     let wire = "    <reference name=\"world\" target=\"World\"/>\n";
     let id = "<property name=\"ID\" value=\"Robot7\"/>";
     let later = format!("{id}<property name=\"runOnStartup\" value=\"false\"/>");
-    let needs_robot = "`World` waits for a robot with a reference `world` to it, to bring luggage 1";
+    let needs_robot = "`World` waits for a robot with a reference `world` to it, to carry luggage 1";
     let fleets: [(&str, Change<'_>, &str, &[&str]); 4] = [
         (
             "robot",
             &|hall| hall.replace(&component("Robot7"), ""),
             "1.100 s",
-            &[needs_robot, "`Environment` and 1 more wait for a robot to bring luggage 1"],
+            &[needs_robot, "`Environment` and 1 more wait for a robot to carry luggage 1"],
         ),
         (
             "started",
             &|hall| hall.replace(id, &later),
             "1.100 s",
-            &[needs_robot, "`Environment` and 1 more wait for a robot to bring luggage 1", "`Robot7` is not started"],
+            &[needs_robot, "`Environment` and 1 more wait for a robot to carry luggage 1", "`Robot7` is not started"],
         ),
         (
             "master",
             &|hall| hall.replace(&component("Master"), ""),
             "1.100 s",
             &[
-                "`World` waits for a robot to bring luggage 1",
+                "`World` waits for a robot to carry luggage 1",
                 "`Environment` waits for a master of the environment to pass on luggage 1",
                 "`Robot7` waits for luggage",
             ],
@@ -100,7 +100,7 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
     for (name, change, since, waits) in fleets {
         let (output, report) = hall(&format!("outcome-no-{name}"), change, &[]);
         assert_eq!(code(&output), 1, "{}", text(&output));
-        let told = format!("nothing can happen any more since {since}: {}", waits.join("; "));
+        let told = format!("nothing has happened since {since}, and nothing more can: {}", waits.join("; "));
         let (first, rest) = end(&output).split_once('\n').map(|(one, rest)| (one.to_owned(), rest.to_owned())).unwrap();
         assert!(first.starts_with("incomplete after 6"), "{first}");
         assert_eq!(rest, format!("  {told}"), "{name}");
@@ -109,7 +109,7 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
         // Whoever gives the run a time keeps it, and is told once.
         let (output, report) = hall(&format!("outcome-no-{name}-for"), change, &["--for", "2h"]);
         assert_eq!((code(&output), &report["outcome"]["status"]), (0, &Value::from("elapsed")));
-        let line = format!("warning: nothing happens any more since {since}: {}\n", waits.join("; "));
+        let line = format!("warning: nothing has happened since {since}: {}\n", waits.join("; "));
         assert_eq!(stdout(&output).matches(&line).count(), 1, "{}", text(&output));
     }
 }

@@ -219,7 +219,7 @@ fn pipes_and_descriptors_are_written_in_place() {
     let mut child = command(&run).current_dir(site.path()).stdout(log).spawn().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(0));
     let text = site.text("log");
-    assert!(text.starts_with("before\n") && text.contains("time is over after 1.000 s"), "{text}");
+    assert!(text.starts_with("before\n") && text.contains("time limit reached after 1.000 s"), "{text}");
     assert!(text.ends_with("}\n") && text.contains("\n{\n"), "{text}");
     let errors = command(&["run", "site.composite", "--virtual", "--for", "1s", "--journal", "/dev/stderr"])
         .current_dir(site.path())

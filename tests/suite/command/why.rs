@@ -73,7 +73,7 @@ fn json_holds_the_chain_back_to_its_root() {
 #[test]
 fn what_several_reasons_have_in_common_is_told_once() {
     let answer = stdout(&saoms_in(&folder("once"), &["why", "Robot7", "--at", "1100", "--report", "report.json"]));
-    let root = "luggage 1 waits at (3,1) to be brought to (3,10)";
+    let root = "luggage 1 waits at (3,1) to go to (3,10)";
     assert_eq!(answer.matches(root).count(), 1, "{answer}");
     assert!(answer.contains("     ... and so on as above ...\n"), "{answer}");
 }

@@ -46,7 +46,7 @@ fn a_robot_says_once_for_whom_it_waits_and_when_that_ends() {
     for line in run.log().lines() {
         let (who, what) = line.split_once("] ").unwrap().1.split_once(": ").unwrap();
         let is_waiting = waits.entry(who).or_default();
-        if what.starts_with("waits at") {
+        if what.starts_with("has been waiting at") {
             assert!(!*is_waiting, "{who} says it twice: {}", run.log());
             assert!(what.contains(" for robot ") && what.contains(" since "), "{what}");
             (*is_waiting, told) = (true, told + 1);

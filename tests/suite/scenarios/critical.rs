@@ -67,7 +67,7 @@ fn for_a_robot_without_a_job_the_best_charged_one_is_woken() {
 "
     );
     assert_eq!(run.log("Robot005"), [""; 0]);
-    assert_eq!(run.log("Robot006"), ["5.000 s is awaked (battery 100.0 %)"]);
+    assert_eq!(run.log("Robot006"), ["5.000 s wakes up (battery 100.0 %)"]);
     assert_eq!(run.log("Robot007"), [""; 0]);
 }
 

@@ -55,7 +55,7 @@ fn help_begins_with_the_breakdown_and_shifts_with_the_landing() {
 fn each_called_robot_follows_from_its_own_call() {
     let run = Run::with(&fleet("safe", "", "at 1s landing 4; at 10s end", &["2 asleep=true", "3 asleep=true"]), 100);
     let journal = &run.report.journal;
-    for (robot, call) in [("Robot002", "awakes robot 2"), ("Robot003", "awakes robot 3")] {
+    for (robot, call) in [("Robot002", "wakes robot 2"), ("Robot003", "wakes robot 3")] {
         let symptoms = journal.of(robot).of_loop("RobotMS");
         let first = symptoms.iter().next().unwrap();
         assert_eq!(journal.entry(first.cause()).unwrap().text(), call);
@@ -90,7 +90,7 @@ fn luggage_that_no_battery_lasts_for_is_given_up_in_the_end() {
     );
     let run = Run::with(&Fleet::of_text(text).with_severity("S5006", "warning"), 300);
     assert_eq!((run.count("luggage", "delivered"), run.count("luggage", "open")), (0, 2));
-    let given_up = |line: &String| line.contains(" any more: no full battery lasts for the way");
+    let given_up = |line: &String| line.contains(" any more: a full battery does not last for the way");
     assert_eq!(run.log("Robot001").iter().filter(|line| given_up(line)).count(), 1);
     // With that on board it takes nothing else.
     assert!(run.log("MEMS").iter().any(|line| line.contains("gives up luggage 2")));

@@ -28,7 +28,7 @@ fn the_closest_robot_brings_new_luggage_and_the_other_stays_available() {
     assert_order(
         &run,
         &[
-            ("Environment", "luggage 1 waits at (4,6) to be brought to (9,2)"),
+            ("Environment", "luggage 1 waits at (4,6) to go to (9,2)"),
             ("Robot006", "takes luggage 1 from (4,6) to (9,2)"),
             ("Robot003", "takes luggage 2 from (2,8) to (8,8)"),
         ],
@@ -44,12 +44,12 @@ fn a_landing_awakes_robots_and_a_takeoff_does_too() {
     assert_order(
         &run("usecase-landing.composite", 5),
         &[
-            ("MasterRobot", "awakes robots 3, 4 and 2"),
-            ("Robot003", "awakes"),
-            ("MasterRobot", "sends under charge robots 4, 3 and 2"),
+            ("MasterRobot", "wakes robots 3, 4 and 2"),
+            ("Robot003", "wakes up"),
+            ("MasterRobot", "sends robots 4, 3 and 2 to charge"),
             ("Robot003", "sleeps"),
-            ("Environment", "TAKEOFF with 2 expected pieces of luggage"),
-            ("MasterRobot", "awakes robot 4"),
+            ("Environment", "an airplane takes off with 2 pieces of luggage"),
+            ("MasterRobot", "wakes robot 4"),
             ("Robot004", "takes luggage 5 from (1,9) to (9,9)"),
         ],
     );
@@ -61,9 +61,9 @@ fn a_healer_brings_what_a_broken_robot_carries() {
         &run("usecase-breakdown.composite", 2),
         &[
             ("Robot001", "collected luggage 1 at (3,1)"),
-            ("Robot001", "broke down at (4,2) with luggage: needs assistance"),
+            ("Robot001", "breaks down at (4,2) while carrying luggage: needs assistance"),
             ("Robot002", "takes over luggage 1 from robot 1"),
-            ("Robot010", "awakes"),
+            ("Robot010", "wakes up"),
             ("Robot002", "collected luggage 1 at (4,2)"),
             ("Robot002", "deposited luggage 1 at (9,5)"),
         ],
@@ -75,9 +75,9 @@ fn a_robot_awakes_another_one() {
     assert_order(
         &run("usecase-awaking.composite", 1),
         &[
-            ("Robot001", "broke down at (0,1) without a job: needs assistance"),
-            ("Robot002", "awakes robot 3 in place of robot 1"),
-            ("Robot003", "awakes"),
+            ("Robot001", "breaks down at (0,1) while idle: needs assistance"),
+            ("Robot002", "wakes robot 3 to stand in for robot 1"),
+            ("Robot003", "wakes up"),
             ("Robot003", "deposited luggage 1 at (9,4)"),
         ],
     );

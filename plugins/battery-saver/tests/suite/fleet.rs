@@ -7,7 +7,7 @@ use saoms_testkit::{Fleet, Run};
 
 /// Battery levels, in percent, at which a robot returned to its charger.
 fn turned(run: &Run, robot: &str) -> Vec<f64> {
-    let percent = |line: &String| line.strip_prefix("has low battery (")?.split_once(' ')?.0.parse().ok();
+    let percent = |line: &String| line.strip_prefix("battery is low (")?.split_once(' ')?.0.parse().ok();
     run.log_of(robot).iter().filter_map(percent).collect()
 }
 
@@ -21,10 +21,10 @@ fn the_robot_learns_to_charge_in_time() {
     assert_eq!(
         saver,
         [
-            "was down to 28 %, which is too low",
+            "battery was down to 28 %, which is too low",
             "charges at 60 % from now on",
             "chargeAt: 0 -> 60",
-            "was down to 34 %, which is too low",
+            "battery was down to 34 %, which is too low",
             "charges at 70 % from now on",
             "chargeAt: 60 -> 70",
         ]

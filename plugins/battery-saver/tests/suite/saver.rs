@@ -39,7 +39,7 @@ fn trip(bench: &mut LoopBench<Robot>, battery: f64) -> Vec<String> {
 fn a_deep_discharge_lets_it_charge_earlier_and_a_shallow_one_later() {
     let mut bench = bench();
     let deep = [
-        "BatterySaver symptom: was down to 20 %, which is too low",
+        "BatterySaver symptom: battery was down to 20 %, which is too low",
         "BatterySaver decision: charges at 60 % from now on",
         "BatterySaver chargeAt: 0 -> 60",
     ];

@@ -60,15 +60,18 @@ impl Recordable for Workload {
         let Workload { pieces, needed, released } = *self;
         match (needed, released) {
             (0, _) => {
-                record!(shift_ends: "the shift of {released} {released:robot|robots} is over", released)
+                record!(shift_ends: "the shift of {released} {released:robot|robots} ends", released)
             }
             (_, 0) => record!(
-                luggage_expected: "expects luggage, {pieces} more: needs {needed} {needed:robot|robots}",
+                luggage_expected:
+                    "expects {pieces} more {pieces:piece|pieces} of luggage: needs {needed} {needed:robot|robots}",
                 pieces,
                 needed
             ),
             _ => record!(
-                luggage_expected_as_shift_ends: "expects luggage, {pieces} more: needs {needed} {needed:robot|robots}, while the shift of {released} is over",
+                luggage_expected_as_shift_ends:
+                    "expects {pieces} more {pieces:piece|pieces} of luggage: needs {needed} {needed:robot|robots}; \
+                     the shift of {released} ends",
                 pieces,
                 needed,
                 released
@@ -81,10 +84,10 @@ impl Recordable for AwakeAsleepDecision {
     fn record(&self) -> Record {
         match *self {
             AwakeAsleepDecision::Awake { robots: count, .. } => {
-                record!(wakes_robots: "awakes {count} {count:robot|robots}", count)
+                record!(wakes_robots: "wakes {count} {count:robot|robots}", count)
             }
             AwakeAsleepDecision::Asleep { robots: count, .. } => {
-                record!(sends_robots_to_charge: "sends {count} {count:robot|robots} under charge", count)
+                record!(sends_robots_to_charge: "sends {count} {count:robot|robots} to charge", count)
             }
         }
     }
@@ -174,24 +177,26 @@ impl MasterAwakeAsleep {
             let Some(robot) = next else { break };
             knowledge.note_call(robot, awake);
             context.effect(match awake {
-                true => record!(wakes_robot: "awakes robot {robot}", robot),
-                false => record!(sends_robot_to_charge: "sends robot {robot} under charge", robot),
+                true => record!(wakes_robot: "wakes robot {robot}", robot),
+                false => record!(sends_robot_to_charge: "sends robot {robot} to charge", robot),
             });
             context.send(&self.states, RobotState { robot, awake, emulate: 0 })?;
             called.push(robot);
         }
-        let what = if awake { "awakes" } else { "sends under charge" };
-        if !called.is_empty() {
-            context.info(format_args!("{what} {}", Robots(&called)));
+        match (&called[..], awake) {
+            ([], _) => {}
+            (called, true) => context.info(format_args!("wakes {}", Robots(called))),
+            (called, false) => context.info(format_args!("sends {} to charge", Robots(called))),
         }
         let missing = (count as usize).saturating_sub(called.len());
         if missing > 0 && awake {
             let missing = u32::try_from(missing).unwrap_or(u32::MAX);
             let robots = robots(missing);
-            context.info(format_args!("finds {missing} {robots} too few asleep"));
-            context.effect(
-                record!(too_few_robots_asleep: "finds {missing} {missing:robot|robots} too few asleep", missing),
-            );
+            context.info(format_args!("needs {missing} more {robots}, but none is asleep"));
+            context.effect(record!(
+                too_few_robots_asleep: "needs {missing} more {missing:robot|robots}, but none is asleep",
+                missing
+            ));
         }
         Ok(u32::try_from(called.len()).unwrap_or(u32::MAX))
     }

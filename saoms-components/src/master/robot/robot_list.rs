@@ -54,7 +54,7 @@ impl Loop for MasterRobotList {
         }
         context.report("robots.active", i64::from(robots));
         Ok(Some(record!(
-            robots_known: "knows of {count} {count:robot|robots}, asleep: {asleep}",
+            robots_known: "knows {count} {count:robot|robots}, {asleep} asleep",
             count = robots,
             asleep = knowledge.asleep
         )))

@@ -45,8 +45,8 @@ impl Recordable for ClassicBatterySymptom {
 impl Recordable for ClassicBatteryDecision {
     fn record(&self) -> Record {
         match self {
-            ClassicBatteryDecision::Charge => record!(charges_after_job: "goes under charge after its job"),
-            ClassicBatteryDecision::Sleep => record!(sleeps_until_needed: "sleeps until it is awaked or heals a robot"),
+            ClassicBatteryDecision::Charge => record!(charges_after_job: "goes to charge after its job"),
+            ClassicBatteryDecision::Sleep => record!(sleeps_until_needed: "sleeps until it is woken or helps a robot"),
         }
     }
 }
@@ -114,7 +114,7 @@ impl Loop for ClassicBattery {
             ClassicBatteryDecision::Charge => {
                 variables.ready_to_go_under_charge = true;
                 let battery = &knowledge.battery;
-                context.info(format_args!("has low battery ({battery} %): charges after its job"));
+                context.info(format_args!("battery is low ({battery} %): goes to charge after its job"));
             }
             ClassicBatteryDecision::Sleep => variables.busy = false,
         }

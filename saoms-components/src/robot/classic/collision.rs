@@ -51,9 +51,11 @@ impl Recordable for ClassicCollisionSymptom {
     fn record(&self) -> Record {
         match *self {
             ClassicCollisionSymptom::Risk { robot, block } => {
-                record!(block_contested: "robot {robot} goes to {block}, too", robot, block)
+                record!(block_contested: "robot {robot} is about to enter {block}, too", robot, block)
             }
-            ClassicCollisionSymptom::Over => record!(block_uncontested: "no other robot goes there any more"),
+            ClassicCollisionSymptom::Over => record!(
+                block_uncontested: "no other robot is about to enter the block any more"
+            ),
         }
     }
 }
@@ -62,9 +64,9 @@ impl Recordable for ClassicCollisionDecision {
     fn record(&self) -> Record {
         match *self {
             ClassicCollisionDecision::Stop { robot, .. } => {
-                record!(waits_one_period: "stops for a period: robot {robot} has the lower number", robot)
+                record!(waits_one_period: "waits one period: robot {robot} has the lower number", robot)
             }
-            ClassicCollisionDecision::GoOn => record!(goes_first: "goes on: it has the lower number"),
+            ClassicCollisionDecision::GoOn => record!(goes_first: "goes first: it has the lower number"),
             ClassicCollisionDecision::GoOnAgain => record!(goes_on: "goes on"),
         }
     }
@@ -129,7 +131,7 @@ impl Loop for ClassicCollision {
         }
         knowledge.variables.stop_a_period = matches!(decision, ClassicCollisionDecision::Stop { .. });
         if let ClassicCollisionDecision::Stop { robot, block } = decision {
-            context.info(format_args!("waits: robot {robot} goes to {block} first"));
+            context.info(format_args!("waits: robot {robot} enters {block} first"));
         }
         Ok(())
     }

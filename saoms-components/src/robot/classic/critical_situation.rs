@@ -65,17 +65,17 @@ impl Recordable for ClassicCriticalSymptom {
     fn record(&self) -> Record {
         match *self {
             ClassicCriticalSymptom::Broken(CriticalKind::CarriesLuggage) => {
-                record!(breaks_down_while_carrying: "breaks down with luggage")
+                record!(breaks_down_while_carrying: "breaks down while carrying luggage")
             }
             ClassicCriticalSymptom::Broken(CriticalKind::OnTheWay) => {
-                record!(breaks_down_while_fetching: "breaks down on its way to luggage")
+                record!(breaks_down_while_fetching: "breaks down while fetching luggage")
             }
             ClassicCriticalSymptom::Broken(CriticalKind::Idle) => {
-                record!(breaks_down_while_idle: "breaks down without a job")
+                record!(breaks_down_while_idle: "breaks down while idle")
             }
             ClassicCriticalSymptom::NeedsHelp(robot) => record!(robot_needs_help: "robot {robot} needs help", robot),
             ClassicCriticalSymptom::Closest(robot) => {
-                record!(closest_to_robot: "no other robot that would heal robot {robot} is closer", robot)
+                record!(closest_to_robot: "no other robot that offers to help robot {robot} is closer", robot)
             }
             ClassicCriticalSymptom::Beaten => {
                 record!(other_robot_closer_to_robot: "another robot is closer to the one that needs help")
@@ -89,7 +89,7 @@ impl Recordable for ClassicCriticalDecision {
         match *self {
             ClassicCriticalDecision::AskForHelp(_) => record!(asks_for_help: "asks for help and shuts down"),
             ClassicCriticalDecision::Intend(robot) => record!(offers_help: "offers to help robot {robot}", robot),
-            ClassicCriticalDecision::Heal(robot) => record!(helps_robot: "heals robot {robot}", robot),
+            ClassicCriticalDecision::Heal(robot) => record!(helps_robot: "helps robot {robot}", robot),
             ClassicCriticalDecision::Forget => record!(is_free: "is free again"),
         }
     }
@@ -246,18 +246,18 @@ impl ClassicCriticalSituation {
             context.console(format_args!("{name} is a healer and awakes another robot"));
             if let Some(robot) = best_charged(knowledge, critical) {
                 let state = RobotState { robot, awake: true, emulate: critical };
-                context.effect(record!(wakes_robot: "awakes robot {robot}", robot));
+                context.effect(record!(wakes_robot: "wakes robot {robot}", robot));
                 context.send(&self.states, state)?;
             } else {
-                context.effect(record!(no_robot_to_wake: "finds no robot that it could awake"));
+                context.effect(record!(no_robot_to_wake: "finds no robot to wake"));
             }
         }
         match job {
             Some(job) => context.info(format_args!(
-                "heals robot {critical}: takes luggage {} from {} to {}",
+                "helps robot {critical}: takes luggage {} from {} to {}",
                 job.luggage, job.from, job.to
             )),
-            None => context.info(format_args!("heals robot {critical}")),
+            None => context.info(format_args!("helps robot {critical}")),
         }
         self.respond(situation, CriticalStage::Taken, knowledge, context)
     }

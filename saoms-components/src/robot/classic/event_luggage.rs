@@ -54,7 +54,7 @@ impl Recordable for ClassicLuggageSymptom {
                 record!(oldest_luggage_waits: "luggage {luggage} waits at {from}", luggage, from)
             }
             ClassicLuggageSymptom::Closest(Job { luggage, .. }) => {
-                record!(closest_to_luggage: "no other robot that is interested in luggage {luggage} is closer", luggage)
+                record!(closest_to_luggage: "no other robot that offers to carry luggage {luggage} is closer", luggage)
             }
             ClassicLuggageSymptom::Beaten => {
                 record!(other_robot_closer_to_luggage: "another robot is closer to the luggage")
@@ -66,9 +66,9 @@ impl Recordable for ClassicLuggageSymptom {
 impl Recordable for ClassicLuggageDecision {
     fn record(&self) -> Record {
         match *self {
-            ClassicLuggageDecision::TakeInterest => record!(offers_to_carry: "would bring it"),
+            ClassicLuggageDecision::TakeInterest => record!(offers_to_carry: "offers to carry it"),
             ClassicLuggageDecision::Take(Job { luggage, from, to }) => {
-                record!(takes_luggage: "brings luggage {luggage} from {from} to {to}", luggage, from, to)
+                record!(takes_luggage: "takes luggage {luggage} from {from} to {to}", luggage, from, to)
             }
             ClassicLuggageDecision::Forget => record!(is_free: "is free again"),
         }

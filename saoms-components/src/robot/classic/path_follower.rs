@@ -78,12 +78,12 @@ pub enum ClassicPathDecision {
 impl Recordable for ClassicPathSymptom {
     fn record(&self) -> Record {
         match *self {
-            ClassicPathSymptom::Stopped => record!(has_to_wait: "has to stop for this period"),
-            ClassicPathSymptom::Working => record!(action_running: "is still at work"),
+            ClassicPathSymptom::Stopped => record!(has_to_wait: "has to wait for this period"),
+            ClassicPathSymptom::Working => record!(action_running: "has not finished its last action"),
             ClassicPathSymptom::AtDestination(block) => record!(at_destination: "is at its destination {block}", block),
-            ClassicPathSymptom::OnTheWay { to, .. } => record!(on_the_way: "is on the way to {to}", to),
+            ClassicPathSymptom::OnTheWay { to, .. } => record!(on_the_way: "is on its way to {to}", to),
             ClassicPathSymptom::ToCharger { to, .. } => {
-                record!(on_the_way_to_charger: "is on the way to its charger at {to}", to)
+                record!(on_the_way_to_charger: "is on its way to its charger at {to}", to)
             }
         }
     }
@@ -92,8 +92,8 @@ impl Recordable for ClassicPathSymptom {
 impl Recordable for ClassicPathDecision {
     fn record(&self) -> Record {
         match *self {
-            ClassicPathDecision::Stop => record!(waits: "stands still"),
-            ClassicPathDecision::Announce => record!(repeats_position: "says again where it goes"),
+            ClassicPathDecision::Stop => record!(waits: "waits"),
+            ClassicPathDecision::Announce => record!(repeats_position: "announces its next block again"),
             ClassicPathDecision::Handle(Action { kind: ActionKind::Collect, luggage, .. }) => {
                 record!(collects_luggage: "collects luggage {luggage}", luggage)
             }
@@ -224,7 +224,7 @@ fn go_charging(
     }
     let name = &knowledge.name;
     context.console(format_args!("{name} says: I've arrived to charge position."));
-    context.info(format_args!("charges (battery {} %)", knowledge.battery));
+    context.info(format_args!("starts charging (battery {} %)", knowledge.battery));
     let variables = &mut knowledge.variables;
     (variables.reaching_charge, variables.ready_to_go_under_charge) = (false, false);
     (variables.in_charge, variables.asleep, variables.busy) = (true, true, true);

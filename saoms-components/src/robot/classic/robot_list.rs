@@ -51,7 +51,7 @@ impl Loop for ClassicRobotList {
         let changed = std::mem::replace(&mut self.known, robots) != robots;
         Ok(changed.then(|| {
             record!(
-                other_robots_known: "knows of {count} other {count:robot|robots}",
+                other_robots_known: "knows {count} other {count:robot|robots}",
                 count = u32::try_from(robots).unwrap_or(u32::MAX)
             )
         }))

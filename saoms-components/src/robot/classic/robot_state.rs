@@ -43,7 +43,7 @@ impl Recordable for ClassicRobotSymptom {
             ClassicRobotSymptom::Awake(robot) => {
                 record!(woken_as_substitute: "is woken to stand in for robot {robot}", robot)
             }
-            ClassicRobotSymptom::Asleep => record!(sent_to_charge: "is called to go under charge"),
+            ClassicRobotSymptom::Asleep => record!(sent_to_charge: "is sent to charge"),
         }
     }
 }
@@ -52,7 +52,7 @@ impl Recordable for ClassicRobotDecision {
     fn record(&self) -> Record {
         match self {
             ClassicRobotDecision::Wake(_) => record!(wakes: "wakes up"),
-            ClassicRobotDecision::Charge => record!(charges_after_job: "goes under charge after its job"),
+            ClassicRobotDecision::Charge => record!(charges_after_job: "goes to charge after its job"),
         }
     }
 }
@@ -125,13 +125,13 @@ impl Loop for ClassicRobotState {
                 // This wakes a healer too, which stays a healer.
                 (variables.in_charge, variables.asleep, variables.busy) = (false, false, variables.healer);
                 knowledge.stands_in_for = (emulate != 0).then_some(emulate);
-                context.info(format_args!("is awaked (battery {} %)", knowledge.battery));
+                context.info(format_args!("wakes up (battery {} %)", knowledge.battery));
             }
             ClassicRobotDecision::Charge => {
                 variables.ready_to_go_under_charge = true;
                 // The component that sent it to charge knows that one robot less is there.
                 knowledge.relieved = true;
-                context.info(format_args!("is sent under charge"));
+                context.info(format_args!("is sent to charge"));
             }
         }
         Ok(())

@@ -94,32 +94,34 @@ impl Recordable for SafeBatterySymptom {
     fn record(&self) -> Record {
         match *self {
             SafeBatterySymptom::Low { battery, left, home } => record!(
-                low_battery_for_way_home: "has {battery} % left: enough for {left} executions, and the way to its charger takes {home}",
+                low_battery_for_way_home:
+                    "battery at {battery} % lasts {left} {left:execution|executions}; the way to its charger takes \
+                     {home}",
                 battery,
                 left,
                 home
             ),
-            SafeBatterySymptom::Empty => record!(battery_empty: "has an empty battery"),
+            SafeBatterySymptom::Empty => record!(battery_empty: "battery is empty"),
             SafeBatterySymptom::OutOfReach { charger, other } => record!(
-                charger_out_of_reach: "its charger at {charger} is out of reach by now, and the one at {other} is free",
+                charger_out_of_reach: "its charger at {charger} is out of reach, and the one at {other} is free",
                 charger,
                 other
             ),
             SafeBatterySymptom::CutOff { charger, other } => {
                 record!(
-                    charger_cut_off: "no way leads to its charger at {charger} any more, but one to {other}",
+                    charger_cut_off: "no path leads to its charger at {charger} any more, but one leads to {other}",
                     charger,
                     other
                 )
             }
             SafeBatterySymptom::Charged { battery } => {
-                record!(charged_enough: "has charged up to {battery} %", battery)
+                record!(charged_enough: "has charged to {battery} %", battery)
             }
             SafeBatterySymptom::Charge { begins: true, battery } => {
                 record!(at_charger: "is at its charger with {battery} %", battery)
             }
             SafeBatterySymptom::Charge { begins: false, battery } => {
-                record!(charging_is_over: "gains nothing from its charger any more, with {battery} %", battery)
+                record!(charging_is_over: "charging is over at {battery} %", battery)
             }
         }
     }
@@ -128,13 +130,13 @@ impl Recordable for SafeBatterySymptom {
 impl Recordable for SafeBatteryDecision {
     fn record(&self) -> Record {
         match *self {
-            SafeBatteryDecision::Charge => record!(goes_to_charge: "goes to its charger"),
-            SafeBatteryDecision::Stop => record!(stops_with_empty_battery: "stays where it is"),
-            SafeBatteryDecision::Leave => record!(leaves_charger: "has enough for what it has to do"),
+            SafeBatteryDecision::Charge => record!(goes_to_charge: "goes to charge"),
+            SafeBatteryDecision::Stop => record!(stops_with_empty_battery: "stops where it is"),
+            SafeBatteryDecision::Leave => record!(leaves_charger: "leaves its charger: the battery lasts for its work"),
             SafeBatteryDecision::Use(other) => record!(changes_charger: "charges at {other} from now on", other),
             SafeBatteryDecision::Borrow(other) => record!(borrows_charger: "charges at {other} this time", other),
-            SafeBatteryDecision::BeInCharge(true) => record!(starts_charging: "is in charge"),
-            SafeBatteryDecision::BeInCharge(false) => record!(stops_charging: "is in charge no more"),
+            SafeBatteryDecision::BeInCharge(true) => record!(starts_charging: "starts charging"),
+            SafeBatteryDecision::BeInCharge(false) => record!(stops_charging: "stops charging"),
         }
     }
 }
@@ -229,7 +231,7 @@ impl Loop for SafeBattery {
                 knowledge.energy.turn_back();
                 let (name, battery) = (&knowledge.name, &knowledge.battery);
                 context.console(format_args!("{name} has low battery and is going under charge..."));
-                context.info(format_args!("has low battery ({battery} %): goes to charge"));
+                context.info(format_args!("battery is low ({battery} %): goes to charge"));
             }
             SafeBatteryDecision::Stop => {
                 knowledge.trouble = Some(Trouble::Battery);
@@ -311,7 +313,7 @@ impl SafeBattery {
         if charging && !charged {
             let (name, battery) = (&knowledge.name, &knowledge.battery);
             context.console(format_args!("{name} says: I've arrived to charge position."));
-            context.info(format_args!("charges (battery {battery} %)"));
+            context.info(format_args!("starts charging (battery {battery} %)"));
         }
         if charging {
             knowledge.charge_battery();

@@ -50,7 +50,7 @@ impl Recordable for SafeCollisionSymptom {
             SafeCollisionSymptom::Taken { block, robot } => {
                 record!(block_taken: "robot {robot} holds or wants {block}", robot, block)
             }
-            SafeCollisionSymptom::Clear => record!(way_clear: "nobody is in its way any more"),
+            SafeCollisionSymptom::Clear => record!(way_clear: "no robot is in its way any more"),
         }
     }
 }

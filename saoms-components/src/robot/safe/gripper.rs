@@ -47,7 +47,7 @@ impl Recordable for SafeGripperSymptom {
     fn record(&self) -> Record {
         match *self {
             SafeGripperSymptom::AtLuggage(Job { luggage, from, .. }) => {
-                record!(at_luggage: "is at {from}, where luggage {luggage} is", from, luggage)
+                record!(at_luggage: "is at {from}, where luggage {luggage} waits", from, luggage)
             }
             SafeGripperSymptom::AtDestination(Job { luggage, to, .. }) => {
                 record!(at_destination_of_luggage: "is at {to}, where luggage {luggage} has to go", to, luggage)
@@ -72,10 +72,10 @@ impl Recordable for SafeGripperDecision {
                 record!(deposits_luggage: "deposits luggage {luggage}", luggage)
             }
             SafeGripperDecision::Tell(Job { luggage, .. }) => {
-                record!(announces_delivery: "tells that luggage {luggage} is delivered", luggage)
+                record!(announces_delivery: "announces that luggage {luggage} is delivered", luggage)
             }
             SafeGripperDecision::Return(Job { luggage, .. }) => {
-                record!(leaves_luggage: "leaves luggage {luggage} to others", luggage)
+                record!(leaves_luggage: "leaves luggage {luggage} to other robots", luggage)
             }
         }
     }

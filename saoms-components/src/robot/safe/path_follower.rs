@@ -61,7 +61,7 @@ pub enum SafePathDecision {
 impl Recordable for SafePathSymptom {
     fn record(&self) -> Record {
         match *self {
-            SafePathSymptom::Bound { block } => record!(cannot_leave_block: "is bound to {block}", block),
+            SafePathSymptom::Bound { block } => record!(cannot_leave_block: "cannot leave {block} now", block),
             SafePathSymptom::OnTheWay { at, goal } => {
                 record!(on_the_way_from: "is at {at} on its way to {goal}", at, goal)
             }
@@ -73,7 +73,7 @@ impl Recordable for SafePathSymptom {
 impl Recordable for SafePathDecision {
     fn record(&self) -> Record {
         match *self {
-            SafePathDecision::Hold => record!(holds_block: "lets nobody pass"),
+            SafePathDecision::Hold => record!(holds_block: "keeps its block"),
             SafePathDecision::Go(block) => record!(moves: "moves to {block}", block),
             SafePathDecision::Stay => record!(stays: "stays for now"),
         }

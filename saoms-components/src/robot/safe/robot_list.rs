@@ -40,18 +40,18 @@ impl Recordable for SafeRobotListSymptom {
     fn record(&self) -> Record {
         let battery = self.battery;
         match self.in_charge {
-            _ if self.critical => record!(out_of_order: "is out of order, and asked for help"),
+            _ if self.critical => record!(out_of_order: "is out of order, and has asked for help"),
             true => {
-                record!(charging_not_announced: "is in charge with {battery} %, which the others do not know", battery)
+                record!(charging_not_announced: "charges with {battery} %, which is not announced yet", battery)
             }
-            false => record!(battery_not_announced: "has {battery} % left, which the others do not know", battery),
+            false => record!(battery_not_announced: "battery is at {battery} %, which is not announced yet", battery),
         }
     }
 }
 
 impl Recordable for SayRobot {
     fn record(&self) -> Record {
-        record!(announces_state: "tells the others")
+        record!(announces_state: "announces its state")
     }
 }
 

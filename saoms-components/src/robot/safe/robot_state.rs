@@ -78,17 +78,17 @@ impl Recordable for SafeRobotSymptom {
             SafeRobotSymptom::SentToSleep => record!(sent_to_sleep: "is sent to sleep"),
             SafeRobotSymptom::NobodyAwake { critical } => {
                 record!(
-                    no_awake_robot_can_help: "robot {robot} needs help, and no robot that is awake can give it",
+                    no_awake_robot_can_help: "robot {robot} needs help, and no robot that is awake can help",
                     robot = critical
                 )
             }
             SafeRobotSymptom::NobodyForLuggage { luggage } => {
                 record!(
-                    no_awake_robot_can_carry: "luggage {luggage} waits, and no robot that is awake can bring it",
+                    no_awake_robot_can_carry: "luggage {luggage} waits, and no robot that is awake can carry it",
                     luggage
                 )
             }
-            SafeRobotSymptom::AtRest => record!(at_charger_to_sleep: "is at its charger and was sent to sleep"),
+            SafeRobotSymptom::AtRest => record!(at_charger_to_sleep: "is at its charger, and was sent to sleep"),
         }
     }
 }
@@ -98,9 +98,9 @@ impl Recordable for SafeRobotDecision {
         match *self {
             SafeRobotDecision::Awake { emulate: 0 } => record!(wakes: "wakes up"),
             SafeRobotDecision::Awake { emulate } => {
-                record!(wakes_as_substitute: "awakes and stands in for robot {robot}", robot = emulate)
+                record!(wakes_as_substitute: "wakes up to stand in for robot {robot}", robot = emulate)
             }
-            SafeRobotDecision::StayAwake => record!(already_awake: "is awake already"),
+            SafeRobotDecision::StayAwake => record!(already_awake: "is already awake"),
             SafeRobotDecision::Finish => record!(sleeps_after_job: "finishes its job, then sleeps"),
             SafeRobotDecision::Sleep => record!(sleeps: "sleeps"),
         }
@@ -191,7 +191,7 @@ impl Loop for SafeRobotState {
                 (knowledge.variables.asleep, knowledge.relieved) = (false, false);
                 self.sent = Cause::default();
                 knowledge.stands_in_for = Some(emulate).filter(|emulate| *emulate > 0);
-                context.info(format_args!("awakes"));
+                context.info(format_args!("wakes up"));
                 let (name, heals) = (&knowledge.name, emulate > 0);
                 context.console(format_args!("{name} {}now is awake", if heals { "is a healer and " } else { "" }));
             }

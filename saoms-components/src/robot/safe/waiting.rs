@@ -42,8 +42,10 @@ impl Waiting {
                     way.is_told = true;
                     let since = way.since;
                     match knowledge.traffic.blocker(at, goal, &knowledge.routes) {
-                        Some(robot) => context.info(format_args!("waits at {at} for robot {robot} since {since}")),
-                        None => context.info(format_args!("waits at {at} for others since {since}")),
+                        Some(robot) => {
+                            context.info(format_args!("has been waiting at {at} for robot {robot} since {since}"))
+                        }
+                        None => context.info(format_args!("has been waiting at {at} for other robots since {since}")),
                     }
                 }
             }

@@ -245,7 +245,7 @@ impl Loop for SafeCriticalSituation {
                 if let Some(substitution) = &mut self.substitution {
                     substitution.ask(sleeper);
                 }
-                context.info(format_args!("awakes robot {sleeper} in place of robot {robot}"));
+                context.info(format_args!("wakes robot {sleeper} to stand in for robot {robot}"));
                 let name = &knowledge.name;
                 context.console(format_args!("{name} is a healer and awakes another robot"));
                 self.awake(context, sleeper, robot)?;

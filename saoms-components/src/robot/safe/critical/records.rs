@@ -119,15 +119,19 @@ impl Recordable for SafeCriticalSymptom {
                 let trouble = trouble.name();
                 match kind {
                     CriticalKind::CarriesLuggage => {
-                        record!(stops_while_carrying: "stops at {block} with luggage: {trouble}", block, trouble)
+                        record!(
+                            stops_while_carrying: "stops at {block} while carrying luggage: {trouble}",
+                            block,
+                            trouble
+                        )
                     }
                     CriticalKind::OnTheWay => record!(
-                        stops_while_fetching: "stops at {block} on its way to luggage: {trouble}",
+                        stops_while_fetching: "stops at {block} while fetching luggage: {trouble}",
                         block,
                         trouble
                     ),
                     CriticalKind::Idle => {
-                        record!(stops_while_idle: "stops at {block} without a job: {trouble}", block, trouble)
+                        record!(stops_while_idle: "stops at {block} while idle: {trouble}", block, trouble)
                     }
                 }
             }
@@ -135,19 +139,24 @@ impl Recordable for SafeCriticalSymptom {
                 let CriticalSituation { critical, block, kind, .. } = *situation;
                 match kind {
                     CriticalKind::CarriesLuggage => record!(
-                        robot_broke_down_while_carrying: "robot {robot} broke down at {block} with luggage, {distance} blocks away",
+                        robot_broke_down_while_carrying:
+                            "robot {robot} broke down at {block} while carrying luggage, {distance} \
+                             {distance:block|blocks} away",
                         robot = critical,
                         block,
                         distance
                     ),
                     CriticalKind::OnTheWay => record!(
-                        robot_broke_down_while_fetching: "robot {robot} broke down at {block} on its way to luggage, {distance} blocks away",
+                        robot_broke_down_while_fetching:
+                            "robot {robot} broke down at {block} while fetching luggage, {distance} \
+                             {distance:block|blocks} away",
                         robot = critical,
                         block,
                         distance
                     ),
                     CriticalKind::Idle => record!(
-                        robot_broke_down_while_idle: "robot {robot} broke down at {block} without a job, {distance} blocks away",
+                        robot_broke_down_while_idle:
+                            "robot {robot} broke down at {block} while idle, {distance} {distance:block|blocks} away",
                         robot = critical,
                         block,
                         distance
@@ -156,29 +165,29 @@ impl Recordable for SafeCriticalSymptom {
             }
             SafeCriticalSymptom::InVain(CriticalSituation { critical, .. }) => {
                 record!(
-                    help_blocked: "could not begin to help robot {robot} for very long: others are in its way",
+                    help_blocked: "could not get to robot {robot} for a long time: other robots are in its way",
                     robot = critical
                 )
             }
             SafeCriticalSymptom::Alone(CriticalSituation { critical, .. }) => {
-                record!(no_other_offer_to_help: "no other robot would help robot {robot}", robot = critical)
+                record!(no_other_offer_to_help: "no other robot offers to help robot {robot}", robot = critical)
             }
             SafeCriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: Some(robot) } => {
                 record!(robot_closer_to_robot: "robot {robot} is closer to robot {critical}", robot, critical)
             }
             SafeCriticalSymptom::Beaten { situation: CriticalSituation { critical, .. }, by: None } => {
                 record!(
-                    has_to_charge_despite_offer_to_help: "has to charge, and said that it would help robot {robot}",
+                    has_to_charge_despite_offer_to_help: "has to charge, but has offered to help robot {robot}",
                     robot = critical
                 )
             }
             SafeCriticalSymptom::Gone => record!(other_robot_helps: "another robot helps"),
             SafeCriticalSymptom::Woken { emulates } => {
-                record!(was_woken_as_substitute: "was awaked in place of robot {robot}", robot = emulates)
+                record!(was_woken_as_substitute: "was woken to stand in for robot {robot}", robot = emulates)
             }
             SafeCriticalSymptom::Charges { battery } => {
                 record!(
-                    has_to_charge_while_others_sleep: "has to charge (battery {battery} %), and others sleep",
+                    has_to_charge_while_others_sleep: "has to charge (battery {battery} %), and other robots sleep",
                     battery
                 )
             }
@@ -203,15 +212,19 @@ impl Recordable for SafeCriticalDecision {
                 record!(offers_help: "offers to help robot {robot}", robot = critical)
             }
             SafeCriticalDecision::Postpone { needs, .. } => {
-                record!(charges_first: "charges first: that takes {needs} executions", needs)
+                record!(
+                    charges_first: "charges first: the battery has to last {needs} {needs:execution|executions}",
+                    needs
+                )
             }
             SafeCriticalDecision::Refuse(CriticalSituation { critical, .. }) => {
-                record!(refuses_help: "leaves robot {robot} to others: it can never do that", robot = critical)
+                record!(refuses_help: "leaves robot {robot} to other robots: it can never help it", robot = critical)
             }
             SafeCriticalDecision::Heal(CriticalSituation { critical, kind, luggage, to, .. }) => match kind {
                 CriticalKind::CarriesLuggage => {
                     record!(
-                        takes_over_luggage_on_board: "collects luggage {luggage} from robot {robot} and brings it to {to}",
+                        takes_over_luggage_on_board:
+                            "collects luggage {luggage} from robot {robot} and carries it to {to}",
                         luggage,
                         robot = critical,
                         to
@@ -219,18 +232,18 @@ impl Recordable for SafeCriticalDecision {
                 }
                 CriticalKind::OnTheWay => {
                     record!(
-                        takes_over_luggage: "brings luggage {luggage} to {to} in place of robot {robot}",
+                        takes_over_luggage: "carries luggage {luggage} to {to} in place of robot {robot}",
                         luggage,
                         to,
                         robot = critical
                     )
                 }
                 CriticalKind::Idle => {
-                    record!(finds_substitute: "finds a substitute for robot {robot}", robot = critical)
+                    record!(finds_substitute: "looks for a substitute for robot {robot}", robot = critical)
                 }
             },
             SafeCriticalDecision::Release(CriticalSituation { critical, .. }) => {
-                record!(withdraws_offer_to_help: "leaves robot {robot} to others", robot = critical)
+                record!(withdraws_offer_to_help: "withdraws its offer to help robot {robot}", robot = critical)
             }
             SafeCriticalDecision::Forget => record!(is_free: "is free again"),
             SafeCriticalDecision::StandIn { critical } => {
@@ -238,10 +251,10 @@ impl Recordable for SafeCriticalDecision {
             }
             SafeCriticalDecision::AskForSubstitute => record!(asks_for_substitute: "asks for a substitute"),
             SafeCriticalDecision::Awake { sleeper, robot } => {
-                record!(wakes_substitute: "awakes robot {sleeper} in place of robot {robot}", sleeper, robot)
+                record!(wakes_substitute: "wakes robot {sleeper} to stand in for robot {robot}", sleeper, robot)
             }
             SafeCriticalDecision::Rest { robot } => {
-                record!(substitute_found: "robot {robot} has its substitute", robot)
+                record!(substitute_found: "robot {robot} has a substitute", robot)
             }
         }
     }
@@ -259,17 +272,17 @@ impl Trouble {
 
     pub(super) const fn words(self) -> &'static str {
         match self {
-            Trouble::Breakdown => "broke down",
-            Trouble::Hardware => "has hardware that fails again and again",
-            Trouble::Battery => "has an empty battery",
+            Trouble::Breakdown => "breaks down",
+            Trouble::Hardware => "hardware keeps failing",
+            Trouble::Battery => "battery is empty",
         }
     }
 }
 
 pub(super) const fn doing(kind: CriticalKind) -> &'static str {
     match kind {
-        CriticalKind::CarriesLuggage => "with luggage",
-        CriticalKind::OnTheWay => "on its way to luggage",
-        CriticalKind::Idle => "without a job",
+        CriticalKind::CarriesLuggage => "while carrying luggage",
+        CriticalKind::OnTheWay => "while fetching luggage",
+        CriticalKind::Idle => "while idle",
     }
 }

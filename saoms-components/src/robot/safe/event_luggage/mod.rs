@@ -187,7 +187,7 @@ impl Loop for SafeEventLuggage {
                 let (Job { luggage, to, .. }, why) = (job, why.words());
                 context.log(
                     Level::Error,
-                    format_args!("cannot bring luggage {luggage} to {to} any more: {why}; needs assistance"),
+                    format_args!("cannot carry luggage {luggage} to {to} any more: {why}; needs assistance"),
                 );
                 (job, LuggageStage::GivenUp)
             }
@@ -254,12 +254,12 @@ impl SafeEventLuggage {
         let level = if std::mem::replace(&mut self.warned, true) { Level::Debug } else { Level::Warning };
         let Job { luggage, from, to } = *job;
         let full = knowledge.executions_when_full();
-        let what = format_args!("cannot bring luggage {luggage} from {from} to {to}");
+        let what = format_args!("cannot carry luggage {luggage} from {from} to {to}");
         match why {
             Hindrance::Others => context.log(level, format_args!("{what}: {}", why.words())),
             Hindrance::Battery | Hindrance::NoWay => context.log(
                 level,
-                format_args!("{what}: no way leads there and back within the {full} executions of a full battery"),
+                format_args!("{what}: no path there and back fits into the {full} executions of a full battery"),
             ),
         }
     }

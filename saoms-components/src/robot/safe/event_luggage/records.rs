@@ -112,9 +112,9 @@ pub enum Hindrance {
 impl Hindrance {
     pub(super) const fn words(self) -> &'static str {
         match self {
-            Hindrance::NoWay => "no way leads",
-            Hindrance::Battery => "no full battery lasts for the way",
-            Hindrance::Others => "others are in its way for ever",
+            Hindrance::NoWay => "no path leads there",
+            Hindrance::Battery => "a full battery does not last for the way",
+            Hindrance::Others => "other robots stay in its way",
         }
     }
 }
@@ -124,46 +124,50 @@ impl Recordable for SafeLuggageSymptom {
         match *self {
             SafeLuggageSymptom::Waiting { job: Job { luggage, from, .. }, distance, .. } => {
                 record!(
-                    luggage_waits: "luggage {luggage} waits at {from}, {distance} blocks away",
+                    luggage_waits: "luggage {luggage} waits at {from}, {distance} {distance:block|blocks} away",
                     luggage,
                     from,
                     distance
                 )
             }
             SafeLuggageSymptom::Alone(Job { luggage, .. }) => {
-                record!(no_other_offer_for_luggage: "no other robot is interested in luggage {luggage}", luggage)
+                record!(no_other_offer_for_luggage: "no other robot offers to carry luggage {luggage}", luggage)
             }
             SafeLuggageSymptom::Beaten { job: Job { luggage, .. }, by: Some(robot) } => {
                 record!(robot_closer_to_luggage: "robot {robot} is closer to luggage {luggage}", robot, luggage)
             }
             SafeLuggageSymptom::Beaten { job: Job { luggage, .. }, by: None } => {
                 record!(
-                    has_to_charge_despite_luggage: "has to charge, and said that it would bring luggage {luggage}",
+                    has_to_charge_despite_luggage: "has to charge, but has offered to carry luggage {luggage}",
                     luggage
                 )
             }
             SafeLuggageSymptom::Gone => record!(luggage_taken: "another robot takes the luggage"),
             SafeLuggageSymptom::CutOff { job: Job { luggage, .. }, to, .. } => {
                 record!(
-                    luggage_cut_off: "no way leads to {to} any more, where it has to go for luggage {luggage}",
+                    luggage_cut_off: "no path leads to {to} any more, where it has to go for luggage {luggage}",
                     to,
                     luggage
                 )
             }
             SafeLuggageSymptom::InVain(Job { luggage, .. }) => {
                 record!(
-                    luggage_blocked: "could not begin with luggage {luggage} for very long: others are in its way",
+                    luggage_blocked: "could not get to luggage {luggage} for a long time: other robots are in its way",
                     luggage
                 )
             }
             SafeLuggageSymptom::Stuck { job: Job { luggage, .. }, executions, .. } => record!(
-                stuck_with_luggage: "gets nowhere with luggage {luggage}: others have been in its way for {executions} executions",
+                stuck_with_luggage:
+                    "is stuck with luggage {luggage}: other robots have been in its way for {executions} \
+                     {executions:execution|executions}",
                 luggage,
                 executions
             ),
             SafeLuggageSymptom::TooFar { job: Job { luggage, .. }, to, .. } => {
                 record!(
-                    luggage_too_far: "turned back from the way to {to} again and again: no full battery lasts to bring luggage {luggage}",
+                    luggage_too_far:
+                        "turned back on its way to {to} again and again: a full battery does not last for luggage \
+                         {luggage}",
                     to,
                     luggage
                 )
@@ -176,26 +180,29 @@ impl Recordable for SafeLuggageDecision {
     fn record(&self) -> Record {
         match *self {
             SafeLuggageDecision::TakeInterest { job: Job { luggage, .. }, .. } => {
-                record!(offers_to_carry_luggage: "would bring luggage {luggage}, and asks who else would", luggage)
+                record!(offers_to_carry_luggage: "offers to carry luggage {luggage}", luggage)
             }
             SafeLuggageDecision::Postpone { needs, .. } => {
-                record!(charges_first: "charges first: that takes {needs} executions", needs)
+                record!(
+                    charges_first: "charges first: the battery has to last {needs} {needs:execution|executions}",
+                    needs
+                )
             }
             SafeLuggageDecision::Refuse { job: Job { luggage, .. }, .. } => {
-                record!(refuses_luggage: "leaves luggage {luggage} to others: it can never bring that", luggage)
+                record!(refuses_luggage: "leaves luggage {luggage} to other robots: it can never carry it", luggage)
             }
             SafeLuggageDecision::Take(Job { luggage, from, to }) => {
-                record!(takes_luggage: "brings luggage {luggage} from {from} to {to}", luggage, from, to)
+                record!(takes_luggage: "takes luggage {luggage} from {from} to {to}", luggage, from, to)
             }
             SafeLuggageDecision::Release(Job { luggage, .. }) => {
-                record!(withdraws_offer_for_luggage: "takes back its offer for luggage {luggage}", luggage)
+                record!(withdraws_offer_for_luggage: "withdraws its offer to carry luggage {luggage}", luggage)
             }
             SafeLuggageDecision::Forget => record!(looks_for_other_luggage: "looks for other luggage"),
             SafeLuggageDecision::Return(Job { luggage, .. }) => {
-                record!(leaves_luggage: "leaves luggage {luggage} to others", luggage)
+                record!(leaves_luggage: "leaves luggage {luggage} to other robots", luggage)
             }
             SafeLuggageDecision::GiveUp { job: Job { luggage, .. }, .. } => {
-                record!(gives_up_luggage: "gives luggage {luggage} up", luggage)
+                record!(gives_up_luggage: "gives up luggage {luggage}", luggage)
             }
         }
     }

@@ -44,7 +44,7 @@ impl Loop for MyPlugin {
     ) -> Result<Option<Record>, Failure> {
         let (battery, threshold) = (self.battery.get(knowledge)?, self.properties.threshold);
         let set = self.charge_at.get(knowledge)? == threshold;
-        Ok((!set).then(|| record!(would_charge_late: "has {battery} % left, and would charge late", battery)))
+        Ok((!set).then(|| record!(would_charge_late: "battery is at {battery} %, and it would charge too late", battery)))
     }
 
     fn plan(
