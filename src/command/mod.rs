@@ -10,6 +10,7 @@ mod graph;
 pub(crate) mod lsp;
 mod man;
 mod new;
+mod report;
 mod run;
 mod schema;
 mod why;
@@ -49,6 +50,7 @@ enum Command {
     Fmt(fmt::FmtArguments),
     Graph(graph::GraphArguments),
     Why(why::WhyArguments),
+    Report(report::ReportArguments),
     New(new::NewArguments),
     Schema(schema::SchemaArguments),
     Lsp(lsp::LspArguments),
@@ -67,6 +69,7 @@ pub(crate) fn execute() -> Exit {
         Command::Fmt(arguments) => fmt::fmt(&arguments),
         Command::Graph(arguments) => graph::graph(&arguments),
         Command::Why(arguments) => why::why(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
         Command::New(arguments) => new::new(&arguments),
         Command::Schema(arguments) => schema::schema(&arguments),
         Command::Lsp(arguments) => lsp::lsp(&arguments),

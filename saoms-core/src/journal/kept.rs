@@ -1,6 +1,8 @@
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use saoms_api::Cause;
+use saoms_api::host::Phase;
 use serde::{Deserialize, Serialize};
 
 use super::entry::Content;
@@ -51,11 +53,33 @@ pub struct LoopCounts {
     pub decisions: u64,
     /// Effects, including changes of the knowledge.
     pub effects: u64,
-    /// Decisions from which nothing followed: no effect, no message, no call.
-    pub without_effect: u64,
+    /// Decisions from which nothing followed: no effect, no message, no call. `None` where that was not noted: records
+    /// alone do not tell it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without_effect: Option<u64>,
 }
 
 impl LoopCounts {
+    /// The counts of these records, by component and loop in the order of their first record.
+    pub(super) fn of(entries: &[JournalEntry]) -> Vec<LoopCounts> {
+        let mut all: Vec<LoopCounts> = Vec::new();
+        let mut places = HashMap::new();
+        for entry in entries {
+            let place = *places.entry((entry.component(), entry.loop_name())).or_insert_with(|| {
+                let (component, loop_name) = (entry.component().to_owned(), entry.loop_name().map(str::to_owned));
+                all.push(LoopCounts { component, loop_name, ..LoopCounts::default() });
+                all.len() - 1
+            });
+            let counts = &mut all[place];
+            *match entry.phase() {
+                Phase::Symptom => &mut counts.symptoms,
+                Phase::Decision => &mut counts.decisions,
+                Phase::Effect => &mut counts.effects,
+            } += 1;
+        }
+        all
+    }
+
     /// All records together.
     pub fn records(&self) -> u64 {
         self.symptoms + self.decisions + self.effects
@@ -86,7 +110,7 @@ impl Journal {
                     symptoms: tally.symptoms,
                     decisions: tally.decisions,
                     effects: tally.effects,
-                    without_effect: tally.without_effect(),
+                    without_effect: Some(tally.without_effect()),
                 });
             }
             for batch in ring.batches() {

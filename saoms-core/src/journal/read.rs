@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::json::{in_order, time};
-use super::{Journal, JournalEntry};
+use super::{Journal, JournalEntry, LoopCounts};
 
 /// A component of the fleet, as journals name it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,6 +29,8 @@ impl ComponentName {
 pub struct JournalDocument {
     /// The records.
     pub journal: Journal,
+    /// The seed of the run; `None` where the file does not tell.
+    pub seed: Option<u64>,
     /// The components of the fleet, in document order.
     pub components: Vec<ComponentName>,
     /// End of the run; `None` if the run has not ended or was killed.
@@ -76,6 +78,8 @@ impl std::error::Error for JournalReadError {}
 /// The fields of a report that are read.
 #[derive(Deserialize)]
 struct Report {
+    #[serde(default)]
+    seed: Option<u64>,
     time_s: f64,
     components: Vec<ComponentName>,
     journal: Option<Journal>,
@@ -86,6 +90,8 @@ struct Report {
 struct Head {
     /// Version of the format.
     journal: u32,
+    #[serde(default)]
+    seed: Option<u64>,
     components: Vec<ComponentName>,
 }
 
@@ -126,7 +132,7 @@ fn report(text: &str) -> Result<JournalDocument, JournalReadError> {
     let report: Report = serde_json::from_str(text).map_err(|error| malformed(0, &error, REPORT))?;
     let journal = report.journal.ok_or(JournalReadError::NoJournal)?;
     let end = time(report.time_s).map_err(|wrong| incomplete(1, wrong.to_string()))?;
-    Ok(JournalDocument { journal, components: report.components, end: Some(end), is_report: true })
+    Ok(JournalDocument { journal, seed: report.seed, components: report.components, end: Some(end), is_report: true })
 }
 
 const REPORT: &str = "this is no whole report of `saoms run --report`, and no file of `saoms run --journal`";
@@ -164,12 +170,13 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
     let lost = newest - entries.len() as u64;
     let journal = Journal {
         records: newest.max(entries.len() as u64),
+        overwritten: 0,
         lost: end.as_ref().map_or(lost, |end| end.lost),
+        loops: LoopCounts::of(&entries),
         entries,
-        ..Journal::default()
     };
     let end = end.map(|end| time(end.time_s)).transpose().map_err(|wrong| incomplete(1, wrong.to_string()))?;
-    Ok(JournalDocument { journal, components: head.components, end, is_report: false })
+    Ok(JournalDocument { journal, seed: head.seed, components: head.components, end, is_report: false })
 }
 
 /// An error of the JSON parser, with its place in the whole text.

@@ -113,7 +113,7 @@ fn another_decision_for_the_same_reason_is_new() {
         symptoms,
         decisions,
         effects,
-        without_effect,
+        without_effect: Some(without_effect),
     };
     assert_eq!(
         report.journal.loops,
@@ -240,7 +240,7 @@ fn a_call_follows_from_what_its_caller_does() {
         "1 [0.000 s Asker - symptom: does not know]\n2 <- 1 [0.000 s Asker - decision: asks]\n\
          3 <- 2 [0.000 s Helper - effect: answers]\n"
     );
-    assert_eq!(report.journal.loops[0].without_effect, 0, "the call is what followed");
+    assert_eq!(report.journal.loops[0].without_effect, Some(0), "the call is what followed");
 }
 
 #[test]

@@ -109,7 +109,8 @@ fn advice(document: &JournalDocument) -> String {
     }
 }
 
-fn document(path: &Path) -> Result<JournalDocument, String> {
+/// The journal in a file, or in standard input for `-`.
+pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
     let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();

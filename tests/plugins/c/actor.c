@@ -20,7 +20,7 @@ extern void turn_the_wheels(void);
 
 typedef struct Actor {
     char at[32], does[32];
-    uint32_t publisher;
+    uint32_t publisher, executions;
 } Actor;
 
 
@@ -107,6 +107,14 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     uint8_t memory[64];
     SaomsBuffer message = saoms_writer(memory, sizeof memory);
     act(actor, "execute");
+    if (strcmp(actor->does, "record, then abort") == 0) {
+        SaomsRecordView record = {.text = saoms_text("it is hot")};
+        if (actor->executions++ == 0) {
+            host->functions->journal(host->state, 0, &record);
+        } else if (actor->executions > 5) {
+            abort();
+        }
+    }
     if (strcmp(actor->does, "speak") == 0) {
         saoms_log(host, SAOMS_INFO, "speaks");
     }

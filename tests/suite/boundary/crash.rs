@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 
 use super::build::c_library;
 use super::run::{component, in_folder, property};
-use crate::support::{PROGRAM, text};
+use crate::support::{PROGRAM, saoms_in, text};
 
 /// A second of virtual time with an actor that does this there, without a core dump.
 fn run(at: &str, does: &str) -> Output {
@@ -83,4 +83,19 @@ fn a_library_that_is_written_over_goes_on() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let left = fs::read_dir(folder.path()).unwrap().map(|one| one.unwrap().file_name()).collect::<Vec<_>>();
     assert_eq!(left.len(), 2, "the copy is gone: {left:?}");
+}
+
+#[test]
+fn the_report_of_a_crash_is_rebuilt_from_the_journal() {
+    let folder = in_folder(
+        &(component("Bad", "c.Actor", &(property("at", "execute") + &property("does", "record, then abort")))),
+    );
+    let library = c_library(folder.path(), &[]);
+    let mut run = Command::new(PROGRAM);
+    run.args(["run", "t.composite", "--for", "1h", "--journal", "journal.jsonl", "--plugin"]).arg(&library);
+    assert_eq!(run.current_dir(folder.path()).output().unwrap().status.signal(), Some(libc::SIGABRT));
+    let output = saoms_in(folder.path(), &["report", "--from-journal", "journal.jsonl"]);
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["journal"]["entries"][0]["text"], "it is hot", "{report:#}");
+    assert_eq!(report["components"][0]["name"], "Bad");
 }

@@ -12,6 +12,7 @@ mod options;
 mod outcomes;
 mod outputs;
 mod paths;
+mod report;
 mod schema;
 mod trust;
 mod usage;
