@@ -12,7 +12,8 @@ impl Status {
     pub const PANICKED: Status = Status(2);
     /// The reference is not wired; the text is its name.
     pub const NOT_WIRED: Status = Status(3);
-    /// The provider is in the middle of something; the text is its name.
+    /// The provider is in the middle of something; the text is its name. A component may answer with it, too: its
+    /// execution is skipped, its initialization and shutdown are tried again.
     pub const BUSY: Status = Status(4);
     /// The provider is not running; the text is its name.
     pub const NOT_RUNNING: Status = Status(5);

@@ -5,27 +5,54 @@ use crate::Finding;
 /// The reason why a component cannot continue, in words for the person who runs the fleet.
 ///
 /// The host adds the component's name and the time. What happens next is the `restart` policy of the composite.
+///
+/// A failure that says that a called component is [busy](Failure::busy_provider) is no fault: an execution that ends
+/// with it is skipped and counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
     message: String,
     findings: Vec<Finding>,
+    busy: Option<String>,
 }
 
 impl Failure {
     /// A failure with this message.
     pub fn new(message: impl Into<String>) -> Failure {
-        Failure { message: message.into(), findings: Vec::new() }
+        Failure { message: message.into(), findings: Vec::new(), busy: None }
     }
 
     /// For hosts: a failure with findings.
     #[doc(hidden)]
     pub fn with_findings(message: String, findings: Vec<Finding>) -> Failure {
-        Failure { message, findings }
+        Failure { message, findings, busy: None }
     }
 
     /// The message.
     pub fn message(&self) -> &str {
         &self.message
+    }
+
+    /// The same failure with the place where it occurred before its message.
+    ///
+    /// ```
+    /// use saoms_api::{CallError, Failure};
+    ///
+    /// let busy = Failure::from(CallError::Busy { provider: "Wheels1".to_owned() }).at("loop `battery`");
+    /// assert!(busy.message().starts_with("loop `battery`: component `Wheels1`"));
+    /// assert_eq!(busy.busy_provider(), Some("Wheels1"));
+    /// ```
+    #[must_use]
+    pub fn at(self, place: impl fmt::Display) -> Failure {
+        Failure { message: format!("{place}: {}", self.message), ..self }
+    }
+
+    /// The component that was busy when it was called, if that is the reason: its code was running, and calls never
+    /// wait. Failures made by `?` from [`CallError::Busy`] keep it.
+    ///
+    /// An execution that ends so is skipped and counted in the report as `busy`. What it sent before is sent; the
+    /// messages that it received come again with the next execution.
+    pub fn busy_provider(&self) -> Option<&str> {
+        self.busy.as_deref()
     }
 
     /// Findings of a constructor about values that do not fit together; see [`Finding`].
@@ -56,7 +83,13 @@ impl From<&str> for Failure {
 
 impl From<CallError> for Failure {
     fn from(error: CallError) -> Failure {
-        Failure::new(error.to_string())
+        let message = error.to_string();
+        let busy = match error {
+            CallError::Busy { provider } => Some(provider),
+            CallError::Failed { failure, .. } => failure.busy,
+            _ => None,
+        };
+        Failure { message, findings: Vec::new(), busy }
     }
 }
 
@@ -117,6 +150,10 @@ impl std::error::Error for CallError {}
 
 impl From<Failure> for CallError {
     fn from(failure: Failure) -> CallError {
+        // What a busy component could not do, its caller cannot do now either.
+        if let Some(provider) = failure.busy {
+            return CallError::Busy { provider };
+        }
         CallError::Failed { provider: String::new(), failure }
     }
 }

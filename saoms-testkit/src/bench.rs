@@ -10,7 +10,7 @@ use saoms_lang::registry::{RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
-use crate::stage::{Action, Stage};
+use crate::stage::{Action, Stage, Wire};
 
 /// One component without a fleet: a test sends it messages, and sees its messages and other output.
 ///
@@ -116,8 +116,22 @@ impl Bench {
     /// Wires one of its references to a service of another component, which has to be started before.
     #[must_use]
     pub fn wire(mut self, reference: &str, provider: Bench, service: &str) -> Bench {
-        self.stage.wires.push((reference.to_owned(), service.to_owned(), provider));
+        let (reference, service) = (reference.to_owned(), service.to_owned());
+        self.stage.wires.push(Wire { reference, service, provider, is_busy: false });
         self
+    }
+
+    /// Makes the provider of a wired reference busy, or free again: calls of a busy one are answered
+    /// [`CallError::Busy`].
+    ///
+    /// # Panics
+    /// No provider is wired to this reference.
+    #[expect(clippy::panic, reason = "a test that wires nothing has failed")]
+    pub fn set_busy(&mut self, reference: &str, is_busy: bool) {
+        match self.stage.wires.iter_mut().find(|wire| wire.reference == reference) {
+            Some(wire) => wire.is_busy = is_busy,
+            None => panic!("no provider is wired to the reference `{reference}`: call `wire` first"),
+        }
     }
 
     /// Initializes the component.
@@ -134,6 +148,9 @@ impl Bench {
 
     /// Executes the component once, with the messages that were delivered since the last execution.
     ///
+    /// An execution that fails because a called component is [busy](Bench::set_busy) is skipped, as in a fleet: that is
+    /// no error, the transcript says so, and its messages come again with the next execution.
+    ///
     /// # Errors
     /// Errors of the component, including panics; or it was not started.
     pub fn execute(&mut self) -> Result<(), Failure> {
@@ -141,16 +158,24 @@ impl Bench {
             return Err(Failure::new("this component was not started: call `start` first"));
         }
         let mut inboxes = vec![Vec::new(); self.stage.subscriptions.len()];
-        for (topic, message) in std::mem::take(&mut self.waiting) {
+        let messages = std::mem::take(&mut self.waiting);
+        for (topic, message) in &messages {
             for (inbox, subscription) in inboxes.iter_mut().zip(&self.stage.subscriptions) {
-                if subscription.name == topic {
+                if subscription.name == *topic {
                     inbox.push(message.clone());
                 }
             }
         }
         self.step = self.stage.actions.len();
         let (component, mut context) = (&mut self.component, Context::new(&mut self.stage, &inboxes));
-        let result = contained(|| component.execute(&mut context)).and_then(|result| result);
+        let mut result = contained(|| component.execute(&mut context)).and_then(|result| result);
+        if let Err(failure) = &result
+            && let Some(provider) = failure.busy_provider()
+        {
+            self.stage.skipped(provider);
+            self.waiting = messages;
+            result = Ok(());
+        }
         self.stage.end_of_execution();
         result
     }

@@ -21,12 +21,22 @@ pub(crate) enum Action {
     Journal(String),
     Report(String),
     Work(Work),
+    /// The execution was skipped, because the component of this name was busy.
+    Skipped(String),
 }
 
 /// A topic to which the component subscribed.
 pub(crate) struct BoundTopic {
     pub(crate) name: String,
     schema: Option<Schema>,
+}
+
+/// A reference of the component, and the service that it leads to.
+pub(crate) struct Wire {
+    pub(crate) reference: String,
+    pub(crate) service: String,
+    pub(crate) provider: Bench,
+    pub(crate) is_busy: bool,
 }
 
 pub(crate) struct Stage {
@@ -42,7 +52,7 @@ pub(crate) struct Stage {
     pub(crate) initializing: bool,
     pub(crate) publishers: Vec<BoundTopic>,
     pub(crate) subscriptions: Vec<BoundTopic>,
-    pub(crate) wires: Vec<(String, String, Bench)>,
+    pub(crate) wires: Vec<Wire>,
     pub(crate) actions: Vec<(Time, Action)>,
     pub(crate) report: Vec<(String, ReportValue)>,
     pub(crate) work: Option<Work>,
@@ -96,6 +106,10 @@ impl Stage {
     pub(crate) fn end_of_execution(&mut self) {
         self.execution += 1;
         self.now = self.now + self.period;
+    }
+
+    pub(crate) fn skipped(&mut self, provider: &str) {
+        self.log_action(Action::Skipped(provider.to_owned()));
     }
 
     fn log_action(&mut self, what: Action) {
@@ -161,6 +175,7 @@ impl Stage {
                 Action::Work(Work::Open) => writeln!(text, "has work left"),
                 Action::Work(Work::Done) => writeln!(text, "has no work left"),
                 Action::Work(Work::GivenUp) => writeln!(text, "gave up work"),
+                Action::Skipped(provider) => writeln!(text, "skipped: component `{provider}` is busy"),
             };
         }
         text
@@ -243,7 +258,7 @@ impl Host for Stage {
             return Err(Failure::new(format!("neither its class nor a loop declares the reference `{name}`")));
         }
         // A reference that is not wired has a handle, too.
-        let wired = self.wires.iter().position(|(reference, ..)| reference == name);
+        let wired = self.wires.iter().position(|wire| wire.reference == name);
         Ok(wired.unwrap_or(usize::from(u16::MAX)) as u32)
     }
 
@@ -253,7 +268,8 @@ impl Host for Stage {
 
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         match self.wires.get_mut(reference as usize) {
-            Some((_, service, provider)) => provider.serve(service, call),
+            Some(wire) if wire.is_busy => Err(CallError::Busy { provider: wire.reference.clone() }),
+            Some(wire) => wire.provider.serve(&wire.service, call),
             None => Err(CallError::NotWired { reference: reference.to_string() }),
         }
     }

@@ -45,6 +45,8 @@ pub struct Drive {
     motor: Motor,
     /// The robot's action that the world is running.
     in_world: Option<Action>,
+    /// Move for which the wheels have turned, and which the world has not begun yet.
+    at_edge: Option<Action>,
 }
 
 impl Component for Drive {
@@ -59,6 +61,7 @@ impl Component for Drive {
             block: Block::default(),
             motor: Motor::default(),
             in_world: None,
+            at_edge: None,
         })
     }
 
@@ -98,8 +101,10 @@ impl Drive {
     /// Stops the motor and the action in the world.
     fn stop(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
         self.motor.stop();
-        if self.in_world.take().is_some() {
+        self.at_edge = None;
+        if self.in_world.is_some() {
             self.world.cancel(context, robot)?;
+            self.in_world = None;
         }
         Ok(())
     }
@@ -137,9 +142,14 @@ impl Hardware for Drive {
                 context.warn(format_args!("jams in move {number}, from {} to {}", self.block, action.block));
                 return Ok(Progress::Failed);
             }
-            // The robot is at the edge of the block: the world decides if it can enter.
-            Turn::Through(action) => return self.begin_in_world(context, robot, action),
+            Turn::Through(action) => self.at_edge = Some(action),
             Turn::Rests => {}
+        }
+        if let Some(action) = self.at_edge {
+            // The world decides if the robot can enter the block. While it is busy the robot stays at the edge.
+            let progress = self.begin_in_world(context, robot, action)?;
+            self.at_edge = None;
+            return Ok(progress);
         }
         let Some(action) = self.in_world else { return Ok(Progress::Done) };
         let progress = self.world.poll(context, robot)?;
@@ -158,7 +168,7 @@ impl Hardware for Drive {
 
     fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
         self.motor.stop();
-        self.in_world = None;
+        (self.at_edge, self.in_world) = (None, None);
         // From now on other robots can reach the robot's block.
         Ok(if self.has_world { self.world.retire(context, robot)? } else { self.block })
     }

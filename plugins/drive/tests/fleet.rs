@@ -43,6 +43,24 @@ fn wheels_that_jam_now_and_then_only_take_longer() {
 }
 
 #[test]
+fn wheels_wait_at_the_edge_of_a_block_while_the_world_is_busy() {
+    let fleet = |second| {
+        Fleet::of_file("fleet.composite").set("jams", "0").set("wearsOutAfter", "1000000").slow(
+            "World",
+            Duration::from_secs(second),
+            Duration::from_millis(700),
+        )
+    };
+    for second in 1..=5 {
+        let run = fleet(second).run(1, Duration::from_secs(600));
+        assert_eq!(count(&run, "luggage", "delivered"), 2, "at {second} s: {}", run.log());
+        let robots = run.sections["robots"]["by_path"].as_object().unwrap();
+        assert!(robots.values().all(|robot| robot["state"] == "free"), "at {second} s: {robots:?}");
+        assert!(run.into_report().components.iter().all(|one| one.failures == 0), "at {second} s");
+    }
+}
+
+#[test]
 fn given_moves_jam() {
     let text = std::fs::read_to_string("fleet.composite").unwrap();
     let jams = "<property name=\"jamsAt\" many=\"true\"><value>2</value><value>5</value></property>";

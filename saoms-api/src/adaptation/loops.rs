@@ -23,7 +23,7 @@ struct Named {
 impl Named {
     /// Says whose failure it is.
     fn of_loop(&self, result: Result<(), Failure>) -> Result<(), Failure> {
-        result.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", self.name)))
+        result.map_err(|failure| failure.at(format_args!("loop `{}`", self.name)))
     }
 }
 

@@ -14,8 +14,12 @@ use super::convert::put_findings;
 #[inline]
 pub(super) unsafe fn guarded(error: Sink, code: impl FnOnce() -> Result<(), Failure>) -> Status {
     let failed = |failure: &Failure, status| {
+        let (text, status) = match failure.busy_provider() {
+            Some(provider) => (provider, Status::BUSY),
+            None => (failure.message(), status),
+        };
         // SAFETY: as the caller promises.
-        unsafe { put_failure(error, failure, status) }
+        unsafe { put_failure(error, text, status) }
     };
     let code = || match code() {
         Ok(()) => Status::OK,
@@ -27,9 +31,9 @@ pub(super) unsafe fn guarded(error: Sink, code: impl FnOnce() -> Result<(), Fail
 /// # Safety
 /// The sink's owner waits for this call.
 #[cold]
-unsafe fn put_failure(error: Sink, failure: &Failure, status: Status) -> Status {
+unsafe fn put_failure(error: Sink, text: &str, status: Status) -> Status {
     // SAFETY: as the caller promises.
-    unsafe { error.put(failure.message().as_bytes()) };
+    unsafe { error.put(text.as_bytes()) };
     status
 }
 
@@ -99,6 +103,7 @@ pub(super) fn outcome(status: Status, error: &[u8]) -> Result<(), Failure> {
 fn failure(status: Status, error: &[u8]) -> Failure {
     let message = String::from_utf8_lossy(error);
     match (status, message.is_empty()) {
+        (Status::BUSY, _) => CallError::Busy { provider: message.into_owned() }.into(),
         (_, false) => Failure::new(message),
         (Status::FAILED, true) => Failure::new("failed without a message"),
         (Status::PANICKED, true) => Failure::new("panicked without a message"),

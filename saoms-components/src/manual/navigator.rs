@@ -62,8 +62,8 @@ impl Component for Navigator {
         let share = if distance > step { step / distance } else { 1.0 };
         match self.robot.move_by(context, Point { x: x * share, y: y * share }) {
             Ok(place) => self.place = place,
-            // The call is repeated in the next period.
-            Err(CallError::Busy { .. } | CallError::NotRunning { .. }) => return Ok(()),
+            // The call is repeated in the next period, as it is by `?` where the robot is busy.
+            Err(CallError::NotRunning { .. }) => return Ok(()),
             Err(error) => return Err(error.into()),
         }
         if distance <= step {

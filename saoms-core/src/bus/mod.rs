@@ -133,6 +133,18 @@ impl Bus {
         self.topics[subscription.topic.0 as usize].collect(&mut subscription.reader, inbox)
     }
 
+    /// Puts back what the last [`collect`](Bus::collect) put into an inbox. Events stay in the inbox, since their topic
+    /// does not keep them; of a state topic the next collection has the newest messages. Returns the number of messages
+    /// that left the inbox.
+    pub fn put_back(&mut self, subscription: &mut TopicReader, inbox: &mut Vec<SharedMessage>) -> u64 {
+        if !subscription.reader.put_back() {
+            return 0;
+        }
+        let back = inbox.len() as u64;
+        inbox.clear();
+        back
+    }
+
     /// Resets a reader: on a state topic it gets all retained messages again, on an event topic it has lost none.
     pub fn rewind(&mut self, subscription: &mut TopicReader) {
         subscription.reader.rewind();

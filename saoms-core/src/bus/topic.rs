@@ -29,16 +29,27 @@ enum Store {
 /// A reader's place in a topic.
 #[derive(Debug)]
 pub(super) enum ReadPosition {
-    /// In a state topic: number of the last change that was read.
-    State(u64),
+    /// In a state topic: numbers of the last change that was read, and of that before the last collection.
+    State { read: u64, before: u64 },
     /// In an event topic: its place among the readers.
     Event(u32),
 }
 
 impl ReadPosition {
     pub(super) fn rewind(&mut self) {
-        if let ReadPosition::State(read) = self {
+        if let ReadPosition::State { read, .. } = self {
             *read = 0;
+        }
+    }
+
+    /// Undoes the last collection, in a state topic.
+    pub(super) fn put_back(&mut self) -> bool {
+        match self {
+            ReadPosition::State { read, before } => {
+                *read = *before;
+                true
+            }
+            ReadPosition::Event(_) => false,
         }
     }
 }
@@ -105,7 +116,7 @@ impl BusTopic {
 
     pub(super) fn reader(&mut self, queue: usize) -> ReadPosition {
         match &mut self.store {
-            Store::State(_) => ReadPosition::State(0),
+            Store::State(_) => ReadPosition::State { read: 0, before: 0 },
             Store::Event(log) => ReadPosition::Event(log.join(queue)),
         }
     }
@@ -143,7 +154,8 @@ impl BusTopic {
     #[inline]
     pub(super) fn collect(&mut self, reader: &mut ReadPosition, inbox: &mut Vec<SharedMessage>) -> u64 {
         match (&mut self.store, reader) {
-            (Store::State(table), ReadPosition::State(read)) => {
+            (Store::State(table), ReadPosition::State { read, before }) => {
+                *before = *read;
                 table.collect(read, inbox);
                 0
             }

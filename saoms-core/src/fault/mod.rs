@@ -62,7 +62,8 @@ pub enum TaskFaultKind {
     Fails,
     /// It panics.
     Panics,
-    /// It takes longer by this duration, on the machine's clock.
+    /// It takes longer by this duration: on the machine's clock, or in virtual time on that of the run. Meanwhile it is
+    /// busy for callers, and its due executions are late.
     Stalls(Duration),
 }
 

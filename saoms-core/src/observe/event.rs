@@ -73,6 +73,12 @@ pub enum Occurrence {
         /// Number of executions left out.
         missed: u64,
     },
+    /// A component that it called was busy: its execution is skipped, its start or shutdown tried again. Reported once
+    /// for each row of such executions.
+    Busy {
+        /// The component that was called.
+        provider: Arc<str>,
+    },
     /// The component did not end in time and was abandoned.
     Abandoned,
     /// Nothing has happened for a long time, although work is left.
@@ -99,6 +105,7 @@ impl Occurrence {
             Occurrence::Failed { .. }
             | Occurrence::Restarted { .. }
             | Occurrence::Slow { .. }
+            | Occurrence::Busy { .. }
             | Occurrence::Standstill(_)
             | Occurrence::Dropped { .. } => Level::Warning,
         }
@@ -131,6 +138,9 @@ impl fmt::Display for Occurrence {
             ),
             Occurrence::Dropped { topic, count } => {
                 write!(formatter, "lost {count} messages of topic `{topic}`, whose queue was full")
+            }
+            Occurrence::Busy { provider } => {
+                write!(formatter, "component `{provider}`, which it calls, is busy: tries again in each period")
             }
             Occurrence::Overrun { missed } => {
                 write!(formatter, "stopped, because executions could not start in time: {missed} would be left out")

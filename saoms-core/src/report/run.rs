@@ -83,6 +83,9 @@ pub struct ComponentReport {
     pub deadline_misses: u64,
     /// Number of executions that took longer than the watchdog's budget.
     pub slow: u64,
+    /// Number of executions that were skipped, because a component that it called was busy.
+    #[serde(default)]
+    pub busy: u64,
     /// Number of new instances that replaced a failed one.
     pub restarts: u32,
     /// Number of replacements by a new build of its class (`saoms run --reload`).

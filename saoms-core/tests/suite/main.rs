@@ -4,6 +4,7 @@
 
 mod actor;
 mod bus;
+mod busy;
 mod change;
 mod chaos;
 mod endings;

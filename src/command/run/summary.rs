@@ -70,6 +70,7 @@ fn problem_lines(components: &[ComponentReport]) -> String {
             (one.failures, "failure", ""),
             (one.deadline_misses, "execution", " ended after the deadline"),
             (one.slow, "execution", " took longer than the budget"),
+            (one.busy, "execution", " skipped, as a component that it calls was busy"),
         ];
         let lines: Vec<String> = counts
             .iter()

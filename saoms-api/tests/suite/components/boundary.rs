@@ -68,6 +68,13 @@ impl Busy {
     fn panic_in(&self, place: &str) {
         assert!(self.properties.panics != place, "no more of {place}");
     }
+
+    fn find_busy(&self) -> Result<(), Failure> {
+        match self.properties.panics.strip_prefix("finds busy ") {
+            Some(provider) => Err(CallError::Busy { provider: provider.to_owned() }.into()),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Component for Busy {
@@ -98,6 +105,7 @@ impl Component for Busy {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.panic_in("execute");
+        self.find_busy()?;
         let times = (context.now(), context.due(), context.execution(), context.period(), context.date());
         let (cancelled, random, cause) = (context.cancelled(), context.chance().next_u64(), context.cause());
         context.log(Level::Debug, format_args!("{times:?} {cancelled} {random} {cause:?}"));
@@ -137,6 +145,7 @@ impl Component for Busy {
 impl Adder for Busy {
     fn add(&mut self, _: &mut Context<'_>, one: u32, other: u32) -> Result<u32, Failure> {
         self.panic_in("add");
+        self.find_busy()?;
         if one == other { Err("they are equal".into()) } else { Ok(one + other) }
     }
 }
@@ -223,6 +232,21 @@ fn panics_and_refusals_are_failures() {
     let mut call = TypedCall::<(u32, u32), u32>::new(7, (1, 2));
     let error = busy.serve(&mut Invocation { service: "adder", call: &mut call }, &mut Context::new(&mut host, &[]));
     assert!(matches!(error, Err(CallError::Mismatch { .. })), "{error:?}");
+}
+
+#[test]
+fn that_a_provider_is_busy_goes_through_executions_and_calls() {
+    for construct in [linked, imported] as [Construct; 2] {
+        let mut host = FakeHost::new();
+        let mut busy = construct(&values("finds busy Wheels1")).unwrap();
+        let failure = busy.execute(&mut Context::new(&mut host, &[])).unwrap_err();
+        assert_eq!(failure.busy_provider(), Some("Wheels1"));
+        assert_eq!(failure.message(), "component `Wheels1` is in the middle of an execution and cannot be called");
+        let mut call = TypedCall::<(u32, u32), u32>::new(0, (1, 2));
+        let mut invocation = Invocation { service: "adder", call: &mut call };
+        let error = busy.serve(&mut invocation, &mut Context::new(&mut host, &[])).unwrap_err();
+        assert_eq!(error, CallError::Busy { provider: "Wheels1".to_owned() });
+    }
 }
 
 /// Knowledge of a lamp.

@@ -46,6 +46,8 @@ pub(crate) struct Part {
     pub(crate) execution: u64,
     pub(crate) period: u64,
     pub(crate) initializing: bool,
+    /// True if a shutdown that finds another component busy is tried again.
+    pub(crate) retries_shutdown: bool,
     /// The fault of the present execution.
     pub(crate) fault: Option<TaskFaultKind>,
     /// Records for the journal.
@@ -94,6 +96,7 @@ impl Body {
             execution: 0,
             period,
             initializing: false,
+            retries_shutdown: false,
             fault: None,
             recorder: Recorder::default(),
             spec,
@@ -121,6 +124,13 @@ impl Body {
             Job::Start => self.start(shared),
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };
+        if let Err(failure) = &result
+            && self.part.busy_provider(failure).is_some()
+            && (job == Job::Execute || job == Job::Shutdown && self.part.retries_shutdown)
+        {
+            // The instance tries again, with the same messages.
+            return result;
+        }
         for inbox in &mut self.inboxes {
             inbox.clear();
         }
@@ -205,6 +215,12 @@ fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
 }
 
 impl Part {
+    /// The other component whose code was running when this one called it, if that is why it failed. A component that
+    /// finds itself busy is part of a cycle of calls, and never becomes free.
+    pub(crate) fn busy_provider<'a>(&self, failure: &'a Failure) -> Option<&'a str> {
+        failure.busy_provider().filter(|provider| **provider != *self.name)
+    }
+
     /// Names the loop whose code panicked, if it was one.
     #[cold]
     fn of_loop(&self, panic: Failure) -> Failure {

@@ -31,7 +31,7 @@ pub(crate) fn call(
         drop(engine);
         return task(shared, caller, provider, call);
     }
-    let mut body = engine.begin_call(provider, caller.held)?;
+    let mut body = engine.begin_call(provider, caller)?;
     shared.release(engine);
     let own = (body.part.now, body.part.due);
     (body.part.now, body.part.due) = (caller.now, caller.due);
@@ -100,13 +100,13 @@ impl Engine {
 
     /// Takes a component's body to serve a call. An instance that is not committed serves only others of the same
     /// change.
-    fn begin_call(&mut self, index: u32, is_held: bool) -> Result<Box<Body>, CallError> {
+    fn begin_call(&mut self, index: u32, caller: &Part) -> Result<Box<Body>, CallError> {
         let slot = &mut self.slots[index as usize];
         let provider = || slot.name.to_string();
         if !slot.is_alive() {
             return Err(CallError::NotRunning { provider: provider() });
         }
-        let Some(body) = slot.body.take_if(|_| is_held || !slot.held) else {
+        let Some(body) = slot.body.take_if(|_| (caller.held || !slot.held) && caller.now >= slot.busy_until) else {
             return Err(CallError::Busy { provider: provider() });
         };
         self.out += 1;

@@ -6,9 +6,11 @@ use saoms_api::{Chance, Failure, Time};
 use super::overrun::Decision;
 use super::slot::{PendingRequest, SlotState};
 use super::{Engine, RunPhase};
+use crate::fault::TaskFaultKind;
 use crate::hash::fold;
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
+use crate::schedule::settings::nanos;
 
 impl Engine {
     /// The job of a component that is due.
@@ -23,6 +25,11 @@ impl Engine {
             }
             SlotState::Active if now < slot.due => {
                 let when = slot.due.min(slot.until);
+                self.enqueue(index, when);
+                None
+            }
+            SlotState::Active if now < slot.busy_until => {
+                let when = slot.busy_until;
                 self.enqueue(index, when);
                 None
             }
@@ -56,7 +63,11 @@ impl Engine {
         body.part.now = now;
         match job {
             Job::Execute => self.begin_execution(index, &mut body, now),
-            Job::Shutdown => body.part.due = now,
+            Job::Shutdown => {
+                body.part.due = now;
+                // At the end of a run no code runs any more that could become free, unless that of another component.
+                body.part.retries_shutdown = self.phase != RunPhase::Stopping || self.out > 1;
+            }
             Job::Ask => {}
             Job::Start => {
                 let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
@@ -85,6 +96,10 @@ impl Engine {
         part.due = due;
         if !self.faults.is_empty() {
             part.fault = self.faults.take_of_execution(&slot.name, Time::from_nanos(now));
+            if let (Some(TaskFaultKind::Stalls(time)), false) = (part.fault, self.real) {
+                part.fault = None;
+                slot.busy_until = now.saturating_add(nanos(time));
+            }
         }
         part.execution = slot.execution;
         slot.execution += 1;
@@ -93,6 +108,10 @@ impl Engine {
         self.executions.store(self.executions.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
         let mut lost = None;
         for (subscription, inbox) in part.subscriptions.iter_mut().zip(&mut body.inboxes) {
+            if !inbox.is_empty() {
+                // Events of an execution that was skipped: what came since waits in the queue.
+                continue;
+            }
             let missing = self.bus.collect(subscription, inbox);
             slot.statistics.received += inbox.len() as u64;
             if missing > 0 {
@@ -137,6 +156,9 @@ impl Engine {
             }
         }
         match result {
+            Err(failure) if self.tries_again(index, job, &failure, &body.part) => {
+                self.skip(index, body, job, &failure, ended);
+            }
             Err(failure) => {
                 self.fail(index, &mut body, job, failure, ended);
                 self.slots[index as usize].body = Some(body);
@@ -170,13 +192,15 @@ impl Engine {
     /// Notes that a body has returned. At the end of a run the timer may wait for it.
     pub(crate) fn note_return(&mut self) {
         self.out -= 1;
+        self.ending.extend(self.ending_later.drain(..));
         self.has_returned |= self.awaited > 0;
         self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
     }
 
-    fn executed(&mut self, index: u32, now: u64) {
+    pub(super) fn executed(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.waiting = false;
+        slot.skipping = false;
         if self.phase == RunPhase::Running && slot.pending == PendingRequest::None {
             let when = slot.due.min(slot.until).max(now);
             self.enqueue(index, when);

@@ -229,7 +229,7 @@ impl Engine {
     }
 
     /// Removes a failed instance from its topics, but keeps its read positions for the next instance.
-    fn keep_subscriptions(&mut self, body: &mut Body) {
+    pub(super) fn keep_subscriptions(&mut self, body: &mut Body) {
         for topic in body.part.publishers.drain(..) {
             self.bus.unpublish(topic);
         }

@@ -1,5 +1,6 @@
 //! The state of a run and every change to it. The engine runs no component code and starts no thread.
 
+mod busy;
 mod delivery;
 pub(super) mod ending;
 mod execution;
@@ -61,6 +62,8 @@ pub(crate) struct Engine {
     pub(crate) has_returned: bool,
     /// Components that still have to shut down, once the run ends.
     pub(crate) ending: VecDeque<u32>,
+    /// Those that found another component busy: they follow when some code returns.
+    pub(crate) ending_later: Vec<u32>,
     /// Messages from outside, and those that faults hold up.
     pub(crate) injections: Injections,
     /// The newest records of messages from outside.
@@ -151,6 +154,7 @@ impl Engine {
             awaited: 0,
             has_returned: false,
             ending: VecDeque::new(),
+            ending_later: Vec::new(),
             injections: Injections::default(),
             outside: OutsideRing::default(),
             record_ids: Arc::default(),

@@ -47,6 +47,7 @@ impl Engine {
                     late_us: if self.real { statistics.late.summary() } else { LatenessSummary::default() },
                     deadline_misses: statistics.deadline_misses,
                     slow: statistics.slow,
+                    busy: statistics.busy,
                     restarts: slot.restarts,
                     replaced: slot.statistics.replaced,
                     failures: statistics.failures,

@@ -41,6 +41,10 @@ pub(crate) struct Slot {
     pub(crate) queued: bool,
     /// True if messages were lost in its last period.
     pub(crate) dropping: bool,
+    /// True if its last execution was skipped, because a component that it called was busy.
+    pub(crate) skipping: bool,
+    /// In virtual time, the end of an execution that a fault makes longer.
+    pub(crate) busy_until: u64,
     pub(crate) isolation: Isolation,
     pub(crate) policy: TaskPolicy,
     /// True if it sees work left; `None` if it did not vote.
@@ -173,6 +177,7 @@ pub(crate) struct Statistics {
     pub(crate) missed: u64,
     pub(crate) deadline_misses: u64,
     pub(crate) slow: u64,
+    pub(crate) busy: u64,
     pub(crate) failures: u64,
     pub(crate) replaced: u32,
     pub(crate) dropped: u64,
@@ -202,6 +207,8 @@ impl Slot {
             waiting: false,
             queued: false,
             dropping: false,
+            skipping: false,
+            busy_until: 0,
             isolation: Isolation::default(),
             policy,
             sees_work: None,

@@ -22,6 +22,7 @@ pub(crate) enum TraceStep {
     Failed = 3,
     Voted = 4,
     GaveUp = 5,
+    Skipped = 6,
 }
 
 impl Trace {
