@@ -21,7 +21,7 @@ pub struct Expect<'r> {
 #[derive(Clone, Debug)]
 pub struct Moment<'r> {
     of: Expect<'r>,
-    /// Words by which the event was found.
+    /// Words or id by which the event was found.
     words: String,
     /// Index among the events of the component.
     place: usize,
@@ -34,7 +34,16 @@ struct LoggedLine {
     time: Time,
     /// Number of a record.
     number: Option<Cause>,
+    /// Id of a record.
+    id: Option<String>,
     text: String,
+}
+
+impl LoggedLine {
+    /// True if the words are part of its text, or its id.
+    fn is(&self, words: &str) -> bool {
+        self.text.contains(words) || self.id.as_deref() == Some(words)
+    }
 }
 
 /// A point in time of a run: a [`Moment`], or the [time](Duration) since the start.
@@ -77,13 +86,14 @@ impl<P: PointInTime> PointInTime for &P {
 
 impl Run {
     /// Expectations about a component, by its path: about the records of its loops in the journal, and about its log.
+    /// An event is found by words of its text, or by the id of its record, which stays when the text is reworded.
     ///
     /// ```
     /// use std::time::Duration;
     /// use saoms_testkit::Fleet;
     ///
     /// let run = Fleet::of_file("../composites/hall.composite").run(7, Duration::from_secs(60));
-    /// let takes = run.expect("Robot7").to("takes luggage 1");
+    /// let takes = run.expect("Robot7").to("takes_luggage");
     /// let collects = run.expect("Robot7").to("collects luggage 1").after(&takes);
     /// collects.because("is at (3,1), where luggage 1 waits").before(Duration::from_secs(10));
     /// run.expect("Robot7").never_to("breaks down");
@@ -112,7 +122,7 @@ impl<'r> Expect<'r> {
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn to(self, words: &str) -> Moment<'r> {
         let all = self.logged();
-        let place = all.iter().position(|logged| logged.text.contains(words));
+        let place = all.iter().position(|logged| logged.is(words));
         let Some(place) = place else { panic!("{} did not do `{words}`; {}", self.component, did(&all)) };
         Moment { of: self, words: words.to_owned(), place, record: all[place].clone() }
     }
@@ -125,7 +135,7 @@ impl<'r> Expect<'r> {
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn never_to(self, words: &str) {
         let all = self.logged();
-        if let Some(logged) = all.iter().find(|logged| logged.text.contains(words)) {
+        if let Some(logged) = all.iter().find(|logged| logged.is(words)) {
             panic!("{} did `{words}`: {} {}", self.component, logged.time, logged.text);
         }
         self.all_known();
@@ -138,7 +148,7 @@ impl<'r> Expect<'r> {
     #[track_caller]
     pub fn count(self, words: &str) -> usize {
         self.all_known();
-        self.logged().iter().filter(|logged| logged.text.contains(words)).count()
+        self.logged().iter().filter(|logged| logged.is(words)).count()
     }
 
     #[track_caller]
@@ -150,9 +160,14 @@ impl<'r> Expect<'r> {
     /// All events in order. An event that is both in the journal and in the log is there twice.
     fn logged(self) -> Vec<LoggedLine> {
         let entries = self.run.journal().of(self.component);
-        let entries =
-            entries.iter().map(|entry| LoggedLine { time: entry.time(), number: Some(entry.id()), text: entry.text() });
-        let lines = self.run.log_lines(self.component).map(|(time, text)| LoggedLine { time, number: None, text });
+        let entries = entries.iter().map(|entry| LoggedLine {
+            time: entry.time(),
+            number: Some(entry.id()),
+            id: Some(entry.record_id().to_owned()),
+            text: entry.text(),
+        });
+        let lines = self.run.log_lines(self.component);
+        let lines = lines.map(|(time, text)| LoggedLine { time, number: None, id: None, text });
         let mut all: Vec<LoggedLine> = entries.chain(lines).collect();
         all.sort_by_key(|logged| logged.time);
         all
@@ -190,7 +205,7 @@ impl<'r> Moment<'r> {
     #[expect(clippy::panic, reason = "a test whose expectation is not met has failed")]
     pub fn again(&self) -> Moment<'r> {
         let all = self.of.logged();
-        let next = all.iter().skip(self.place + 1).position(|logged| logged.text.contains(&self.words));
+        let next = all.iter().skip(self.place + 1).position(|logged| logged.is(&self.words));
         match next {
             Some(next) => {
                 let place = self.place + 1 + next;
@@ -241,7 +256,7 @@ impl<'r> Moment<'r> {
             panic!("{self} is a line of the log, of which no reasons are known: ask for a record of the journal");
         };
         let (reasons, lost) = journal.reasons(entry);
-        if !reasons.iter().any(|reason| reason.text().contains(words)) {
+        if !reasons.iter().any(|reason| reason.text().contains(words) || reason.record_id() == words) {
             let known: String = reasons.iter().map(|reason| format!("\n  {reason}")).collect();
             let lost = lost.map_or("", |_| "\n  and from what was overwritten");
             panic!("{self} does not follow from `{words}`, but from{known}{lost}");

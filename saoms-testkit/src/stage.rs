@@ -1,5 +1,6 @@
 //! The host of a component on a [`Bench`].
 
+use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
 use std::sync::Arc;
 use std::time::Duration;
@@ -54,6 +55,8 @@ pub(crate) struct Stage {
     pub(crate) subscriptions: Vec<BoundTopic>,
     pub(crate) wires: Vec<Wire>,
     pub(crate) actions: Vec<(Time, Action)>,
+    /// The text of each record by loop, phase and id.
+    texts: BTreeMap<(Option<u32>, &'static str, &'static str), &'static str>,
     pub(crate) report: Vec<(String, ReportValue)>,
     pub(crate) work: Option<Work>,
     pub(crate) gave_up: bool,
@@ -93,6 +96,7 @@ impl Stage {
             subscriptions: Vec::new(),
             wires: Vec::new(),
             actions: Vec::new(),
+            texts: BTreeMap::new(),
             report: Vec::new(),
             work: None,
             gave_up: false,
@@ -308,6 +312,13 @@ impl Host for Stage {
     }
 
     fn journal(&mut self, phase: Phase, record: &Record) {
+        let (id, text) = (record.id(), record.text());
+        let known = *self.texts.entry((self.acting, phase.name(), id)).or_insert(text);
+        assert!(
+            known == text,
+            "the record `{id}` has two texts, `{known}` and `{text}`: give one of them another id; with the same values \
+             the journal takes one for a repetition of the other"
+        );
         let line = format!("{}{}: {record}", self.acting(), phase.name());
         self.log_action(Action::Journal(line));
     }

@@ -4,4 +4,5 @@
 
 mod busy;
 mod comply;
+mod records;
 mod run;
