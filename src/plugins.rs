@@ -48,7 +48,8 @@ impl ClassPath for CommandClasses<'_> {
         let told = unasked.into_iter().map(|path| {
             let path = path.display();
             let text = format!(
-                "plugin `{path}` was found and not named: its rules do not judge the fleet; `--plugin {path}` lets its code run"
+                "plugin `{path}` was found, but no option names it: its rules do not check the fleet; add `--plugin \
+                {path}` to let its code run"
             );
             PluginFault { is_error: false, text }
         });

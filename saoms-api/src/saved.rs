@@ -62,15 +62,17 @@ impl Saved {
             return Ok(None);
         }
         let Form { schema, message } = cdr::decode(&self.bytes)
-            .map_err(|error| Failure::new(format!("what was saved cannot be read: {error}")))?;
+            .map_err(|error| Failure::new(format!("the saved state cannot be read: {error}")))?;
         if schema != M::SCHEMA {
             return Err(Failure::new(format!(
-                "the earlier build saved {schema}, this one reads {}: read what it saved, or save nothing and start \
-                 the fleet anew",
+                "the earlier build saved {schema}, but this one reads {}: read the old form, or save nothing and \
+                restart the fleet",
                 M::SCHEMA
             )));
         }
-        cdr::decode(&message).map(Some).map_err(|error| Failure::new(format!("what was saved cannot be read: {error}")))
+        cdr::decode(&message)
+            .map(Some)
+            .map_err(|error| Failure::new(format!("the saved state cannot be read: {error}")))
     }
 }
 

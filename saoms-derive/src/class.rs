@@ -56,7 +56,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
         }
     });
     let presets = declared.also.iter().flat_map(|also| &also.presets).map(|(name, _, span)| {
-        let message = format!("`also` presets `{name}`, which is no property of the component");
+        let message = format!("`also` presets `{name}`, which is not a property of the component");
         quote_spanned! {*span=>
             const _: () = ::core::assert!(::saoms_api::generated::contains(<#properties>::NAMES, #name), #message);
         }
@@ -73,7 +73,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
         (None, _) => declared.base.iter().map(Base::loops).collect(),
         (Some(loops), Some(knowledge)) => loops.registrations(&properties, knowledge),
         (Some(_), None) => {
-            let message = "a class with loops says what they work on: `knowledge = RobotKnowledge`";
+            let message = "a class with loops needs their knowledge: `knowledge = RobotKnowledge`";
             return Err(Error::new_spanned(&declared.name, message));
         }
     };
@@ -158,7 +158,7 @@ impl Declared {
                 self.periodic = Some((word == "periodic", meta.path.span()));
             }
             "periodic" | "passive" => {
-                return Err(meta.error("a component is either `periodic` or `passive`, said once"));
+                return Err(meta.error("a component is either `periodic` or `passive`: write one of them once"));
             }
             "publishes" => self.publishes.extend(paths(meta.input)?),
             "subscribes" => self.subscribes.extend(paths(meta.input)?),
@@ -175,7 +175,7 @@ impl Declared {
             "reference" => self.references.push(parts::parse_reference(meta.input, &self.references)?),
             "knowledge" if self.knowledge.is_none() => self.knowledge = Some(meta.value()?.parse()?),
             "loops" if self.loops.is_none() => self.loops = Some(DefaultLoops::of(meta.input)?),
-            "knowledge" | "loops" => return Err(meta.error("this is said already")),
+            "knowledge" | "loops" => return Err(meta.error("this is given already")),
             "also" => {
                 let list;
                 parenthesized!(list in meta.input);

@@ -47,7 +47,7 @@ pub(crate) fn knowledge(input: &DeriveInput) -> Result<TokenStream> {
     }
     let ident = &input.ident;
     let Some(name) = name else {
-        let message = "expected `#[knowledge(name = \"...\")]`: the name by which loops say what they work on";
+        let message = "expected `#[knowledge(name = \"...\")]`: the name by which loops refer to it";
         return Err(Error::new_spanned(ident, message));
     };
     let extras = extras(input)?;

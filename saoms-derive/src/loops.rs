@@ -85,7 +85,7 @@ impl DefaultLoops {
         }
         let property = self.property.iter().map(|property| {
             let message =
-                format!("`loops` are chosen by `{}`, which is no property of the component", property.value());
+                format!("`loops` are chosen by `{}`, which is not a property of the component", property.value());
             quote_spanned! {property.span()=>
                 ::core::assert!(::saoms_api::generated::contains(<#properties>::NAMES, #property), #message);
             }

@@ -313,7 +313,7 @@ impl<'a> Property<'a> {
             return quote!(#(const _: #of = #literals;)*);
         }
         let default = self.default.iter().map(|(default, text)| {
-            let message = format!("the default of property `{name}` is no value that the property allows");
+            let message = format!("the property `{name}` does not allow its default");
             quote_spanned! {default.span()=>
                 ::core::assert!(
                     ::saoms_api::generated::default_fits(&RULE, #text, DEFAULT),

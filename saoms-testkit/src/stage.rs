@@ -290,7 +290,7 @@ impl Host for Stage {
     }
 
     fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn saoms_api::host::DynLoop>, Failure> {
-        self.loops.get(place as usize).ok_or("there are not so many loops")?.construct(&[])
+        self.loops.get(place as usize).ok_or("there are fewer loops")?.construct(&[])
     }
 
     fn name_loop(&mut self, place: u32, name: &str) {

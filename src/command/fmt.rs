@@ -111,7 +111,7 @@ fn one(path: &Path, arguments: &FmtArguments) -> Outcome {
         // What links lead to is replaced, not the link.
         (false, false) => match Place::of(path) {
             Ok(Place::File(path)) => replace(&path, |to| write!(to, "{formatted}")),
-            Ok(_) => Err(io::Error::other("it is no regular file")),
+            Ok(_) => Err(io::Error::other("it is not a regular file")),
             Err(error) => Err(error),
         },
     };

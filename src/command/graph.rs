@@ -14,11 +14,10 @@ use crate::arguments::FleetArguments;
 use crate::fleet::{compiled, files_read};
 use crate::output::{Asked, Outputs, displayed, eprint, eprint_coloured};
 
-const EXIT_CODES: &str = "\
-Exit codes:
+const EXIT_CODES: &str = "Exit codes:
   0  drawn, also where the composite has mistakes: what is missing is drawn so
   1  the picture could not be written
-  2  the file cannot be read or is no composite, nothing says the format, or the picture would be written over a
+  2  the file cannot be read or is not a composite, the format is missing, or the picture would overwrite a
      file that was read";
 
 /// Draw composites: components, services, references, properties, wires, promotions, topics
@@ -52,7 +51,8 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let picture = match (arguments.format, path) {
         (Some(format), Some(path)) if by_ending(path).is_some_and(|other| other != format) => {
             eprint(&format!(
-                "error: `--format` says another format than the ending of `{}`\n  = help: leave it out, or give the file another ending\n",
+                "error: `--format` differs from the ending of `{}`\n  = help: remove `--format`, or change the \
+                ending of the file\n",
                 displayed(path)
             ));
             return Exit::WrongInput;
@@ -63,8 +63,8 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
             Some(format) => format,
             None => {
                 eprint(&format!(
-                    "error: the ending of `{}` says no format\n  = help: known are `.svg`, `.mmd` and `.dot`; \
-                     `--format` says it for other endings\n",
+                    "error: the ending of `{}` is not that of a format\n  = help: use `.svg`, `.mmd` or `.dot`, or \
+                    give the format with `--format`\n",
                     displayed(path)
                 ));
                 return Exit::WrongInput;

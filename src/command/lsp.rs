@@ -5,10 +5,9 @@ use clap::Args;
 use crate::Exit;
 use crate::arguments::PluginArguments;
 
-const EXIT_CODES: &str = "\
-Exit codes:
+const EXIT_CODES: &str = "Exit codes:
   0  the editor ended the session
-  1  the editor went away without ending it";
+  1  the editor closed the connection without ending the session";
 
 /// Serve editors over standard input and output: diagnostics, completion, and more (Language Server Protocol)
 #[derive(Debug, Args)]

@@ -67,7 +67,7 @@ fn length(input: &mut impl BufRead) -> io::Result<Option<u64>> {
 fn understood(bytes: &[u8]) -> Incoming {
     let value: Value = match serde_json::from_slice(bytes) {
         Ok(value) => value,
-        Err(error) => return refusal(Value::Null, ErrorCode::ParseError, &format!("no JSON: {error}")),
+        Err(error) => return refusal(Value::Null, ErrorCode::ParseError, &format!("not JSON: {error}")),
     };
     let id = value.get("id").cloned().unwrap_or_default();
     match serde_json::from_value(value) {

@@ -117,9 +117,9 @@ impl Asked<'_> {
     fn is_read(&self, read: &Path) -> String {
         let Asked { what, option, path, .. } = self;
         let which = match () {
-            () if read == *path => ", which is read".to_owned(),
+            () if read == *path => ", which is an input".to_owned(),
             () if read == Path::new(INPUT) => ": it is read from standard input".to_owned(),
-            () => format!(": it is `{}`, which is read", displayed(read)),
+            () => format!(": it is `{}`, which is an input", displayed(read)),
         };
         let path = displayed(path);
         format!("error: the {what} cannot be written to `{path}`{which}\n  = help: give `{option}` another file\n")

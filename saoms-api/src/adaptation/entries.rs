@@ -174,7 +174,7 @@ pub fn set_field<F: crate::Field>(field: &mut F, name: &str, value: Value) -> Re
             *field = value;
             Ok(())
         }
-        None => Err(Failure::new(format!("entry `{name}`: `{value}` is no {}", F::TYPE))),
+        None => Err(Failure::new(format!("entry `{name}`: `{value}` is not a {}", F::TYPE))),
     }
 }
 

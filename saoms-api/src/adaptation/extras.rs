@@ -51,7 +51,7 @@ impl Extras {
         for added in group.declared() {
             if known.iter().chain(self.declared()).any(|known| known.name == added.name) {
                 return Err(Failure::new(format!(
-                    "the knowledge has an entry `{}` already: no loop can add another one",
+                    "the knowledge already has an entry `{}`: no loop can add another one",
                     added.name
                 )));
             }

@@ -190,7 +190,7 @@ impl Host for RemoteHost<'_> {
 
     fn chance(&mut self) -> &mut Chance {
         let state = get!(self.chance);
-        assert!(!state.is_null(), "the host lends no chance");
+        assert!(!state.is_null(), "the host provides no random numbers");
         // SAFETY: the host lends the state until the call ends, which is longer than `self` is borrowed; `Chance` is
         // that state.
         unsafe { &mut *state.cast::<Chance>() }

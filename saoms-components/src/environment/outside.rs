@@ -37,7 +37,7 @@ impl Reader {
         let (line, is_now) = read_outside(text, self.is_endless)?;
         place_is_known(&line)?;
         if line.times.is_none() && line.until.is_none() {
-            let fault = TextFault::new(line.bytes, "found no last event: a line from outside has one");
+            let fault = TextFault::new(line.bytes, "found no last event, but a line from outside needs one");
             return Err(fault.help("end it: `100 times`, or `until 60s`"));
         }
         // Each line draws for itself, so that one more or less changes nothing in the others.
@@ -52,7 +52,7 @@ impl Reader {
                 return Err(TextFault::new(line.bytes, message));
             }
             let event = draw(&line.event, &mut chance, None).ok_or_else(|| {
-                TextFault::new(line.bytes.clone(), "found no two blocks for luggage where the line wants it")
+                TextFault::new(line.bytes.clone(), "found no two free blocks for the luggage of this line")
             })?;
             let (message, text) = self.message(&event);
             messages.push(TimedMessage { at: (!is_now).then_some(at), bytes: cdr::encode(&message), text });
@@ -94,7 +94,7 @@ fn place_is_known(line: &Line) -> Result<(), TextFault> {
         Some(spot) => {
             let expected = "a block such as `(3,1)`, or two corners such as `(1,0)..(10,10)`";
             let fault = TextFault::new(spot.bytes.clone(), format!("found `random`, expected {expected}"));
-            Err(fault.help("only a scenario in a composite knows the area"))
+            Err(fault.help("write a block or two corners: only a scenario in a composite knows the area"))
         }
     }
 }
@@ -195,7 +195,7 @@ mod tests {
                 "`att`: found `att`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"at\")",
                 "`hello`: found `hello`, expected an event, `at`, `from` or `then` at the start of a line, None",
                 "`random`: found `random`, expected a block such as `(3,1)`, or two corners such as `(1,0)..(10,10)`, None",
-                "`landing`: found no last event: a line from outside has one, None",
+                "`landing`: found no last event, but a line from outside needs one, None",
                 "`landing`: found more than 100000 events in a line from outside, None",
                 "`(3,1)..(3,1)`: found (3,1), where the luggage is already: expected another block, None",
                 "`quickly`: found `quickly`, expected the end of the line, or `;` before the next event, None",

@@ -127,14 +127,14 @@ fn every_wrong_line_says_where_and_why() {
     let block = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
     let robot = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
     let time = "a time such as `6s` or `500ms`";
-    let pieces = "how many pieces of luggage are expected, such as `4`";
+    let pieces = "a number of pieces of luggage, such as `4`";
     let start = "`at`, `from` or `then` at the start of a line";
     let end = "the end of the line, or `;` before the next event";
-    let times = "how often it happens: a whole number from 1 to 1000000";
+    let times = "the number of times: a whole number from 1 to 1000000";
     for (line, at, message, instead) in [
         ("luggage", "luggage", format!("found `luggage`, expected {start}"), None),
         ("on 6s landing 4", "on", format!("found `on`, expected {start}"), Some("at")),
-        ("at 6s 10 luggage (3,1) to (3,10)", "10", "found `10` before `luggage`: how often it happens is said with `times`".into(), Some("10 times")),
+        ("at 6s 10 luggage (3,1) to (3,10)", "10", "found `10` before `luggage`, expected a number of times, such as `10 times`".into(), Some("10 times")),
         ("at 6s 10 landing 4", "10", format!("found `10`, expected {kinds}"), None),
         ("at 6s luggage radnom to (3,10)", "radnom", format!("found `radnom`, expected {block}"), Some("random")),
         ("ta 6s landing 4", "ta", format!("found `ta`, expected {start}"), Some("at")),
@@ -148,24 +148,424 @@ fn every_wrong_line_says_where_and_why() {
         ("at 6s luggage (3,1) too (3,10)", "too", "found `too`, expected `to` and the block to bring it to".into(), Some("to")),
         ("at 6s luggage (3,1) to 3,10", "3,10", format!("found `3,10`, expected {block}"), None),
         ("at 6s luggage (3;1) to (3,10)", "(3", format!("found `(3`, expected {block}"), None),
-        ("at 6s luggage (-3,1) to (3,10)", "(-3,1)", "found `(-3,1)`, and every area starts at (0,0)".into(), None),
+        ("at 6s luggage (-3,1) to (3,10)", "(-3,1)", "found `(-3,1)`, but every area starts at (0,0)".into(), None),
         ("at 6s landing four", "four", format!("found `four`, expected {pieces}"), None),
         ("at 6s landing", "", format!("found the end of the line, expected {pieces}"), None),
         ("at 6s landing 4 5", "5", format!("found `5`, expected {end}"), None),
         ("at 6s breakdown Gripper", "Gripper", format!("found `Gripper`, expected {robot}"), None),
         ("at 6s breakdown 0", "0", format!("found `0`, expected {robot}"), None),
-        ("at 8s..2s landing 4", "8s..2s", "found `8s..2s`, expected the lesser one first".into(), Some("2s..8s")),
-        ("at 8s every 2s landing 4", "at", "found `every` after `at`: what happens again and again happens `from` a time on".into(), Some("from")),
-        ("from 8s landing 4", "from", "found no `every` after `from` and its time: what happens once happens `at` a time".into(), Some("at")),
-        ("from 8s until 20s landing 4", "until", "found `until` without `every`: nothing says how often this happens".into(), None),
-        ("from 8s until 20s every 2s landing 4", "until", "found `until` before `every`, which comes right behind the first time".into(), None),
-        ("from 8s to 20s every 2s landing 4", "to", "found `to` before `every`, which comes right behind the first time".into(), None),
-        ("from 8s 10 times every 2s landing 4", "10", "found `10` before `every`, which comes right behind the first time".into(), None),
+        ("at 8s..2s landing 4", "8s..2s", "found `8s..2s`, expected the smaller value first".into(), Some("2s..8s")),
+        ("at 8s every 2s landing \
+            4", "at", "found `every` after `at`; an event that is repeated starts with `from`".into(), Some("from")),
+        ("from 8s landing \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            \
+            4", "from", "expected `every` after `from` and its time; an event that happens once starts with `at`".into(), Some("at")),
+        ("from 8s until 20s landing 4", "until", "found `until` without `every`, which says how often this happens".into(), None),
+        ("from 8s until 20s every 2s landing 4", "until", "found `until` before `every`; `every` comes directly after the first time".into(), None),
+        ("from 8s to 20s every 2s landing 4", "to", "found `to` before `every`; `every` comes directly after the first time".into(), None),
+        ("from 8s 10 times every 2s landing 4", "10", "found `10` before `every`; `every` comes directly after the first time".into(), None),
         ("from 8s every 0s landing 4", "0s", "found `0s` after `every`, expected at least 1ms".into(), None),
         ("from 8s every 1s 0 times landing 4", "0", format!("found `0`, expected {times}"), None),
         ("at 8s until 9s landing 4", "until", "found `until` without `every`: this happens once".into(), None),
         ("from 8s every 1s until 7s landing 4", "7s", "found `until 7s`, which is before the first event".into(), None),
-        ("from 8s every 1s landing 1\nthen 1s landing 2", "then", "the line before never ends, so nothing comes after it".into(), None),
+        ("from 8s every 1s landing 1\nthen 1s landing 2", "then", "the line before has no end, so nothing can follow it".into(), None),
     ] {
         let text = format!("at 1s landing 1; at 2s landing 1 # 2\n{line}\nat 7s landing 9");
         let findings = Scenario::read(&["at 0 landing 2".to_owned(), text.clone()]).unwrap_err();

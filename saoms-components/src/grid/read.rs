@@ -50,7 +50,7 @@ impl Map {
                 continue;
             }
             if let Some(empty) = empty.take() {
-                let message = format!("found an empty line behind row {}, expected the next row", rows.len() - 1);
+                let message = format!("found an empty line after row {}, expected the next row", rows.len() - 1);
                 faults.push(TextFault::of(text, empty, message));
             }
             match header.take(line) {
@@ -148,7 +148,7 @@ fn unknown_signs(text: &str, signs: &[&str]) -> Option<TextFault> {
     };
     Some(match text.matches(sign).count() {
         1 => fault.instead(Some(meant)),
-        _ => fault.help(format!("write `{meant}` for each `{sign}`")),
+        _ => fault.help(format!("replace each `{sign}` with `{meant}`")),
     })
 }
 

@@ -55,8 +55,8 @@ fn wrong_maps_say_where_and_why() {
         (
             "..\n\n..\n \n\n..\n\n",
             &[
-                "`` found an empty line behind row 0, expected the next row",
-                "`` found an empty line behind row 1, expected the next row",
+                "`` found an empty line after row 0, expected the next row",
+                "`` found an empty line after row 1, expected the next row",
             ],
         ),
         ("width 3\nmap", &["`width 3\nmap` found no rows, expected one line of `.` and `@` a row"]),
@@ -70,7 +70,7 @@ fn wrong_maps_say_where_and_why() {
         (
             "...\n.x.\n\n#..",
             &[
-                "`` found an empty line behind row 1, expected the next row",
+                "`` found an empty line after row 1, expected the next row",
                 "`x` found `x`, expected `.` for a free block or `@` for a blocked one (in this row and 1 more)",
             ],
         ),
@@ -94,7 +94,7 @@ fn wrong_maps_say_where_and_why() {
     }
     let faults = |text| Map::read(text).unwrap_err();
     assert_eq!(faults("..\n.#")[0].instead.as_deref(), Some("@"));
-    assert_eq!(faults("##\n.#")[0].help.as_deref(), Some("write `@` for each `#`"));
+    assert_eq!(faults("##\n.#")[0].help.as_deref(), Some("replace each `#` with `@`"));
     let wide = ".".repeat(9000);
     assert!(Map::read(&wide).unwrap_err()[0].message.contains("expected at most 8192 on a side"));
 }

@@ -60,7 +60,7 @@ impl HardwareClient {
         self.entered = true;
         let map: Option<Map> = area.into();
         if map.is_none() {
-            return Err(Failure::new("the world's map does not fit its own width and height"));
+            return Err(Failure::new("the world's map does not match its width and height"));
         }
         Ok(Reply::Answer((block, map)))
     }

@@ -88,18 +88,18 @@ impl RobotProperties {
             }
             (Some(_), _, _) => finding(
                 "discharge",
-                "the battery discharges by execution, and by distance or time",
+                "the battery discharges per execution and also by distance or time",
                 "remove `discharge`, or `dischargePerBlock`, `dischargePerSecond` and `chargePerSecond`",
             ),
             (None, Some(_), None) => finding(
                 if self.discharge_per_block.is_some() { "dischargePerBlock" } else { "dischargePerSecond" },
-                "the battery discharges by distance or time, and `chargePerSecond` is missing",
-                "give `chargePerSecond`: with `2`, an empty battery is full after 50 s at the charger",
+                "the battery discharges by distance or time, but `chargePerSecond` is missing",
+                "add `chargePerSecond`: with `2`, an empty battery is full after 50 s at the charger",
             ),
             (None, None, Some(_)) => finding(
                 "chargePerSecond",
-                "the battery discharges by execution, and so it charges",
-                "give `dischargePerBlock` or `dischargePerSecond`, too, or remove `chargePerSecond`",
+                "the battery discharges per execution, so it also charges per execution",
+                "add `dischargePerBlock` or `dischargePerSecond`, or remove `chargePerSecond`",
             ),
         }
     }
@@ -107,6 +107,6 @@ impl RobotProperties {
     pub(crate) fn charge_block(&self, number: u32) -> Result<Block, Failure> {
         let row = self.charge_y.map_or_else(|| i32::try_from(number), Ok);
         row.map(|y| Block::new(self.charge_x, y))
-            .map_err(|_| Failure::new(format!("robot {number} has no row of this number: give the property `chargeY`")))
+            .map_err(|_| Failure::new(format!("no row has the number of robot {number}: give the robot a `chargeY`")))
     }
 }

@@ -12,8 +12,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5012",
         name: "robot-apart",
-        meaning: "A `topicRename` parts a robot from a topic that the others in its world use: they collide with it, or \
-            do not know of its state.",
+        meaning: "A `topicRename` separates a robot from a topic that the other robots of its world use: they \
+            collide with it, or do not know its state.",
         severity: Severity::Error,
         rule: None,
     },
@@ -26,8 +26,8 @@ pub(super) static RULE: FleetRule = FleetRule {
 /// may have their own names of those with warnings: a robot that is alone with its name is in none.
 const SHARED: [(&str, Severity, &str); 3] = [
     (POSITION.name(), Severity::Error, "they do not know where it is and collide with it"),
-    (CRITICAL_SITUATION.name(), Severity::Warning, "if it breaks down, no other robot takes over its luggage"),
-    (ROBOT_LIST.name(), Severity::Warning, "they do not know of its state"),
+    (CRITICAL_SITUATION.name(), Severity::Warning, "no other robot takes over its luggage if it breaks down"),
+    (ROBOT_LIST.name(), Severity::Warning, "they do not know its state"),
 ];
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
@@ -58,14 +58,16 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                 let help = match others == topic {
                     true => format!("remove the pair `{topic},{own}`: all robots of a world need the same topics"),
                     false if others.contains('/') || own.contains('/') => {
-                        format!("let all robots of a world be in one site, or give it the pair `{topic},/{others}`")
+                        format!("put all robots of a world into one site, or add the pair `{topic},/{others}`")
                     }
-                    false => format!("give it the pair `{topic},{others}`, as the others have it"),
+                    false => format!(
+                        "add the pair `{topic},{others}` to the `topicRename` of this robot: the other robots have it"
+                    ),
                 };
                 findings.push(
                     Finding::new(renamed(robot), message)
                         .severity(severity)
-                        .label(renamed(usual), "one of the others")
+                        .label(renamed(usual), "another robot of this world")
                         .help(help),
                 );
             }

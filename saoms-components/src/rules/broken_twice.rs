@@ -14,7 +14,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5015",
         name: "broken-twice",
-        meaning: "A scenario breaks one robot twice: what is broken stays broken.",
+        meaning: "A scenario breaks one robot twice, but a broken robot is never repaired.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -46,15 +46,14 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                 continue;
             }
             let place = Place::property("scenario").part(line.text, robot.bytes.clone()).in_component(index);
-            let help = "a broken robot is not repaired: leave this event out, or break another robot";
+            let help = "remove this event, or choose another robot: a broken robot is never repaired";
             if let Some(other) = first.get(&number) {
-                let message = format!("robot {number} breaks down twice: the second time nothing happens");
-                findings.push(Finding::new(place, message).label(other.clone(), "the other time").help(help));
+                let message = format!("robot {number} breaks down twice: the second breakdown has no effect");
+                findings.push(Finding::new(place, message).label(other.clone(), "the other breakdown").help(help));
                 continue;
             }
             if line.times != Some(1) {
-                let message =
-                    format!("robot {number} breaks down again and again: after the first time nothing happens");
+                let message = format!("robot {number} breaks down repeatedly: only the first breakdown has an effect");
                 findings.push(Finding::new(place.clone(), message).help(help));
             }
             first.insert(number, place);

@@ -45,6 +45,7 @@ fn on_map(fleet: &FleetView<'_>, area: &WorldMap, robot: &FleetRobot) -> Option<
     let message = format!("the charger of robot {} is at {}, {problem}", robot.number, robot.charger);
     let in_columns = u32::try_from(robot.charger.x).is_ok_and(|column| column < area.map.width());
     let place = if in_columns { robot.charger_place(fleet) } else { robot.column_place(fleet) };
-    let help = "give it a free block: `chargeX` is its column, `chargeY` its row, by default the robot's number";
+    let help = "choose a free block: `chargeX` is the column of the charger, `chargeY` is its row (by default the \
+        robot's number)";
     Some(area.explain(Finding::new(place, message).help(help), robot.charger))
 }

@@ -16,7 +16,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5007",
         name: "map-divided",
-        meaning: "No way on the map connects a charger, where luggage is, and where it has to go.",
+        meaning: "The map has no path that connects a charger, the start of the luggage and its destination.",
         severity: Severity::Error,
         rule: None,
     },
@@ -68,11 +68,13 @@ fn check_piece(reached: &mut Reached<'_>, piece: &LuggageLine) -> Vec<Finding> {
         && from != to
         && findings.is_empty()
     {
-        let message = "no way on the map leads from where the luggage is to where it has to go";
+        let message = "the map has no path from the start of this luggage to its destination";
         findings.push(
             Finding::new(piece.place(&piece.to), message)
-                .label(piece.place(&piece.from), "from here")
-                .help("both have to be in one part of the map, with a charger in it"),
+                .label(piece.place(&piece.from), "the luggage starts here")
+                .help(
+                    "choose two blocks that a path connects with a charger, or open a path through the blocked blocks",
+                ),
         );
     }
     findings
@@ -80,10 +82,10 @@ fn check_piece(reached: &mut Reached<'_>, piece: &LuggageLine) -> Vec<Finding> {
 
 /// A finding if no robot can reach this spot from its charger.
 fn cut_off(reached: &mut Reached<'_>, piece: &LuggageLine, spot: &Spanned<Spot>) -> Option<Finding> {
-    const HELP: &str = "open a way through the blocked blocks, or put a robot with its charger there";
+    const HELP: &str = "open a path through the blocked blocks, or add a robot with a charger in this part of the map";
     let Reached { area, parts, chargers, budget } = reached;
     if let Some(block) = spot.value.block() {
-        let message = format!("no way on the map leads to {block} from the charger of any robot");
+        let message = format!("the map has no path from any robot's charger to {block}");
         let is_cut = parts.part(block).is_some_and(|part| !chargers.contains(&part));
         return is_cut.then(|| Finding::new(piece.place(spot), message).help(HELP));
     }
@@ -103,8 +105,7 @@ fn cut_off(reached: &mut Reached<'_>, piece: &LuggageLine, spot: &Spanned<Spot>)
             return None;
         }
     }
-    let message =
-        format!("no way on the map leads to {cut} of the {all} free blocks here from the charger of any robot");
+    let message = format!("the map has no path from any robot's charger to {cut} of these {all} free blocks");
     let severity = if cut == all { Severity::Error } else { Severity::Warning };
     (cut > 0).then(|| Finding::new(piece.place(spot), message).severity(severity).help(HELP))
 }

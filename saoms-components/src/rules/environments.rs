@@ -13,8 +13,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5011",
         name: "luggage-number",
-        meaning: "Two environments have luggage: both number it from 1 on, and of two pieces with one number only the \
-            first is brought.",
+        meaning: "Two environments have luggage, and both number it from 1: of two pieces with the same number, only \
+            the first is delivered.",
         severity: Severity::Error,
         rule: None,
     },
@@ -42,14 +42,14 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             continue;
         };
         let message = format!(
-            "`{}` and `{}` both number their luggage from 1 on: of two pieces with one number only the first is \
-             brought",
+            "`{}` and `{}` both number their luggage from 1: of two pieces with the same number, only the first is \
+            delivered",
             components[other.index].path, components[line.index].path
         );
         findings.push(
             Finding::new(line.whole(), message)
-                .label(other.whole(), "luggage of the other one")
-                .help("let one environment have all luggage: its `scenario` can have many values"),
+                .label(other.whole(), "luggage of the other environment")
+                .help("move all luggage to one environment: its `scenario` can have several values"),
         );
     }
     findings

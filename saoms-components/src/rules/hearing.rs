@@ -28,8 +28,8 @@ pub(super) struct Hearing {
 type ByTopic = HashMap<String, Vec<usize>>;
 
 /// Help where two components do not hear each other.
-pub(super) const TOGETHER: &str = "let both use one name of the topic: put them into one site, or give both the same new \
-    name with `topicRename`; one that begins with `/` is outside all sites";
+pub(super) const TOGETHER: &str = "use the same topic for both: put them into one site, or give the topic the same \
+    new name with `topicRename` in both; a name that begins with `/` is outside of all sites";
 
 /// What masters of the environment publish.
 const PASSED_ON: [&str; 3] = [EVENT_LUGGAGE.name(), EXCEPTIONAL_EVENT.name(), FAULT.name()];

@@ -17,7 +17,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5001",
         name: "luggage-place",
-        meaning: "A scenario has luggage at a block where no robot can be: outside the map, or blocked.",
+        meaning: "A scenario has luggage at a block that no robot can enter: the block is outside the map, or blocked.",
         severity: Severity::Error,
         rule: None,
     },
@@ -62,13 +62,14 @@ fn nothing_to_draw(
 ) -> Finding {
     let heard = fleet.components()[piece.index].topic(AREA.name());
     let Some((name, index)) = said.iter().min_by_key(|(_, index)| **index) else {
-        let message = "`random` needs an area to draw from, and nothing in the fleet says one";
+        let message = "`random` needs an area to draw a block from, but no component of the fleet defines one";
         let help = "add a `saoms.World`, or write two corners such as `(1,0)..(10,10)`";
         return Finding::new(piece.place(spot), message).help(help);
     };
-    let message = format!("`random` needs an area to draw from, and nothing says one on the topic `{heard}`");
+    let message =
+        format!("`random` needs an area to draw a block from, but no component publishes one on the topic `{heard}`");
     Finding::new(piece.place(spot), message)
-        .label(Place::component(*index), format!("this one says its area on the topic `{name}`"))
+        .label(Place::component(*index), format!("this component publishes its area on the topic `{name}`"))
         .help(TOGETHER)
 }
 
@@ -76,8 +77,10 @@ fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget
     let place = piece.place(spot);
     if let Some(block) = spot.value.block() {
         let problem = area.problem(block)?;
-        let finding = Finding::new(place, format!("luggage cannot be at {block}: it is {problem}"));
-        return Some(area.explain(finding.help("robots collect and deposit luggage on free blocks"), block));
+        let finding = Finding::new(place, format!("luggage cannot be at {block}: this block is {problem}"));
+        return Some(
+            area.explain(finding.help("choose a free block of the map: robots cannot enter other blocks"), block),
+        );
     }
     let (first, last) = spot.value.corners(Some(&area.map))?;
     let (mut rows, columns) = rows(first, last, &area.map);
@@ -86,13 +89,15 @@ fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget
         !budget.admit(1 + columns.len() / 64) || area.map.free_ranges(row, columns.clone()).next().is_some()
     });
     if !is_free {
-        let message = format!("there is no free block from {first} to {last}, so no luggage can be there");
-        return Some(Finding::new(place, message).help("choose blocks of the map that are not blocked"));
+        let message = format!("luggage cannot be from {first} to {last}: these blocks are all blocked");
+        return Some(Finding::new(place, message).help("choose corners with a free block between them"));
     }
     let (x, y) = (area.map.width() - 1, area.map.height() - 1);
     let beyond = !area.map.contains(last);
     beyond.then(|| {
-        let message = format!("the blocks from {first} to {last} reach beyond the map, which ends at ({x},{y})");
-        Finding::new(place, message).severity(Severity::Warning).help("only blocks of the map are drawn")
+        let message = format!("the blocks from {first} to {last} are partly outside the map, which ends at ({x},{y})");
+        Finding::new(place, message)
+            .severity(Severity::Warning)
+            .help("choose corners on the map: a run draws blocks of the map only")
     })
 }

@@ -62,11 +62,12 @@ impl WorldMap {
     pub(super) fn explain(&self, finding: Finding, block: Block) -> Finding {
         if let Some(&value) = self.blocked().get(&block) {
             let all = 0..self.properties.blocked[value].len();
-            return finding.label(Place::property("blocked").part(value, all).in_component(self.index), "blocked here");
+            return finding
+                .label(Place::property("blocked").part(value, all).in_component(self.index), "this block is blocked");
         }
         let map = Place::property("map").in_component(self.index);
         match self.properties.map.as_deref().map(|text| Map::written(text, block)) {
-            Some(Some(bytes)) => finding.label(map.part(0, bytes), "blocked here"),
+            Some(Some(bytes)) => finding.label(map.part(0, bytes), "this block is blocked"),
             Some(None) => finding,
             None => finding.label(Place::component(self.index), "the world"),
         }

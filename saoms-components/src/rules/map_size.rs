@@ -9,7 +9,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5014",
         name: "map-size",
-        meaning: "A world has a map, and a `width` or `height` that is not the map's: the size of the map is used.",
+        meaning: "A world has a map, and a `width` or `height` that differs from the size of the map: the size of \
+            the map is used.",
         severity: Severity::Warning,
         rule: None,
     },

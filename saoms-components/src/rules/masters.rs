@@ -12,7 +12,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5010",
         name: "second-master",
-        meaning: "Two masters of the environment pass on the same events, so that all luggage is requested and counted \
+        meaning: "Two masters of the environment forward the same events, so all luggage is requested and counted \
             twice.",
         severity: Severity::Error,
         rule: None,
@@ -34,13 +34,13 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             continue;
         };
         let message = format!(
-            "`{}` passes on the same events as `{}`: all luggage is requested and counted twice",
+            "`{}` forwards the same events as `{}`: all luggage is requested and counted twice",
             components[index].path, components[other].path
         );
         findings.push(
             Finding::new(Place::component(index), message)
-                .label(Place::component(other), "the first")
-                .help("keep one master of the environment"),
+                .label(Place::component(other), "the first master")
+                .help("remove one of the two masters"),
         );
     }
     findings

@@ -10,7 +10,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5004",
         name: "robot-number",
-        meaning: "Two robots have one number, as it follows from an ID or a class name.",
+        meaning: "Two robots have the same number. It comes from the property `number`, the class name or the ID.",
         severity: Severity::Error,
         rule: None,
     },
@@ -43,9 +43,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             true => Place::property("ID").in_component(robot.index),
             false => robot.number_place(fleet),
         };
-        findings.push(Finding::new(place, message).label(other.number_place(fleet), "the first").help(
-            "a robot has the number that its ID ends with, unless its class name or `number` says another: \
-                    give one of them its own",
+        findings.push(Finding::new(place, message).label(other.number_place(fleet), "the first robot").help(
+            "give one of the robots another `number`; without `number`, the digits at the end of the ID are the \
+            robot's number",
         ));
     }
     findings

@@ -42,7 +42,7 @@ pub(super) fn has_broker(fleet: &FleetView<'_>) -> bool {
 
 /// The findings, as warnings where other programs may supply what is missing here.
 pub(super) fn unless_elsewhere(fleet: &FleetView<'_>, findings: Vec<Finding>) -> Vec<Finding> {
-    const HELP: &str = "nothing is wrong if another program that uses the broker (`url`) has what is missing here";
+    const HELP: &str = "ignore this if another program at the same broker (`url`) provides what is missing";
     if findings.is_empty() || !has_broker(fleet) {
         return findings;
     }

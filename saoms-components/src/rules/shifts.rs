@@ -13,8 +13,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5013",
         name: "shift",
-        meaning: "A shift schedules itself, a component that runs already when the fleet starts, or one whose time \
-            another shift sets, too.",
+        meaning: "A shift schedules itself, a component that runs from the start of the fleet, or a component that \
+            another shift schedules at the same time.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -38,7 +38,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         tasks.dedup();
         for task in tasks {
             if task == index {
-                let message = format!("`{}` schedules itself: after its first shift it runs no more", path(index));
+                let message = format!("`{}` schedules itself: it stops at the end of its first shift", path(index));
                 let help = "wire its reference `tasks` to the components that work in shifts";
                 findings.push(Finding::new(Place::component(index), message).severity(Severity::Error).help(help));
                 continue;
@@ -46,7 +46,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             if let Some((other, others)) = first.get(&task) {
                 let Some(at) = properties.overlaps(others) else { continue };
                 let message = format!(
-                    "both `{}` and `{}` schedule `{}` at {}: the later one sets anew when it ends",
+                    "the shifts of `{}` and `{}` overlap: both schedule `{}` at {}, and the shift that starts later \
+                    decides when it stops",
                     path(*other),
                     path(index),
                     path(task),
@@ -56,21 +57,22 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                     Finding::new(Place::component(index), message)
                         .label(Place::component(*other), "the other shift")
                         .help(
-                            "let their shifts not overlap (`start`, `work`, `pause`), or wire only one of them to it",
+                            "change `start`, `work` or `pause` so that the shifts do not overlap, or wire only one \
+                            of the two to this component",
                         ),
                 );
                 continue;
             }
             if components[task].starts {
                 let message = format!(
-                    "`{}` works in shifts of `{}`, and runs from the start of the fleet until its first one ends",
+                    "`{}` runs from the start of the fleet, but `{}` schedules it only for its shifts",
                     path(task),
                     path(index)
                 );
                 findings.push(
                     Finding::new(Place::property("runOnStartup").in_component(task), message)
-                        .label(Place::component(index), "its shifts")
-                        .help("set `runOnStartup` to `false`: it then waits for its first shift"),
+                        .label(Place::component(index), "this component schedules the shifts")
+                        .help("set `runOnStartup` to `false`: the component then waits for its first shift"),
                 );
             }
             first.insert(task, (index, properties.clone()));

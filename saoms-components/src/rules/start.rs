@@ -11,7 +11,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5003",
         name: "start-shared",
-        meaning: "Two robots start on one block: a robot starts at its charger.",
+        meaning: "Two robots start on the same block. A robot starts at its charger.",
         severity: Severity::Error,
         rule: None,
     },
@@ -37,13 +37,13 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         // Robots with the same number are reported by another rule.
         if other.number != robot.number {
             let message = format!(
-                "robots {} and {} both start at {}, where their chargers are",
+                "robots {} and {} both start at {}: their chargers are on the same block",
                 other.number, robot.number, robot.charger
             );
             findings.push(
                 Finding::new(robot.charger_place(fleet), message)
-                    .label(other.charger_place(fleet), "the first")
-                    .help("give one of them another charger with `chargeX` and `chargeY`"),
+                    .label(other.charger_place(fleet), "the first robot")
+                    .help("move the charger of one robot with `chargeX` and `chargeY`"),
             );
         }
     }

@@ -16,7 +16,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5005",
         name: "unknown-robot",
-        meaning: "A scenario has an event of a robot that the fleet does not have, or that does not hear of it.",
+        meaning: "A scenario has an event for a robot that is not in the fleet, or that does not receive the event.",
         severity: Severity::Error,
         rule: None,
     },
@@ -124,7 +124,7 @@ fn check_name(
         if *number == least {
             return None;
         }
-        let message = format!("`{text}` stands for robot {least}, and the robot of this name has the number {number}");
+        let message = format!("`{text}` means robot {least} here, but the robot with this ID has the number {number}");
         return Some(finding(message).instead(number.to_string()));
     }
     let known = names.between(least, most);
@@ -139,15 +139,16 @@ fn check_name(
         if stem(text) == stem(id) || stem(text) == stem(fleet.components()[robot.index].path) {
             return None;
         }
-        let message = format!("no robot is called `{text}`: it stands for robot {least}, which is `{id}`");
+        let message = format!("no robot has the ID `{text}`: it means robot {least} here, whose ID is `{id}`");
         return Some(finding(message).severity(Severity::Warning).instead(id));
     }
     if let Some(robot) = names.deaf.iter().find(|robot| least == most && robot.number == least) {
         let topic = fleet.components()[robot.index].topic(FAULT.name());
-        let message = format!("robot {least} does not hear of this: it hears of breakdowns on the topic `{topic}`");
-        let help = "give the event to the environment whose master passes it on to this robot";
+        let message =
+            format!("robot {least} does not receive this event: it receives breakdowns on the topic `{topic}`");
+        let help = "move the event to the environment whose master forwards it to this robot";
         let place = Place::component(robot.index);
-        return Some(finding(message).label(place, "the robot").help(help));
+        return Some(finding(message).label(place, format!("robot {least}")).help(help));
     }
     if names.numbers.windows(2).any(|pair| pair[0] == pair[1]) {
         // Robots that share an ID or a number are told of; which are missing is not known.
@@ -156,16 +157,16 @@ fn check_name(
     let message = match (least == most, known) {
         (true, _) => format!("the fleet has no robot {least}"),
         (false, 0) => format!("the fleet has no robot from {least} to {most}"),
-        (false, _) => format!("of the robots from {least} to {most} the fleet has only {known}"),
+        (false, _) => format!("the fleet has only {known} of the robots from {least} to {most}"),
     };
     let is_name = !text.starts_with(|sign: char| sign.is_ascii_digit());
     let near = (is_name && budget.admit(NAME * names.robots.len())).then(|| nearest(text, names.ids())).flatten();
     Some(match near {
         Some(near) => finding(message).instead(near),
-        None if names.robots.is_empty() => finding(message).help("add it to the composite, or leave the event out"),
+        None if names.robots.is_empty() => finding(message).help("add the robot to the composite, or remove the event"),
         None => {
             let all: Vec<String> = names.ids().take(30).map(|id| format!("`{id}`")).collect();
-            finding(message).help(format!("its robots are {}", all.join(", ")))
+            finding(message).help(format!("the robots of the fleet are {}", all.join(", ")))
         }
     })
 }

@@ -18,8 +18,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",
-        meaning: "A scenario has no effect: no component hears its events and passes them on, no robot hears of them, their \
-            world does not, or all robots are classic ones that sleep, and none is woken.",
+        meaning: "A scenario has no effect: no component forwards its events, no robot or world receives them, or \
+            all robots are classic robots that sleep, and nothing wakes them.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -112,12 +112,12 @@ impl Served {
 }
 
 fn without_master(fleet: &FleetView<'_>, events: &str) -> Mistake {
-    let message = "no component passes the events of this scenario on to the robots";
+    let message = "no component forwards the events of this scenario to the robots";
     let Some(master) = fleet.indices::<MasterEnvironment>().next() else {
         return Mistake { message, help: format!("add a `saoms.MasterEnvironment`{}", in_site(events)), other: None };
     };
     let own = fleet.components()[master].topic(ENVIRONMENT.name());
-    let label = format!("this one passes on events of the topic `{own}`, and these are on `{events}`");
+    let label = format!("this master forwards events of the topic `{own}`, but the scenario uses `{events}`");
     Mistake { message, help: TOGETHER.to_owned(), other: Some((master, label)) }
 }
 
@@ -141,8 +141,9 @@ fn not_brought(fleet: &FleetView<'_>, events: &str, luggage: &BTreeSet<&str>, wo
             return Some(Mistake { message, help: format!("add a `saoms.Robot`{site}"), other: None });
         };
         let told = luggage.first()?;
-        let label = format!("this one hears of luggage on the topic `{}`, and this is told on `{told}`", topic(robot));
-        let message = "no robot hears of the luggage of this scenario";
+        let label =
+            format!("this robot receives luggage on the topic `{}`, but this luggage is on `{told}`", topic(robot));
+        let message = "no robot receives the luggage of this scenario";
         return Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((robot, label)) });
     }
     let robots = robots(fleet);
@@ -156,13 +157,13 @@ fn not_brought(fleet: &FleetView<'_>, events: &str, luggage: &BTreeSet<&str>, wo
         return not_known(fleet, events, hear.iter().filter(comes).copied());
     }
     let states: BTreeSet<&str> = hear.iter().map(|robot| components[robot.index].topic(ROBOT_STATE.name())).collect();
-    let message = "all robots sleep, and none is woken to bring the luggage of this scenario";
+    let message = "all robots sleep, and nothing wakes them to bring the luggage of this scenario";
     let help = match (states.is_disjoint(&woken.can_be), states.is_disjoint(&woken.are)) {
         (true, _) => {
-            "let a robot start awake (`asleep`), or add a `saoms.MasterRobot`, which awakes robots for landings and \
-             take-offs"
+            "set `asleep` of a robot to `false`, or add a `saoms.MasterRobot`, which wakes robots for landings and \
+            take-offs"
         }
-        (_, true) => "let a robot start awake (`asleep`), or write a landing or take-off, for which robots are woken",
+        (_, true) => "set `asleep` of a robot to `false`, or add a landing or a take-off, for which robots are woken",
         _ => return None,
     };
     Some(Mistake { message, help: help.to_owned(), other: None })
@@ -187,8 +188,8 @@ fn not_known<'r>(fleet: &FleetView<'_>, events: &str, robots: impl Iterator<Item
         first.get_or_insert(world);
     }
     let own = fleet.components()[first?].topic(ENVIRONMENT.name());
-    let label = format!("it hears of luggage on the topic `{own}`, and this is on `{events}`");
-    let message = "the world of the robots does not hear of the luggage of this scenario: none of it can be collected";
+    let label = format!("this world receives luggage on the topic `{own}`, but this luggage is on `{events}`");
+    let message = "the world of the robots does not receive the luggage of this scenario: robots cannot collect it";
     Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((first?, label)) })
 }
 
@@ -204,10 +205,10 @@ fn not_handled(fleet: &FleetView<'_>, events: &str) -> Option<Mistake> {
     let master = fleet.indices::<MasterRobot>().next();
     let Some((master, told)) = master.zip(airplanes.first()) else {
         let site = airplanes.first().map_or_else(String::new, |name| in_site(name));
-        let help = format!("add a `saoms.MasterRobot`{site}, which awakes robots for them");
+        let help = format!("add a `saoms.MasterRobot`{site}, which wakes robots for them");
         return Some(Mistake { message, help, other: None });
     };
-    let label = format!("this one hears of them on the topic `{}`, and these are told on `{told}`", topic(master));
+    let label = format!("this component receives them on the topic `{}`, but these are on `{told}`", topic(master));
     Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((master, label)) })
 }
 

@@ -14,8 +14,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5009",
         name: "unused-world",
-        meaning: "A fleet has a world, and robots, all or some of them, are not wired to it: they move, collect and \
-            deposit without it.",
+        meaning: "A fleet has a world, but some or all robots are not wired to it: the world does not check what \
+            they do.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -66,8 +66,8 @@ fn composite(path: &str) -> &str {
 
 fn without_robots(fleet: &FleetView<'_>, area: &WorldMap, robots: &[FleetRobot]) -> Finding {
     let message = match area.map.is_open() {
-        true => "no robot is wired to this world, so it sees neither robots nor what they deliver",
-        false => "no robot is wired to this world, so robots move through its blocked blocks",
+        true => "no robot is wired to this world, so the world sees no robots and no delivered luggage",
+        false => "no robot is wired to this world, so the robots ignore its blocked blocks",
     };
     let path = fleet.components()[area.index].path;
     let around = composite(path);
@@ -78,13 +78,13 @@ fn without_robots(fleet: &FleetView<'_>, area: &WorldMap, robots: &[FleetRobot])
             let robot = fleet.components()[robot.index].path;
             format!("wire the reference `world` of `{robot}` to `{path}`, {BETWEEN}")
         }
-        _ => format!("give each robot in it a `<reference name=\"world\" target=\"{}\"/>`", &path[around.len()..]),
+        _ => format!("add `<reference name=\"world\" target=\"{}\"/>` to each robot", &path[around.len()..]),
     };
     Finding::new(Place::component(area.index), message).help(help)
 }
 
 /// How a wire leads from one composite into another.
-const BETWEEN: &str = "through the composites in between: each promotes the reference or the service";
+const BETWEEN: &str = "and promote the reference or the service in each composite between them";
 
 /// A finding for a robot without a world if other robots in its composite have one; the innermost composite counts.
 fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &Around<'_>) -> Option<Finding> {
@@ -93,11 +93,12 @@ fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &Around<'_>) -> Opt
     let mut outer = std::iter::successors(Some(own), |path| Some(composite(path.strip_suffix('/')?)));
     let (world, other) = outer.find_map(|path| around.get(&(path, list)))?;
     let path = fleet.components()[*world].path;
-    let message = "this robot is wired to no world, and others are: neither the world nor they know where it is";
-    let finding =
-        Finding::new(Place::component(robot.index), message).label(Place::component(other.index), "this one is wired");
+    let message =
+        "this robot is not wired to a world, but others are: the world and the other robots do not know where it is";
+    let finding = Finding::new(Place::component(robot.index), message)
+        .label(Place::component(other.index), "this robot is wired");
     Some(finding.help(match composite(path) == own {
-        true => format!("give it a `<reference name=\"world\" target=\"{}\"/>`", &path[own.len()..]),
+        true => format!("add `<reference name=\"world\" target=\"{}\"/>` to this robot", &path[own.len()..]),
         false => format!("wire its reference `world` to `{path}`, {BETWEEN}"),
     }))
 }

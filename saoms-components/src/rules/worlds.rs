@@ -14,8 +14,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5016",
         name: "worlds-mixed",
-        meaning: "Two worlds with robots have one environment: each world waits for all luggage, and a robot of the other \
-            one brings it there.",
+        meaning: "Two worlds with robots share one environment: each world waits for all luggage, but robots deliver \
+            some of it in the other world.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -53,16 +53,17 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             continue;
         };
         let message = format!(
-            "`{}` and `{}` both wait for all luggage of one environment: what is brought in one never arrives in the \
-             other",
+            "`{}` and `{}` both wait for all luggage of one environment, but luggage that is delivered in one world \
+            never arrives in the other",
             components[other].path, components[world].path
         );
         findings.push(
             Finding::new(Place::component(world), message)
                 .label(Place::component(other), "the first world")
-                .label(line.clone(), "luggage of both")
+                .label(line.clone(), "both worlds wait for this luggage")
                 .help(
-                    "wire all robots to one world, or give each world an environment, a master and topics of its own",
+                    "wire all robots to one world, or make each world a site (`saoms:site`) with its own \
+                    environment, master and robots",
                 ),
         );
     }

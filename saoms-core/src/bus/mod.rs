@@ -56,8 +56,8 @@ impl fmt::Display for Mismatch {
         let Mismatch { topic, other, found, expected } = self;
         write!(
             formatter,
-            "topic `{topic}` carries {expected} since component `{other}` uses it so, but here it would carry {found}: rename one \
-             of the two with `topicRename`, or let both use the same message"
+            "topic `{topic}` carries {expected}, as component `{other}` uses it, but here it would carry {found}: \
+            rename one of the two with `topicRename`, or use the same message in both"
         )
     }
 }

@@ -192,8 +192,8 @@ fn a_topic_that_nobody_uses_may_carry_something_else() {
     let refused = bus.publisher("T", &OWN.declaration(), &who()).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "topic `T` carries event messages `Plain` since component `somebody` uses it so, but here it would carry state messages \
-         `Plain`: rename one of the two with `topicRename`, or let both use the same message"
+        "topic `T` carries event messages `Plain`, as component `somebody` uses it, but here it would carry state messages \
+         `Plain`: rename one of the two with `topicRename`, or use the same message in both"
     );
     bus.unsubscribe(reader);
     bus.publisher("T", &OWN.declaration(), &who()).unwrap();

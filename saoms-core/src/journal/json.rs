@@ -144,7 +144,7 @@ impl fmt::Display for Wrong {
 pub(super) fn time(seconds: f64) -> Result<Time, Wrong> {
     let nanos = (seconds * 1e9).round();
     if !(0.0..u64::MAX as f64).contains(&nanos) {
-        return Err(Wrong(format!("`{seconds}` is no time of a run in seconds")));
+        return Err(Wrong(format!("`{seconds}` is not a time in seconds")));
     }
     Ok(Time::from_nanos(nanos as u64))
 }

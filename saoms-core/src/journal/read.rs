@@ -68,7 +68,7 @@ impl fmt::Display for JournalReadError {
             }
             JournalReadError::Other => formatter
                 .write_str("this is neither a report of `saoms run --report` nor a file of `saoms run --journal`"),
-            JournalReadError::NoJournal => formatter.write_str("this report holds no journal"),
+            JournalReadError::NoJournal => formatter.write_str("this report contains no journal"),
         }
     }
 }
@@ -135,14 +135,14 @@ fn report(text: &str) -> Result<JournalDocument, JournalReadError> {
     Ok(JournalDocument { journal, seed: report.seed, components: report.components, end: Some(end), is_report: true })
 }
 
-const REPORT: &str = "this is no whole report of `saoms run --report`, and no file of `saoms run --journal`";
+const REPORT: &str = "this is neither a complete report of `saoms run --report` nor a file of `saoms run --journal`";
 
 fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
     let mut lines = text.lines().enumerate().peekable();
     let head = lines.next().map_or("", |(_, line)| line);
     let mut head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
     if head.journal != 1 {
-        let message = format!("this file has the form {}, which a newer version of the program writes", head.journal);
+        let message = format!("this file has the format {}, which a newer version of the program writes", head.journal);
         return Err(incomplete(1, message));
     }
     let (mut entries, mut end) = (Vec::new(), None);
@@ -155,9 +155,9 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
             (last, "this is not how a journal ends")
         } else if line.starts_with("{\"joined\"") {
             let joined = serde_json::from_str(line).map(|Joined { joined }| head.components.push(joined));
-            (joined, "this is no component of a journal")
+            (joined, "this is not a component of a journal")
         } else {
-            (serde_json::from_str(line).map(|entry| entries.push(entry)), "this is no record of a journal")
+            (serde_json::from_str(line).map(|entry| entries.push(entry)), "this is not a record of a journal")
         };
         match read {
             // A run that has not ended, or was killed, may have written a part of its last line.

@@ -89,11 +89,12 @@ fn files_that_are_no_journal_are_told_apart() {
     assert_eq!(read(r#"{"time_s": 1.0, "components": []}"#), Err(JournalReadError::NoJournal));
     assert_eq!(
         refused("{\n\"a\": 1"),
-        "line 2, column 6: this is no whole report of `saoms run --report`, and no file of `saoms run --journal`: \
+        "line 2, column 6: this is neither a complete report of `saoms run --report` nor a file of `saoms run \
+        --journal`: \
          EOF while parsing an object"
     );
     let newer = HEAD.replace("\"journal\":1", "\"journal\":2");
-    assert_eq!(refused(&newer), "line 1: this file has the form 2, which a newer version of the program writes");
+    assert_eq!(refused(&newer), "line 1: this file has the format 2, which a newer version of the program writes");
 }
 
 #[test]
@@ -103,14 +104,14 @@ fn a_wrong_record_is_told_at_its_line() {
     let cases = [
         (
             record.replace("effect", "affect"),
-            "line 2, column 53: this is no record of a journal: unknown variant `affect`",
+            "line 2, column 53: this is not a record of a journal: unknown variant `affect`",
         ),
-        (record.replace("1.0", "-1.0"), "line 2: this is no record of a journal: `-1` is no time of a run in seconds"),
+        (record.replace("1.0", "-1.0"), "line 2: this is not a record of a journal: `-1` is not a time in seconds"),
         (
             record.replace("\"text\"", "\"cause\":1,\"text\""),
-            "line 2: this is no record of a journal: record 1 cannot follow",
+            "line 2: this is not a record of a journal: record 1 cannot follow",
         ),
-        (record.replace("}", ""), "line 2, column 67: this is no record of a journal: EOF"),
+        (record.replace("}", ""), "line 2, column 67: this is not a record of a journal: EOF"),
         (format!("{record}\n{record}"), "line 1: there are two records with the number 1"),
     ];
     for (lines, expected) in cases {

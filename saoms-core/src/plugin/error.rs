@@ -36,8 +36,8 @@ impl fmt::Display for PluginError {
             }
             PluginError::NoLibrary { path } => write!(
                 out,
-                "plugin `{}` is no shared library: expected what `cargo build` makes of a crate with `crate-type = \
-                 [\"cdylib\"]`, an ELF file",
+                "plugin `{}` is not a shared library: expected the ELF file that `cargo build` makes from a crate \
+                with `crate-type = [\"cdylib\"]`",
                 path.display()
             ),
             PluginError::Broken { path, message } => {
@@ -53,8 +53,8 @@ impl fmt::Display for PluginError {
             ),
             PluginError::NoMetadata { path } => write!(
                 out,
-                "plugin `{}` is a library without a section `{SECTION}`: say `saoms_api::plugin! {{ classes: [...] \
-                 }}` in its crate, and build it again",
+                "plugin `{}` has no section `{SECTION}`: add `saoms_api::plugin! {{ classes: [...] }}` to its crate, \
+                and build it again",
                 path.display()
             ),
             PluginError::Metadata { path, message } => {
@@ -73,8 +73,8 @@ impl fmt::Display for PluginError {
             }
             PluginError::Aborts { path, package } => write!(
                 out,
-                "plugin `{}` was built with `panic = \"abort\"`: a panic in it would end the whole program; take that \
-                 out of the profile in the Cargo.toml of `{package}`, and build it again",
+                "plugin `{}` was built with `panic = \"abort\"`: a panic in it would end the whole program; remove \
+                that from the profile in the Cargo.toml of `{package}`, and build it again",
                 path.display()
             ),
             PluginError::Unloadable { path, package, message } => {

@@ -75,7 +75,7 @@ pub(super) fn read_section(path: &Path) -> Result<String, PluginError> {
     let end = data.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
     let text = data.get(..end).unwrap_or_default().to_vec();
     String::from_utf8(text)
-        .map_err(|error| PluginError::Metadata { path: path_of(), message: format!("they are no text: {error}") })
+        .map_err(|error| PluginError::Metadata { path: path_of(), message: format!("they are not text: {error}") })
 }
 
 fn name(machine: Machine) -> String {

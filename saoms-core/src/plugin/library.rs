@@ -28,7 +28,7 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
         unsafe { entry(VERSION) }
     };
     // SAFETY: by the same rules the table is null or constant; what a table of this version begins with is there.
-    let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it gives no table".to_owned()))?;
+    let table = unsafe { table.as_ref() }.ok_or_else(|| unloadable("it returns no table".to_owned()))?;
     let disagrees =
         |message: String| unloadable(format!("its code and its metadata are not from the same build: {message}"));
     if table.version != VERSION {
@@ -85,7 +85,7 @@ fn loaded(path: &Path) -> Result<&'static Library, String> {
     if let Some((_, library)) = loaded.iter().find(|(known, _)| *known == stamp) {
         return Ok(library);
     }
-    let copy = PrivateCopy::of(path).map_err(|error| format!("no copy of it can be made: {error}"))?;
+    let copy = PrivateCopy::of(path).map_err(|error| format!("it cannot be copied: {error}"))?;
     copy.load_dependencies(path)?;
     // All that it calls is bound now: a function that nobody has would end the program when it is called first.
     // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.

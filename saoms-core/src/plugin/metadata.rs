@@ -85,10 +85,9 @@ impl<'de> Deserialize<'de> for RuleMetadata {
         let Written { code: id, name, meaning, severity, rule, judges_parts, prevents_start } =
             Written::deserialize(from)?;
         let severities = [Severity::Note, Severity::Warning, Severity::Error];
-        let severity = severities
-            .into_iter()
-            .find(|known| known.name() == severity)
-            .ok_or_else(|| D::Error::custom(format!("`{severity}` is none of `note`, `warning` and `error`")))?;
+        let severity = severities.into_iter().find(|known| known.name() == severity).ok_or_else(|| {
+            D::Error::custom(format!("found the severity `{severity}`, expected `note`, `warning` or `error`"))
+        })?;
         let code = kept(&id, &name, &meaning, severity, rule.as_deref());
         Ok(RuleMetadata { code, judges_parts, prevents_start })
     }

@@ -78,13 +78,13 @@ impl fmt::Display for InjectError {
                 write!(formatter, "the fleet has no topic `{topic}`; did you mean `{near}`?")
             }
             InjectError::UnknownTopic { topic, known, .. } if known.is_empty() => {
-                write!(formatter, "the fleet has no topic `{topic}`, and no other one")
+                write!(formatter, "the fleet has no topic `{topic}`: it has no topics")
             }
             InjectError::UnknownTopic { topic, known, .. } => {
                 write!(formatter, "the fleet has no topic `{topic}`; its topics are: {}", known.join(", "))
             }
             InjectError::Content { topic, message, error } => {
-                write!(formatter, "topic `{topic}`: this is no message `{message}`: {error}")
+                write!(formatter, "topic `{topic}`: this is not a message `{message}`: {error}")
             }
             InjectError::Ending => formatter.write_str("the run ends"),
         }

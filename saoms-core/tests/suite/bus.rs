@@ -135,9 +135,9 @@ fn different_messages_on_one_topic_do_not_start() {
     );
     assert_eq!(
         fleet.unwrap_err().to_string(),
-        "component `B` of class `actor` could not start: topic `TALK` carries event messages `Words` since component `A` \
-         uses it so, but here it would carry event messages `Own`: rename one of the two with `topicRename`, or let both use the \
-         same message"
+        "component `B` of class `actor` could not start: topic `TALK` carries event messages `Words`, as component \
+        `A` uses it, but here it would carry event messages `Own`: rename one of the two with `topicRename`, or use \
+        the same message in both"
     );
     let (fleet, _) = start(
         "A actor publishes=OWN rename=OWN/both

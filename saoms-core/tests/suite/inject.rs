@@ -65,11 +65,11 @@ fn messages_are_checked_against_the_schema_of_their_topic() {
     assert_eq!(refused("other", json!({})), "the fleet has no topic `other`; its topics are: TALK, TABLE");
     assert_eq!(
         refused("TALK", json!({ "txt": "a" })),
-        "topic `TALK`: this is no message `Words`: `Words` has no field `txt`; its fields are: text"
+        "topic `TALK`: this is not a message `Words`: `Words` has no field `txt`; its fields are: text"
     );
     assert_eq!(
         refused("TALK", json!({ "text": 7 })),
-        "topic `TALK`: this is no message `Words`: field `text`: found 7, expected a text"
+        "topic `TALK`: this is not a message `Words`: field `text`: found 7, expected a text"
     );
     let bytes = |bytes| {
         let (topic, text) = ("TALK".to_owned(), String::new());

@@ -136,7 +136,7 @@ fn pair<'a>(
     let count = found.iter().filter(|name| !name.text.is_empty()).count();
     match &found[..] {
         [_, new] if count == 2 && new.text.strip_prefix('/').unwrap_or(new.text).split('/').any(str::is_empty) => {
-            let message = format!("`{}` is not a name of a topic", new.text);
+            let message = format!("`{}` is not a topic name", new.text);
             faults.push(RenameFault { at: new.at.clone(), message, other: None });
         }
         [old, new] if count == 2 => pairs.push(Pair { old: old.clone(), new: new.clone() }),
@@ -145,7 +145,7 @@ fn pair<'a>(
             let message = match count {
                 0 => "a pair without names".to_owned(),
                 1 => format!("a pair with one name, `{}`", piece.text),
-                _ => format!("{count} names where a pair has two"),
+                _ => format!("a pair has two names, found {count}"),
             };
             faults.push(RenameFault { at: piece.at, message, other: None });
         }
@@ -173,7 +173,7 @@ fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<RenameFault>) {
             faults.push(RenameFault {
                 at: pair.old.at.clone(),
                 message: format!("topic `{}` is renamed twice", pair.old.text),
-                other: Some((earlier.old.at.clone(), "first here")),
+                other: Some((earlier.old.at.clone(), "first renamed here")),
             });
         } else {
             first.insert(pair.old.text, pair);

@@ -83,7 +83,8 @@ fn without_implementation(fleet: &Fleet<'_>, report: &mut Report<'_>) {
 
 /// The name of the class of a component that names one.
 fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &mut Report<'_>) -> Option<&'a Text> {
-    const SUPPORTED: &str = "components are implemented by a class: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
+    const SUPPORTED: &str =
+        "name the class of the component: `implementation.java class=\"...\"` or `implementation.rust class=\"...\"`";
     let implementation = component.implementation.as_ref()?;
     match &implementation.kind {
         ImplementationKind::Java { class } | ImplementationKind::Rust { class, .. } => class.as_ref(),
@@ -94,10 +95,11 @@ fn runnable<'a>(component: &'a ComponentElement, assume_classes: bool, report: &
             let element = quoted(&format!("implementation.{kind}"));
             let is_of_sca = *is_sca || !["java", "rust", "composite"].contains(&kind.as_str());
             let (message, help) = match is_of_sca {
-                true => (format!("{element} cannot run here"), SUPPORTED),
+                true => (format!("this program cannot run {element}"), SUPPORTED),
                 false => (
-                    format!("{element} of another namespace cannot run here"),
-                    "give it the prefix of the elements around it, or none where they have none: then it is that of SCA",
+                    format!("this program cannot run {element} of another namespace"),
+                    "to use the element of SCA, write it with the prefix of the elements around it, or without a \
+                    prefix if they have none",
                 ),
             };
             // What it lacks does not matter then.
@@ -134,12 +136,12 @@ fn is_in_library(
                 one = one.replace(class, class.location, meant);
             }
             one = one.help(match own.len() {
-                0 => "it has no class of components".to_owned(),
-                _ => format!("it has {}", list(own.into_iter())),
+                0 => "it has no component class".to_owned(),
+                _ => format!("its classes are {}", list(own.into_iter())),
             });
             match has.map(|has| has.origin()) {
                 None => one,
-                Some(None) => one.help("the class is linked into this program: leave `library` out"),
+                Some(None) => one.help("remove `library`: the class is part of this program"),
                 Some(Some(other)) => one.help(format!("the class is in {}", quoted(&other.display().to_string()))),
             }
         }
@@ -147,8 +149,9 @@ fn is_in_library(
         Some(LibraryLink::Missing(looked)) => {
             let one = wrong(format!("there is no library {}", quoted(library)));
             let looked: Vec<String> = looked.iter().map(|path| path.display().to_string()).collect();
-            one.help(format!("looked for {}", list(looked.iter().map(String::as_str))))
-                .help("name a file from the folder of the composite, or give its folder with `--plugin`")
+            one.help(format!("looked for {}", list(looked.iter().map(String::as_str)))).help(
+                "write the path of the library from the folder of the composite, or name its folder with `--plugin`",
+            )
         }
         None => wrong(format!("the library {} was not looked for", quoted(library))),
     };
@@ -178,7 +181,7 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
     }
     if registry.get_loop(class).is_some() {
         let inside = format!("`<saoms:loop name=\"...\" class=\"{class}\"/>`");
-        return one.help(format!("it is a loop: give it to a component that has loops, by {inside} in it"));
+        return one.help(format!("it is a loop: write {inside} in a component that has loops"));
     }
     let looked = match registry.len() {
         0 => "no class is linked into this program".to_owned(),
@@ -186,7 +189,8 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
             format!("the classes linked into this program are {}", list(registry.iter().map(|class| class.name())))
         }
         count => format!(
-            "looked among the {count} classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin"
+            "`saoms components` lists the {count} classes of this program and its plugins; `--plugin PATH` adds the \
+            classes of a plugin"
         ),
     };
     one.help(looked)

@@ -57,7 +57,7 @@ impl Finder {
             });
             if let Some((holder, _)) = holder {
                 let holder = quoted(&holder.display().to_string());
-                let message = format!("the contribution in {holder} has the namespace {shown}, and does not export it");
+                let message = format!("the contribution in {holder} has the namespace {shown}, but does not export it");
                 let help = format!("write `<export namespace=\"{namespace}\"/>` in its description");
                 diagnostics.push(Diagnostic::new(&codes::EXCHANGE, entry.at, message).help(help));
                 continue;

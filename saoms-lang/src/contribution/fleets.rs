@@ -118,7 +118,7 @@ fn unreadable(index: &mut Index, sources: &mut Sources, diagnostics: &mut Diagno
         let file = sources.add(folder.display().to_string(), "");
         let message = format!("the directory cannot be read: {error}");
         let one = Diagnostic::new(&codes::FILE_UNREADABLE, Span::empty(0).in_file(file), message);
-        diagnostics.push(one.help("let it be read, or name the directories and files beside it one by one"));
+        diagnostics.push(one.help("make it readable, or name the other directories and files one by one"));
     }
 }
 
@@ -221,7 +221,7 @@ impl Files {
         diagnostics.withdraw(&codes::ATTRIBUTE_VALUE, at);
         let one = match deployable.namespace {
             Some(_) => one,
-            None => one.help("write it with a prefix of the target namespace of the composite"),
+            None => one.help("write it with a prefix of the composite's target namespace"),
         };
         let names = all.iter().filter(of_namespace).map(|one| one.name.as_str());
         diagnostics.push(if let Some(meant) = nearest(local, names.clone()) {
@@ -233,9 +233,9 @@ impl Files {
                 namespace => format!("it has {} in the namespace {}", quoted(local), quoted(namespace)),
             })
         } else if all.is_empty() {
-            one.help("it has none at all: is it put together from several folders?")
+            one.help("it has no composites: is it made from several folders?")
         } else if names.clone().next().is_none() {
-            one.help("it has none of this namespace")
+            one.help("it has no composite of this namespace")
         } else {
             let names: Vec<String> = names.take(10).map(quoted).collect();
             one.help(format!("it has {}", names.join(", ")))

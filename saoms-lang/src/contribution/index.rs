@@ -201,13 +201,14 @@ impl Index {
         let shown = quoted(&shown.display().to_string());
         match (self.is_cut, self.unreadable.first()) {
             (true, _) => format!(
-                "looked among some ten thousand files in {shown} and below, and not in all; give the file of that composite, too, beside this one"
+                "looked among some ten thousand files in {shown} and below, and not in all; name the file of that \
+                composite in the command as well"
             ),
             (false, Some((folder, error))) => format!(
-                "looked in the files `*.composite` in {shown} and below, but not in {}, which cannot be read: {error}",
+                "searched the files `*.composite` in {shown} and below, but not in {}, which cannot be read: {error}",
                 quoted(&folder.display().to_string())
             ),
-            (false, None) => format!("looked in the files `*.composite` in {shown} and below"),
+            (false, None) => format!("searched the files `*.composite` in {shown} and below"),
         }
     }
 

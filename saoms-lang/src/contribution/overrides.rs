@@ -22,7 +22,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
     let mut lines = lines.into_iter();
     let Some(mut head) = lines.next().map(Vec::into_iter) else {
         let one = Diagnostic::new(&codes::OVERRIDES, Span::empty(0).in_file(file), "the table is empty");
-        diagnostics.push(one.help("its first line names the columns: `index` or `name`, and properties"));
+        diagnostics.push(one.help("write a first line that names the columns: `index` or `name`, then properties"));
         return None;
     };
     let mut key = head.next()?;
@@ -35,7 +35,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
                 one.help(format!("move the column {} to the front of each line", quoted(moved)))
             }
             Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), key.location, meant),
-            None => one.help("it says which replica a line is about, the other columns are properties"),
+            None => one.help("the first column names the replica of a row; the other columns are properties"),
         });
         // As the lines look.
         let has_number = lines.as_slice().first().and_then(|line| line.first()?.parse::<i64>().ok()).is_some();
@@ -53,11 +53,11 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         if name.is_empty() {
             *is_usable = false;
             let one = report(name.location, "a column without a name".to_owned());
-            diagnostics.push(one.help("the first line names the property of each column"));
+            diagnostics.push(one.help("write a property name in the first line of each column"));
         } else if let Some(first) = first.insert(name, name.location) {
             *is_usable = false;
             let one = report(name.location, format!("there are two columns {}", quoted(name)));
-            diagnostics.push(one.label(first, "the first").help("merge them into one"));
+            diagnostics.push(one.label(first, "the first").help("merge them"));
         }
     }
     let mut rows = Vec::new();
@@ -70,11 +70,11 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
             // Which of its values belongs to which column is not known.
             let at = cells.next().map_or(of.location, |beyond| beyond.location);
             let (values, columns) = (many(count, "value"), many(properties.len() + 1, "column"));
-            let one = report(at, format!("a line with {values}, and there are {columns}"));
+            let one = report(at, format!("this line has {values}, but the table has {columns}"));
             diagnostics.push(one.help(match (of.contains([';', '\t']), count > properties.len()) {
-                (true, _) => "the values of a line stand between commas",
-                (_, true) => "a value that contains a comma is written between two `\"`",
-                _ => "a column that says nothing about a replica is an empty value: end the line with its comma",
+                (true, _) => "separate the values with commas",
+                (_, true) => "write a value that contains a comma between two `\"`",
+                _ => "write an empty value, with its comma, for each property that the replica does not change",
             }));
             if !of.contains([';', '\t']) {
                 rows.push(Row { key: of, values: vec![None; properties.len()] });
@@ -97,9 +97,9 @@ fn separated(file: FileId, text: &str) -> Option<Diagnostic> {
     nearest(first, KEYS)?;
     let shown = if separator == "\t" { "tabs".to_owned() } else { quoted(separator) };
     let place = Span::new((start + at) as u32, (start + at + separator.len()) as u32).in_file(file);
-    let message = format!("the values of this table stand between {shown}, and have to stand between commas");
+    let message = format!("the values of this table are separated by {shown}, expected commas");
     let one = Diagnostic::new(&codes::OVERRIDES, place, message);
-    Some(one.help("save it as comma-separated values; a value that contains a comma is written between two `\"`"))
+    Some(one.help("save it as comma-separated values; write a value that contains a comma between two `\"`"))
 }
 
 fn many(count: usize, what: &str) -> String {
@@ -152,8 +152,8 @@ fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (
     loop {
         let Some(length) = text[inside..].find('"') else {
             let place = Span::new(start as u32, start as u32 + 1).in_file(file);
-            let one = Diagnostic::new(&codes::OVERRIDES, place, "a `\"` that is never closed");
-            diagnostics.push(one.help("a `\"` in a value between two of them is written twice"));
+            let one = Diagnostic::new(&codes::OVERRIDES, place, "a `\"` without a closing `\"`");
+            diagnostics.push(one.help("write a `\"` inside a quoted value twice"));
             return (Text::new("".into(), place), text.len());
         };
         value.push_str(&text[inside..inside + length]);
@@ -169,7 +169,7 @@ fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (
     if !behind.is_empty() {
         let message = format!("{} behind a closing `\"`", quoted(&behind));
         let one = Diagnostic::new(&codes::OVERRIDES, behind.location, message);
-        diagnostics.push(one.help("a `\"` in a value between two of them is written twice"));
+        diagnostics.push(one.help("write a `\"` inside a quoted value twice"));
     }
     let span = Span::new(start as u32 + 1, inside as u32 - 1).in_file(file);
     (Text::new(value.trim().into(), span), end)

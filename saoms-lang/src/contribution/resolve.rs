@@ -228,7 +228,7 @@ fn ambiguous(wanted: &Wanted, found: &Path, twins: &[PathBuf]) -> Option<Diagnos
         more => format!("{} and {} more", name(first), more - 1),
     };
     let message = format!(
-        "there are two composites {} in one namespace: that in {} is taken, and not that in {others}",
+        "there are two composites {} in one namespace: the one in {} is used, not the one in {others}",
         quoted(&wanted.local),
         name(found)
     );

@@ -107,7 +107,7 @@ fn two(
             if std::mem::discriminant(&left) != std::mem::discriminant(&other) {
                 let message = format!("{left} cannot be compared with {other}");
                 return Err(ExpressionError::new(message)
-                    .help("texts are written between two `'`, numbers, `true` and `false` without")
+                    .help("write texts between two `'`; numbers, `true` and `false` have no quotes")
                     .at(whole.at.clone()));
             }
             Ok(ExpressionValue::Boolean((left == other) == (operator == "==")))
@@ -125,7 +125,7 @@ fn unquoted(fault: ExpressionFault, text: &ExpressionValue, of: &Expression) -> 
         return fault;
     };
     let also = fault.problem.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
-    let help = format!("a text is written between two `'`, as {}{also}", quoted(&format!("'{name}'")));
+    let help = format!("write a text between two `'`, as {}{also}", quoted(&format!("'{name}'")));
     ExpressionFault { problem: fault.problem.help(help), ..fault }
 }
 

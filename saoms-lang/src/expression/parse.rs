@@ -56,7 +56,7 @@ impl Expression {
 pub fn parse(text: &str) -> Result<Expression, ExpressionFault> {
     let (expression, end) = parse_from(text, 0)?;
     if end < text.len() {
-        return Err(ExpressionError::new("`:` means nothing here").at(end..end + 1));
+        return Err(ExpressionError::new("unexpected `:`").at(end..end + 1));
     }
     Ok(expression)
 }
@@ -70,8 +70,8 @@ pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize)
         None => Ok((whole, end)),
         Some((token, at)) => {
             let message = match token {
-                Token::Sign(sign) => format!("{} means nothing here", quoted(sign)),
-                _ => "an operator is expected before this".to_owned(),
+                Token::Sign(sign) => format!("unexpected {}", quoted(sign)),
+                _ => "expected an operator before this".to_owned(),
             };
             Err(ExpressionError::new(message).at(at.clone()))
         }
@@ -155,7 +155,7 @@ impl Parser<'_> {
     fn deeper(&mut self, at: Range<usize>) -> Result<(), ExpressionFault> {
         self.depth += 1;
         match self.depth > EXPRESSION_DEPTH {
-            true => Err(ExpressionError::new("too many parentheses and signs inside each other").at(at)),
+            true => Err(ExpressionError::new("parentheses and operators are nested too deep").at(at)),
             false => Ok(()),
         }
     }
@@ -163,8 +163,7 @@ impl Parser<'_> {
     fn operand(&mut self) -> Result<Expression, ExpressionFault> {
         let Some((token, at)) = self.tokens.get(self.next) else {
             let at = self.tokens.last().map_or(self.end..self.end, |(_, at)| at.clone());
-            let message =
-                if self.tokens.is_empty() { "an expression is expected" } else { "something is missing after this" };
+            let message = if self.tokens.is_empty() { "expected an expression" } else { "expected a value after this" };
             return Err(ExpressionError::new(message).at(at));
         };
         let node = match token {
@@ -174,11 +173,11 @@ impl Parser<'_> {
                 "true" => Node::Value(ExpressionValue::Boolean(true)),
                 "false" => Node::Value(ExpressionValue::Boolean(false)),
                 "not" => {
-                    let problem = ExpressionError::new("`not` stands before a comparison");
+                    let problem = ExpressionError::new("`not` must be before a comparison");
                     return Err(problem.help("write `(not ...)`").at(at.clone()));
                 }
                 "and" | "or" => {
-                    return Err(ExpressionError::new(format!("something is missing before `{word}`")).at(at.clone()));
+                    return Err(ExpressionError::new(format!("expected a value before `{word}`")).at(at.clone()));
                 }
                 name => Node::Name(name.to_owned(), at.clone()),
             },
@@ -190,16 +189,14 @@ impl Parser<'_> {
                 let mut inner = self.level(0)?;
                 self.depth -= 1;
                 if self.sign() != ")" {
-                    return Err(ExpressionError::new("`(` is never closed").at(open));
+                    return Err(ExpressionError::new("`(` has no closing `)`").at(open));
                 }
                 inner.at = open.start..self.tokens[self.next].1.end;
                 self.next += 1;
                 return Ok(inner);
             }
             Token::Sign(sign) => {
-                return Err(
-                    ExpressionError::new(format!("something is missing before {}", quoted(sign))).at(at.clone())
-                );
+                return Err(ExpressionError::new(format!("expected a value before {}", quoted(sign))).at(at.clone()));
             }
         };
         self.next += 1;

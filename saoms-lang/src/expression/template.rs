@@ -94,7 +94,7 @@ fn pieces(text: &str) -> impl Iterator<Item = Result<Piece<'_>, ExpressionFault>
         let start = at;
         let Some(length) = end_of(&text[start + 2..]) else {
             at = text.len();
-            let problem = ExpressionError::new("`${` is never closed");
+            let problem = ExpressionError::new("`${` has no closing `}`");
             return Some(Err(problem.help("write `${...}`, or `$${` for `${` itself").at(start..text.len())));
         };
         let end = start + 2 + length;
@@ -128,10 +128,12 @@ fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, ExpressionF
     match digits {
         Some(digits @ 1..=NUMBER_DIGITS) => Ok(Piece::Expression(expression, digits)),
         _ => {
-            let problem = ExpressionError::new("after `:` the number of digits is expected, with a `0` before it");
+            let problem = ExpressionError::new("expected the number of digits after `:`, with a `0` before it");
             let plain = width.parse().is_ok_and(|digits: usize| (1..=NUMBER_DIGITS).contains(&digits));
             let problem = if plain { problem.instead(format!("0{width}")) } else { problem };
-            Err(problem.help("as in `${index:03}`, which makes 007 of 7").at(end + 1..inside.end.max(end + 1)))
+            Err(problem
+                .help("write it as in `${index:03}`, which turns 7 into 007")
+                .at(end + 1..inside.end.max(end + 1)))
         }
     }
 }

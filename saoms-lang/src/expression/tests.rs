@@ -43,11 +43,11 @@ fn numbers_are_calculated_as_people_do() {
         ("1 / (index - 7)", "[(index - 7)] division by zero: `index - 7` is 0"),
         ("1 % 0", "[0] division by zero"),
         ("1.5 * 2", "[1.5] `1.5` is not a whole number"),
-        ("", "[] an expression is expected"),
-        ("2 *", "[*] something is missing after this"),
-        ("* 2", "[*] something is missing before `*`"),
-        ("(1 + 2", "[(] `(` is never closed"),
-        ("1 2", "[2] an operator is expected before this"),
+        ("", "[] expected an expression"),
+        ("2 *", "[*] expected a value after this"),
+        ("* 2", "[*] expected a value before `*`"),
+        ("(1 + 2", "[(] `(` has no closing `)`"),
+        ("1 2", "[2] expected an operator before this"),
         ("$index", "[$] write the property's name without `$` in an expression -> "),
         ("inedx + 1", "[inedx] no `inedx`"),
         ("2 * ( inedx )", "[inedx] no `inedx`"),
@@ -75,7 +75,7 @@ fn conditions_are_typed() {
         ("simulated && true", "[&&] there is no `&&` -> and"),
         ("1 < robots < 50", "[<] two comparisons in a row"),
         ("site", "[site] found the text `north`, expected a condition"),
-        ("site == 'north", "['north] a text that does not end"),
+        ("site == 'north", "['north] this text has no closing `'`"),
     ] {
         assert_eq!(of(text), value, "{text}");
     }
@@ -96,13 +96,10 @@ fn texts_get_numbers_in_place_of_expressions() {
         ("${-index:04}", "-007"),
         ("$${index} costs $5 and $${$${x", "${index} costs $5 and ${${x"),
         ("$", "$"),
-        ("${index", "[${index] `${` is never closed"),
-        ("${}", "[] an expression is expected"),
-        ("${index:3}", "[3] after `:` the number of digits is expected, with a `0` before it"),
-        (
-            "${index:099}-${nix}",
-            "[099] after `:` the number of digits is expected, with a `0` before it; [nix] no `nix`",
-        ),
+        ("${index", "[${index] `${` has no closing `}`"),
+        ("${}", "[] expected an expression"),
+        ("${index:3}", "[3] expected the number of digits after `:`, with a `0` before it"),
+        ("${index:099}-${nix}", "[099] expected the number of digits after `:`, with a `0` before it; [nix] no `nix`"),
     ] {
         assert_eq!(rendered(text), value, "{text}");
     }

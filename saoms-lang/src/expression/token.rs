@@ -81,8 +81,8 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), E
             (Token::Word(rest[..length].to_owned()), length)
         } else if first == '\'' || first == '"' {
             let Some(length) = rest[1..].find(first) else {
-                return Err(ExpressionError::new("a text that does not end")
-                    .help("a text is written between two `'`")
+                return Err(ExpressionError::new("this text has no closing `'`")
+                    .help("write a text between two `'`")
                     .at(at..text.len()));
             };
             (Token::Text(rest[1..=length].to_owned()), length + 2)
@@ -92,7 +92,7 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), E
             return Err(odd(rest, first, at));
         };
         if all.len() == EXPRESSION_TOKENS {
-            let message = format!("an expression of more than {EXPRESSION_TOKENS} signs, names and numbers");
+            let message = format!("an expression with more than {EXPRESSION_TOKENS} operators, names and numbers");
             return Err(ExpressionError::new(message).at(at..at + length));
         }
         all.push((token, at..at + length));
@@ -107,7 +107,9 @@ fn number(rest: &str, at: usize) -> Result<(Token, usize), ExpressionFault> {
     if let Some(digits) = behind.strip_prefix('.') {
         let all = length + 1 + digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
         let message = format!("{} is not a whole number", quoted(&rest[..all]));
-        return Err(ExpressionError::new(message).help("expressions calculate with whole numbers").at(at..at + all));
+        return Err(ExpressionError::new(message)
+            .help("use whole numbers: expressions calculate only with those")
+            .at(at..at + all));
     }
     match rest[..length].parse() {
         Ok(number) => Ok((Token::Integer(number), length)),
@@ -129,5 +131,5 @@ fn odd(rest: &str, first: char, at: usize) -> ExpressionFault {
         return problem.at(at..at + 1);
     }
     let shown = quoted(first.encode_utf8(&mut [0; 4]));
-    ExpressionError::new(format!("{shown} means nothing here")).at(at..at + first.len_utf8())
+    ExpressionError::new(format!("unexpected {shown}")).at(at..at + first.len_utf8())
 }

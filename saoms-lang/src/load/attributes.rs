@@ -70,7 +70,7 @@ impl Loader<'_> {
         }
         self.newer.push(known.name);
         let (name, of) = (quoted(known.name), quoted(element.name()));
-        let message = format!("{name} of {of} is an attribute of SCA 1.1, and this file is of SCA 1.0");
+        let message = format!("{name} of {of} is an attribute of SCA 1.1, but this file is of SCA 1.0");
         let one = Diagnostic::new(&codes::NEWER_ATTRIBUTE, attribute.name_location(), message)
             .help("SAOMS reads it, other programs may not: change the file to SCA 1.1");
         let inside = "or write the value as text inside";
@@ -107,7 +107,7 @@ impl Loader<'_> {
                 }
             }
             Some("name") if attribute.value().trim().ends_with(".composite") => one.help(
-                "a composite is named by its `name`, with the prefix of its `targetNamespace`, and not by its file",
+                "write the composite's `name` with the prefix of its `targetNamespace`, not the name of its file",
             ),
             Some(meant) if free.contains(&meant) => {
                 self.meant.push((element.id(), meant, name.to_owned()));
@@ -117,7 +117,7 @@ impl Loader<'_> {
             None if vocabulary::own_names(kind).any(|known| known == name) => {
                 own_without_prefix(one, attribute, element)
             }
-            None if kind.has(name, Version::Osoa10) => one.help("it is one of SCA 1.0 alone: remove it"),
+            None if kind.has(name, Version::Osoa10) => one.help("remove it: only SCA 1.0 has this attribute"),
             None if kind.names(self.version).next().is_none() => one.help("it has no attributes"),
             None => {
                 let names: Vec<String> = kind.names(self.version).map(quoted).collect();
@@ -145,7 +145,7 @@ impl Loader<'_> {
             None if kind.has(name, self.version) && element.attribute(name).is_some() => one.help(given_already(name)),
             None if kind.has(name, self.version) => one.mend("remove the prefix", name),
             None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
-            None => one.help(format!("of SAOMS it has {}", names.join(", "))),
+            None => one.help(format!("its attributes of SAOMS are {}", names.join(", "))),
         });
     }
 
@@ -221,8 +221,9 @@ impl Loader<'_> {
         }
         if let Some(bad) = without_expressions(&name).chars().find(|c| c.is_whitespace() || *c == '/') {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
-            let message = format!("{} cannot be a name: it holds {shown}", quoted(&name));
-            let help = "names are used in targets as `component/service`, and in lists between blanks";
+            let message = format!("{} cannot be a name: it contains {shown}", quoted(&name));
+            let help =
+                "remove it from the name: targets use `/` in `component/service`, and lists separate names with blanks";
             self.report(Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message).help(help));
         } else if !name.contains("${") && (name.contains(':') || !name.starts_with(is_first)) {
             self.no_name(&name);
@@ -284,7 +285,7 @@ impl Loader<'_> {
         if let Some(beyond) = words.get(LIST_WORDS) {
             let message = format!("{} has more than {LIST_WORDS} words", quoted(name));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, beyond.location, message);
-            self.report(one.help("the others are not looked at"));
+            self.report(one.help("the other words are ignored"));
             words.truncate(LIST_WORDS);
         }
         words
@@ -324,7 +325,7 @@ fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Elemen
     let whole = format!("{prefix}:{}", attribute.name());
     let edit = Edit { location: attribute.name_location(), replacement: whole.clone() };
     let edits = declaration.into_iter().chain([edit]).collect();
-    one.help(format!("it is an attribute of SAOMS, of the namespace `{SAOMS_NAMESPACE}`"))
+    one.help(format!("write it with a prefix of the namespace `{SAOMS_NAMESPACE}`: it is an attribute of SAOMS"))
         .suggest_edits(format!("replace {} with {}", quoted(attribute.name()), quoted(&whole)), edits)
 }
 

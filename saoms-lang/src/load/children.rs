@@ -58,9 +58,9 @@ impl Loader<'_> {
             },
         };
         let (name, around) = (quoted(element.name()), root.local_name());
-        let message = format!("{name} is of {}, and the {around} is of {}", version.label(), self.version.label());
+        let message = format!("{name} is of {}, but the {around} is of {}", version.label(), self.version.label());
         let one = Diagnostic::new(&codes::OTHER_VERSION, element.name_location(), message);
-        let help = "a composite and all of SCA inside it are of one namespace";
+        let help = "use one namespace of SCA for a composite and everything in it";
         self.report(one.label(root.name_location(), format!("the {around}")).help(help));
         Family::Sca
     }
@@ -155,7 +155,7 @@ impl Loader<'_> {
                 None => quoted(child),
             });
             match names.collect::<Vec<_>>().join(", ") {
-                none if none.is_empty() => format!("{place} contains no elements of SCA"),
+                none if none.is_empty() => format!("{place} cannot contain elements of SCA"),
                 names => format!("{place} can contain {names}"),
             }
         };
@@ -167,7 +167,7 @@ impl Loader<'_> {
                 return Some("include");
             }
             self.report(match is_own {
-                true => one.help(format!("it can stand in {}", list(vocabulary::own_parents(name)))),
+                true => one.help(format!("it is allowed in {}", list(vocabulary::own_parents(name)))),
                 false => one.help(holds()),
             });
             return None;
@@ -191,7 +191,7 @@ impl Loader<'_> {
             None if parent.has(name, self.version) && is_attribute_as_element(element) => as_attribute(one, element),
             Some(meant) => renamed(one, element, meant),
             None if name.contains('.') => {
-                one.help("an extension is written in the namespace of the one who defined it").help(holds())
+                one.help("if it is an extension, write it with a prefix of its own namespace").help(holds())
             }
             None => one.help(holds()),
         });
@@ -241,7 +241,7 @@ impl Loader<'_> {
         }
         self.newer.push(name);
         let (version, other) = if is_1_1 { ("SCA 1.1", "SCA 1.0") } else { ("SCA 1.0", "SCA 1.1") };
-        let message = format!("{} is an element of {other}, and this file is of {version}", quoted(name));
+        let message = format!("{} is an element of {other}, but this file is of {version}", quoted(name));
         let one = Diagnostic::new(&codes::UNKNOWN_ELEMENT, element.name_location(), message);
         let one = one.severity(Severity::Warning).help("other programs refuse it");
         self.report(match name {
@@ -265,9 +265,9 @@ impl Loader<'_> {
         let one = Diagnostic::new(&codes::MISPLACED_TEXT, location, message);
         let is_of = |kind: &str| element.local_name().starts_with(kind);
         self.report(if is_of("implementation.") && element.attribute("class").is_none() {
-            one.help("the class is named by the attribute `class`")
+            one.help("name the class with the attribute `class`")
         } else if is_of("reference") && element.attribute("target").is_none() {
-            one.help("the component that it calls is named by the attribute `target`")
+            one.help("name the component that it calls with the attribute `target`")
         } else {
             as_comment(one, element, span)
         });
@@ -303,7 +303,9 @@ impl Loader<'_> {
                 let description = format!("replace {} with {}", quoted(name), quoted(&format!("{prefix}:{name}")));
                 one.suggest_edits(description, renaming(element, Some(prefix), name))
             }
-            None => one.help("elements of SCA are in the namespace of the composite, extensions in one of their own"),
+            None => one.help(
+                "write an element of SCA in the namespace of the composite, and an extension in its own namespace",
+            ),
         });
     }
 }
@@ -334,7 +336,7 @@ fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
     let remark = ["#", "//", ";"].iter().find_map(|mark| text.strip_prefix(mark)).map(str::trim);
     match remark.filter(|remark| !remark.contains(['<', '\n']) && !remark.contains("--")) {
         Some(remark) => one.mend("write it as a comment", format!("<!-- {remark} -->")),
-        None => one.help("remove it; comments stand between `<!--` and `-->`"),
+        None => one.help("remove it, or write a comment between `<!--` and `-->`"),
     }
 }
 

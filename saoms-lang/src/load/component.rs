@@ -110,10 +110,10 @@ impl Loader<'_> {
         let attribute = element.attribute_in(SAOMS_NAMESPACE, "path")?;
         let path = attribute.trimmed();
         if path.split('/').any(|name| name.is_empty() || name.contains(char::is_whitespace)) {
-            let message = format!("{} is not a path of a component", quoted(&path));
+            let message = format!("{} is not a component path", quoted(&path));
             let location = if path.is_empty() { attribute.location() } else { path.location };
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, location, message);
-            self.report(one.help("a path is names with `/` between them, as `hall/Robot001`"));
+            self.report(one.help("write names with `/` between them, such as `hall/Robot001`"));
             return None;
         }
         Some(path)
@@ -189,7 +189,7 @@ impl Loader<'_> {
         let message = format!("{} is in the namespace of SAOMS", quoted(element.name()));
         let description = format!("replace {} with {}", quoted(element.name()), quoted(&whole));
         let one = Diagnostic::new(&codes::MISPLACED_ELEMENT, element.name_location(), message);
-        let one = one.help("the properties of a loop are written as those of a component, as SCA has them");
+        let one = one.help("write the properties of a loop as elements of SCA, as in a component");
         self.report(one.suggest_edits(description, renaming(element, prefix, "property")));
     }
 

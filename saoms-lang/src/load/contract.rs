@@ -32,7 +32,7 @@ impl Loader<'_> {
             && let Some(attribute) = element.attribute("target")
         {
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), "`target` names nothing");
-            let one = one.severity(Severity::Warning).help("name a component, or leave `target` out");
+            let one = one.severity(Severity::Warning).help("name a component, or remove `target`");
             // The schema lets the list be empty.
             self.report(Diagnostic { rule: None, ..one });
         }
@@ -64,7 +64,7 @@ impl Loader<'_> {
             }
             None => _ = self.required(element, "promote"),
             Some(attribute) => {
-                let message = format!("{} promotes nothing", quoted(element.name()));
+                let message = format!("the attribute `promote` of {} is empty", quoted(element.name()));
                 let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), message);
                 self.report(one.severity(Severity::Warning));
             }

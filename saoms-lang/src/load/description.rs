@@ -227,7 +227,7 @@ impl Description {
             }
             let message = format!("there is no folder {}", quoted(&location));
             let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location.location, message);
-            let help = format!("it is looked for as {}", quoted(&path.display().to_string()));
+            let help = format!("the full path is {}", quoted(&path.display().to_string()));
             diagnostics.push(one.severity(Severity::Warning).help(help));
         }
     }
@@ -238,7 +238,7 @@ impl Description {
         let local = what.split_once(':').map_or(what.as_str(), |(_, local)| local);
         let is_same = |one: &&Deployable| one.local() == local && one.namespace.as_deref() == namespace;
         let message = if let Some(first) = self.deployables.iter().find(is_same) {
-            let one = format!("{} is called deployable twice", quoted(what));
+            let one = format!("{} is listed as deployable twice", quoted(what));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, what.location, one);
             one.label(first.name.location, "the first").help("keep one of them")
         } else if namespace.is_none() {
@@ -246,10 +246,10 @@ impl Description {
                 Some((prefix, _)) if child.resolve_prefix(prefix).is_none() => {
                     format!("the prefix {} is not declared", quoted(prefix))
                 }
-                _ => format!("{} does not say its namespace", quoted(what)),
+                _ => format!("{} has no namespace", quoted(what)),
             };
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, what.location, why);
-            one.help("write it with a prefix of the target namespace of the composite")
+            one.help("write it with a prefix of the composite's target namespace")
         } else {
             return;
         };

@@ -36,7 +36,7 @@ pub(super) fn contradiction(file: FileId, text: &str) -> Option<Diagnostic> {
     WIDE.iter().find(|wide| upper.starts_with(**wide) || upper.ends_with(*wide))?;
     let start = text.find(&name)? as u32;
     let place = Span::new(start, start + name.len() as u32).in_file(file);
-    let message = format!("the file is declared to be in {}, and is in UTF-8", quoted(&name));
+    let message = format!("the XML declaration says {}, but the file is in UTF-8", quoted(&name));
     let one = Diagnostic::new(&codes::FILE_ENCODING, place, message).severity(Severity::Warning);
     Some(one.suggest(format!("replace {} with `UTF-8`", quoted(&name)), place, "UTF-8"))
 }

@@ -38,7 +38,7 @@ impl Loader<'_> {
             let at = span.in_file(element.document().file());
             let message = format!("the property {} is given a value in two ways", quoted(&name));
             let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message);
-            self.report(one.label(first.tag(), "the other one").help("keep one of them"));
+            self.report(one.label(first.tag(), "the other value").help("keep one of them"));
         }
         let value = self.optional(element, "value");
         let details = self.details(element, kind, values, content);

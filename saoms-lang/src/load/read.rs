@@ -97,9 +97,9 @@ pub(crate) fn value(path: &Path, max_size: u64, named: Location, open: &OpenText
         if one.code == &codes::FILE_NOT_FOUND {
             let shown = path.display().to_string();
             if shown.contains('\\') {
-                one.help.insert(0, format!("folders stand before `/`: write {}", quoted(&shown.replace('\\', "/"))));
+                one.help.insert(0, format!("separate folders with `/`: write {}", quoted(&shown.replace('\\', "/"))));
             } else {
-                one.help.insert(0, format!("it is looked for as {}", quoted(&shown)));
+                one.help.insert(0, format!("the full path is {}", quoted(&shown)));
             }
         }
         Box::new(one)
@@ -122,7 +122,7 @@ pub(crate) fn value(path: &Path, max_size: u64, named: Location, open: &OpenText
 /// The diagnostic for a file of nothing, or of nothing but white space.
 pub(super) fn empty(file: FileId) -> Diagnostic {
     Diagnostic::new(&codes::FILE_EMPTY, start_of(file), "the file is empty")
-        .help("a composite is at least `<composite xmlns=\"...\" name=\"...\" targetNamespace=\"...\"/>`")
+        .help("write at least `<composite xmlns=\"...\" name=\"...\" targetNamespace=\"...\"/>`")
 }
 
 fn start_of(file: FileId) -> Location {
@@ -182,7 +182,7 @@ impl Failure {
                 (&codes::FILE_OUTSIDE, message, Some(help))
             }
             Self::Io(error) if error.raw_os_error() == Some(libc::ELOOP) => {
-                let help = "let it lead to a file, or remove it".to_owned();
+                let help = "change the link, or remove it".to_owned();
                 (&codes::FILE_NOT_FOUND, "this link leads back to itself".to_owned(), Some(help))
             }
             Self::Io(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
@@ -193,7 +193,7 @@ impl Failure {
                 Err(_) => (&codes::FILE_NOT_FOUND, not_there, near(path, expected.ending)),
             },
             Self::Io(error) if error.kind() == io::ErrorKind::NotADirectory => {
-                let help = "a part of its path is a file and no directory".to_owned();
+                let help = "a part of its path is a file, not a directory".to_owned();
                 (&codes::FILE_NOT_FOUND, not_there, Some(help))
             }
             Self::Io(error) => (&codes::FILE_UNREADABLE, format!("the file cannot be read: {error}"), None),
@@ -275,14 +275,14 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
         let declared = encoding::declared(&bytes).filter(|name| !name.eq_ignore_ascii_case("UTF-8"));
         let byte = bytes.get(at).copied().unwrap_or_default();
         let (message, help) = match declared {
-            Some(name) => (format!("the file is declared to be in {}, expected UTF-8", quoted(&name)), convert(&name)),
+            Some(name) => (format!("the XML declaration says {}, expected UTF-8", quoted(&name)), convert(&name)),
             None => (
                 format!("the byte 0x{byte:02X} is not valid UTF-8"),
                 format!("if the file is in Windows-1252 or Latin-1, {}", convert("WINDOWS-1252")),
             ),
         };
         let shown = String::from_utf8_lossy(&bytes).into_owned();
-        let help = format!("{help}; until then nothing of the file is checked");
+        let help = format!("{help}; the file cannot be checked before");
         Box::new(Wrong { code: &codes::FILE_ENCODING, shown, at: at as u32, message, help })
     })
 }
@@ -294,8 +294,8 @@ fn near(path: &Path, ending: Option<&str>) -> Option<String> {
     if !folder.is_dir() {
         let shown = quoted(&folder.display().to_string());
         return Some(match folder.exists() {
-            true => format!("{shown} is no directory"),
-            false => format!("there is no directory {shown} either"),
+            true => format!("{shown} is not a directory"),
+            false => format!("there is no directory {shown}"),
         });
     }
     let wanted = path.file_name()?.to_string_lossy();

@@ -57,7 +57,7 @@ impl Loader<'_> {
             let mut one = one.mend(format!("replace it with {}", quoted(meant)), meant);
             if let Some((_, name)) = self.passed_over.as_ref().filter(|(namespace, _)| namespace == written) {
                 let name = quoted(name);
-                let why = format!("{name} in it says how many replicas there are, and they cannot be made without");
+                let why = format!("its attribute {name} gives the number of replicas, which are missing without it");
                 one = one.severity(Severity::Error).help(why);
             }
             self.report(one);
@@ -86,7 +86,7 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
         (true, "componentType") => "this describes an implementation; name the composite that uses it",
         (true, "contribution") => "this describes a contribution; name a composite in it",
         (true, "definitions") => "this holds policies; name a composite",
-        (true, "component") => "a component stands in a `composite`",
+        (true, "component") => "put the component into a `composite`",
         _ => return one,
     };
     one.help(hint)
@@ -111,8 +111,7 @@ fn wrong_namespace(root: Element<'_>) -> Diagnostic {
     }
     let message = format!("{} is not a namespace of SCA", quoted(namespace));
     let location = declaration(root).unwrap_or_else(|| root.name_location());
-    let one = Diagnostic::new(&codes::NAMESPACE, location, message)
-        .help(format!("the namespace of a composite is {}", namespaces()));
+    let one = Diagnostic::new(&codes::NAMESPACE, location, message).help(format!("use the namespace {}", namespaces()));
     match meant(namespace) {
         Some(version) if location != root.name_location() => {
             one.mend(format!("replace it with {}", quoted(version.namespace())), version.namespace())

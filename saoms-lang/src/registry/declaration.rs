@@ -304,7 +304,7 @@ impl ServiceDeclaration {
 
 fn property_kind<'de, D: Deserializer<'de>>(from: D) -> Result<PropertyKind, D::Error> {
     let name = String::deserialize(from)?;
-    PropertyKind::from_name(&name).ok_or_else(|| D::Error::custom(format!("`{name}` is no type of properties")))
+    PropertyKind::from_name(&name).ok_or_else(|| D::Error::custom(format!("`{name}` is not a type of properties")))
 }
 
 fn topic_kind<'de, D: Deserializer<'de>>(from: D) -> Result<TopicKind, D::Error> {
@@ -320,6 +320,6 @@ fn bound<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error>
         Value::Null => Ok(None),
         Value::Number(number) => Ok(Some(number.to_string())),
         Value::String(text) => Ok(Some(text)),
-        other => Err(D::Error::custom(format!("`{other}` is no bound of a range"))),
+        other => Err(D::Error::custom(format!("`{other}` is not a bound of a range"))),
     }
 }

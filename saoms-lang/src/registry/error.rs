@@ -78,13 +78,18 @@ impl fmt::Display for RegistryError {
             ),
             Self::NameTaken { name, first, second } => {
                 let what = match (&first.what, &second.what) {
-                    (first, second) if first == second => format!("{first} is there twice"),
-                    (first, second) => format!("the name `{name}` stands for {first} and for {second}"),
+                    (first, second) if first == second => format!("{first} is registered twice"),
+                    (first, second) => format!("the name `{name}` is used by {first} and by {second}"),
                 };
                 match (&first.origin, &second.origin) {
                     (None, None) => out.write_str(&what),
                     _ => {
-                        write!(out, "{what}: {} and {}; use one of them, or rename one", first.place(), second.place())
+                        write!(
+                            out,
+                            "{what}: {} and {}; use only one of them, or rename one",
+                            first.place(),
+                            second.place()
+                        )
                     }
                 }
             }

@@ -84,9 +84,9 @@ fn a_name_stands_for_one_class_and_a_refused_class_leaves_nothing_behind() {
     let mut registry = Registry::new();
     registry.add(Registration::of::<Eye>()).unwrap();
     let twice = registry.add(Registration::of::<Eye>()).unwrap_err();
-    assert_eq!(twice.to_string(), "class `a.Eye` is there twice");
+    assert_eq!(twice.to_string(), "class `a.Eye` is registered twice");
     let taken = registry.add(Registration::of::<Lamp>()).unwrap_err();
-    assert_eq!(taken.to_string(), "the name `a.Eye001` stands for class `a.Eye` and for class `b.Lamp`");
+    assert_eq!(taken.to_string(), "the name `a.Eye001` is used by class `a.Eye` and by class `b.Lamp`");
     assert_eq!(names(&registry), ["a.Eye", "a.Eye001"]);
 }
 
@@ -139,14 +139,14 @@ fn a_malformed_declaration_is_refused_with_its_class() {
         "class `a.Eye` was built for contract 2, this program has contract 1: build both from one version"
     );
     assert!(refused(|eye| eye["kind"] = json!("sometimes")).contains("`a.Eye` is malformed: unknown variant"));
-    assert!(refused(|eye| eye["properties"][0]["type"] = json!("colour")).contains("`colour` is no type"));
+    assert!(refused(|eye| eye["properties"][0]["type"] = json!("colour")).contains("`colour` is not a type"));
     assert_eq!(
         refused(|eye| eye["properties"][1]["default"] = json!("7")),
         malformed("the default of property `reach`: `7` is out of range: expected a number from 0.0 to below 1.0 [m]")
     );
     assert_eq!(
         refused(|eye| eye["properties"][2]["min"] = json!("soon")),
-        malformed("the bound `soon` of property `patience` is no duration")
+        malformed("the bound `soon` of property `patience` is not a duration")
     );
     assert_eq!(
         refused(|eye| eye["properties"][1]["name"] = json!("number")),
@@ -154,7 +154,7 @@ fn a_malformed_declaration_is_refused_with_its_class() {
     );
     assert_eq!(
         refused(|eye| eye["also"][0]["preset"] = json!({"numbr": "1"})),
-        malformed("`a.Eye001` presets `numbr`, which is no property")
+        malformed("`a.Eye001` presets `numbr`, which is not a property")
     );
     assert_eq!(
         refused(|eye| eye["also"][0]["preset"] = json!({"number": "0"})),
@@ -270,11 +270,11 @@ fn loops_of_a_class_have_to_fit_together() {
             *driver = saver.clone();
             driver["doc"] = json!("another");
         }),
-        "loop `c.Saver` is there twice"
+        "loop `c.Saver` is registered twice"
     );
     assert_eq!(
         refused_loops(|class, _, _| class["class"] = json!("c.Saver")),
-        "the name `c.Saver` stands for loop `c.Saver` and for class `c.Saver`"
+        "the name `c.Saver` is used by loop `c.Saver` and by class `c.Saver`"
     );
     assert_eq!(
         refused_loops(|_, _, saver| saver["loop"] = json!("c.")),

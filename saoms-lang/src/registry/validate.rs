@@ -25,7 +25,7 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
         }
         for (name, value) in &alias.preset {
             let Some(property) = class.property(name) else {
-                return Err(format!("`{}` presets `{name}`, which is no property", alias.name));
+                return Err(format!("`{}` presets `{name}`, which is not a property", alias.name));
             };
             let checked = property.check(value).map(|_| ());
             checked.map_err(|message| format!("`{}` presets `{name}`: {message}", alias.name))?;
@@ -45,7 +45,7 @@ fn loops(class: &ClassDeclaration) -> Result<(), String> {
     }
     if let Some(name) = &class.loops.property {
         let Some(property) = class.property(name) else {
-            return Err(format!("its loops are chosen by `{name}`, which is no property"));
+            return Err(format!("its loops are chosen by `{name}`, which is not a property"));
         };
         if let Some(value) = class.loops.lists.keys().find(|value| property.check(*value).is_err()) {
             return Err(format!("its loops are chosen by `{name}`, which cannot be `{value}`"));
@@ -84,7 +84,7 @@ fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {
         }
         for bound in [&property.min, &property.max, &property.exclusive_max].into_iter().flatten() {
             if saoms_api::host::declaration::parse_scalar(property.kind, &bound.into()).is_none() {
-                return Err(format!("the bound `{bound}` of property `{name}` is no {}", property.kind.name()));
+                return Err(format!("the bound `{bound}` of property `{name}` is not a {}", property.kind.name()));
             }
         }
         properties(&property.properties)?;

@@ -75,6 +75,6 @@ pub(super) fn constant<'a>(
     let known = values.iter().find(|(_, value)| found == Scalar::Integer(*value));
     known.map(|(name, _)| name.as_str()).ok_or_else(|| {
         let Scalar::Integer(found) = found else { return DecodeError::new("found no integer", at) };
-        DecodeError::new(format!("found {found}, which is no constant of the enumeration"), at)
+        DecodeError::new(format!("found {found}, which is not a constant of the enumeration"), at)
     })
 }

@@ -104,7 +104,7 @@ impl<'a> Lexer<'a> {
         let is_nameless = name.start > start + 2 || name.is_empty();
         match input.byte(close) {
             None => {
-                let message = "this end tag is never closed";
+                let message = "this end tag has no `>`";
                 self.faults.add(|| input.ended(&codes::XML_UNCLOSED, start, name.end, message));
                 self.is_cut_short = true;
                 close
@@ -118,7 +118,7 @@ impl<'a> Lexer<'a> {
                         let message = format!("{} is misplaced in an end tag", input.shown(close));
                         let end = input.character_end(close);
                         let one = input.fault(&codes::XML_SYNTAX, close, end, message);
-                        one.help("an end tag contains only the name of the element")
+                        one.help("remove everything but the name of the element")
                     });
                 }
                 let rest = &input.bytes()[close as usize..];

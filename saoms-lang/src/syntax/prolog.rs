@@ -89,8 +89,8 @@ pub(super) fn kind(rest: &str) -> Option<TokenKind> {
 pub(super) fn broken(input: Input<'_>, start: u32) -> Diagnostic {
     let rest = &input.text[start as usize..];
     let unclosed = |len: usize, what: &str| {
-        let one = input.ended(&codes::XML_UNCLOSED, start, start + len as u32, format!("this {what} is never closed"));
-        one.help("the rest of the file is inside it, and is not checked")
+        let one = input.ended(&codes::XML_UNCLOSED, start, start + len as u32, format!("this {what} has no end"));
+        one.help("end it; until then, the rest of the file is part of it and is not checked")
     };
     if starts_doctype(rest) {
         return doctype(input, start, start + 9);
@@ -132,7 +132,7 @@ fn declaration(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
         }
         let item = at + (text.len() - trimmed.len()) as u32;
         let Some((name_len, value, len)) = pseudo_attribute(trimmed) else {
-            return fault(item, end, "this is not a declaration of version, encoding or standalone".to_owned());
+            return fault(item, end, "expected `version`, `encoding` or `standalone` here".to_owned());
         };
         let name = &trimmed[..name_len];
         let position = expected.iter().position(|known| *known == name);
@@ -157,7 +157,7 @@ fn declaration(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
         at = item + len as u32;
     }
     if expected.len() == 3 {
-        return fault(start - 3, start, "an XML declaration starts with its version".to_owned());
+        return fault(start - 3, start, "the XML declaration must start with `version`".to_owned());
     }
     None
 }

@@ -17,7 +17,7 @@ impl Lexer<'_> {
         let length = after.bytes().take_while(|&byte| byte.is_ascii_alphanumeric() || b"#_-.:".contains(&byte)).count();
         if after.as_bytes().get(length) != Some(&b';') || length == 0 {
             self.faults.add(|| {
-                let message = "`&` starts a reference and none follows";
+                let message = "`&` must start a reference such as `&amp;`";
                 let one = input.fault(&codes::XML_ENTITY, at, at + 1, message);
                 one.help("write `&amp;` for the character itself").mend("replace `&` with `&amp;`", "&amp;")
             });
@@ -38,13 +38,13 @@ fn unknown(input: Input<'_>, span: Span) -> Diagnostic {
     let (whole, inside) = (quoted(written), &written[1..written.len() - 1]);
     if inside.starts_with('#') {
         let message = format!("{whole} is not a character that XML allows");
-        let help = "a character reference is `&#` and a decimal, or `&#x` and a hexadecimal number, then `;`";
+        let help = "write `&#` and a decimal number, or `&#x` and a hexadecimal number, then `;`";
         return input.fault(&codes::XML_ENTITY, span.start, span.end, message).help(help);
     }
     let message = format!("unknown entity {whole}");
-    let one = input.fault(&codes::XML_ENTITY, span.start, span.end, message).help(
-        "the known entities are `&lt;`, `&gt;`, `&amp;`, `&apos;` and `&quot;`; no others can be declared or used",
-    );
+    let one = input
+        .fault(&codes::XML_ENTITY, span.start, span.end, message)
+        .help("use only `&lt;`, `&gt;`, `&amp;`, `&apos;` and `&quot;`; other entities cannot be declared");
     match nearest(inside, PREDEFINED) {
         Some(meant) => one.mend(format!("replace {whole} with `&{meant};`"), format!("&{meant};")),
         None => one,

@@ -222,11 +222,11 @@ fn refusal(prefix: &str, uri: &str) -> Option<&'static str> {
     match (prefix, uri) {
         ("xmlns", _) => Some("the prefix `xmlns` cannot be declared"),
         ("xml", XML_NAMESPACE) => None,
-        ("xml", _) => Some("the prefix `xml` stands for its own namespace and for no other"),
-        (_, XML_NAMESPACE) => Some("no prefix but `xml` can stand for the namespace of `xml`"),
-        (_, XMLNS_NAMESPACE) => Some("nothing can be bound to the namespace of declarations"),
+        ("xml", _) => Some("the prefix `xml` cannot be declared for another namespace than its own"),
+        (_, XML_NAMESPACE) => Some("only the prefix `xml` can have the namespace of `xml`"),
+        (_, XMLNS_NAMESPACE) => Some("no prefix can have the namespace of `xmlns`"),
         ("", _) => None,
-        (_, "") => Some("a prefix cannot be bound to no namespace"),
+        (_, "") => Some("the namespace of a prefix cannot be empty"),
         _ => None,
     }
 }

@@ -30,7 +30,7 @@ pub(super) fn conflict(input: Input<'_>, start: u32) -> Option<(Diagnostic, u32,
     let place = |mark: &str, from: usize| rest[from..].find(mark).map(|at| from + at + 1);
     let line_end = |from: usize| input.find(b'\n', start + from as u32).unwrap_or(input.len());
     let one = input
-        .fault(&codes::XML_SYNTAX, start, line_end(0), "two versions of these lines, and marks of git around them")
+        .fault(&codes::XML_SYNTAX, start, line_end(0), "conflict markers of git, with two versions of these lines")
         .help("keep one version, and remove the lines with `<<<<<<<`, `=======` and `>>>>>>>`");
     let second = place("\n=======", 0).and_then(|middle| Some((middle, place("\n>>>>>>>", middle)?)));
     let Some((middle, last)) = second else { return Some((one, line_end(0), (u32::MAX, u32::MAX))) };
@@ -70,9 +70,9 @@ pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Op
     }
     let message = format!("{} is not a valid name for an {what}", quoted(name));
     let help = if name.contains(':') {
-        "a name has at most one colon, with a prefix before and a name behind it"
+        "use at most one colon: a prefix, the colon, a name"
     } else {
-        "a name starts with a letter or `_` and goes on with letters, digits, `-`, `_` and `.`"
+        "start the name with a letter or `_`, and use only letters, digits, `-`, `_` and `.`"
     };
     Some(input.fault(&codes::XML_NAME, start, end, message).help(help))
 }
@@ -115,7 +115,7 @@ pub(super) fn without_first_quote(input: Input<'_>, one: &RawAttribute, at: u32,
 /// The fault of the second of two quotes, at `at`.
 pub(super) fn doubled_quote(input: Input<'_>, at: u32) -> Diagnostic {
     let shown = input.shown(at);
-    let one = input.fault(&codes::XML_ATTRIBUTE, at, at + 1, format!("{shown} is here twice"));
+    let one = input.fault(&codes::XML_ATTRIBUTE, at, at + 1, format!("{shown} is written twice here"));
     one.mend(format!("remove {shown}"), "")
 }
 
@@ -129,7 +129,7 @@ pub(super) fn curly_quotes(input: Input<'_>, at: u32) -> Option<(Diagnostic, Spa
     let is_closed = CURLY.contains(&last) || matches!(last, '"' | '\'');
     let end = at + (first.len_utf8() + length + if is_closed { last.len_utf8() } else { 0 }) as u32;
     let shown = quoted(first.encode_utf8(&mut [0; 4]));
-    let message = format!("{shown} is not a quote of XML: values are written between two `\"`");
+    let message = format!("{shown} is not a quote of XML: write values between two `\"`");
     let one = input.fault(&codes::XML_ATTRIBUTE, at, end, message);
     let straight = format!("\"{}\"", &inside[..length]);
     let start = at + first.len_utf8() as u32;
@@ -169,7 +169,7 @@ pub(super) fn colon(input: Input<'_>, start: u32, name_end: u32, next: u32) -> O
     if !matches!(input.byte(next), Some(b'"' | b'\'')) {
         return None;
     }
-    let message = format!("`:` stands between {} and its value, and not `=`", quoted(name));
+    let message = format!("found `:` between {} and its value, expected `=`", quoted(name));
     let one = input.fault(&codes::XML_ATTRIBUTE, name_end - 1, name_end, message);
     let place = input.at(name_end - 1, next);
     Some(one.suggest("replace `:` with `=`", place, "="))
@@ -199,7 +199,7 @@ pub(super) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -
         let inside = &value[..length];
         let inside = inside.strip_suffix('/').unwrap_or(inside).trim_end();
         let end = quote_at + 1 + inside.len() as u32;
-        let message = format!("the value of {name} is not closed");
+        let message = format!("the value of {name} has no closing quote");
         let one = input.fault(&codes::XML_ATTRIBUTE, quote_at, end, message);
         let one = one.label(input.at(at, at + 1), "`<` is not allowed in a value");
         let other = inside.ends_with(['"', '\'']);
@@ -217,7 +217,7 @@ pub(super) fn open_value(input: Input<'_>, name: &str, quote_at: u32, at: u32) -
     if closed_behind(input, quote_at, at).is_some() {
         return one.mend("replace `<` with `&lt;`", "&lt;");
     }
-    one.help("close the value before, or write `&lt;` for the character itself")
+    one.help("add the closing quote before it, or write `&lt;` for the character itself")
 }
 
 /// The end of a value with a `<` at `at`, if that surely is its quote.

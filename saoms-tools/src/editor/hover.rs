@@ -99,9 +99,7 @@ fn named(scene: &Scene, symbol: &Symbol, start: usize) -> Option<String> {
             Some(describe::looping(scene.registry.get_loop(&class)?))
         }
         Symbol::Topic { name } => scene.about_topic(name),
-        Symbol::Index { component, .. } => {
-            Some(format!("**index**, what the replicas of `{component}` are counted by"))
-        }
+        Symbol::Index { component, .. } => Some(format!("**index**, the number of each replica of `{component}`")),
         Symbol::Class { name } => match (scene.registry.get(name), scene.registry.get_loop(name)) {
             (Some(class), _) => Some(describe::class(class)),
             (None, one) => Some(describe::looping(one?)),

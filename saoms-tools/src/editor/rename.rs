@@ -32,11 +32,11 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
     }
     if name.is_empty() || name.contains(|c: char| c.is_whitespace() || "/<>&\"'".contains(c)) {
         return Err(format!(
-            "`{name}` cannot be a name: it has to be there, without blanks, `/`, quotes, `<`, `>` and `&`"
+            "`{name}` cannot be a name: a name is not empty, and has no blanks, `/`, quotes, `<`, `>` and `&`"
         ));
     }
     if matches!(found.symbol, Symbol::Topic { .. }) && (name.contains(',') || name.contains("::")) {
-        return Err(format!("`{name}` cannot be the name of a topic: `,` and `::` stand between them"));
+        return Err(format!("`{name}` cannot be the name of a topic: `,` and `::` separate topics"));
     }
     let all = places(scene, &found.symbol);
     // Nobody defines a topic that is read alone.
@@ -47,13 +47,12 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
     };
     if matches!(found.symbol, Symbol::Component { .. }) && group(&old).is_some() && group(name).is_none() {
         return Err(format!(
-            "`{old}` stands for replicas: the new name has to hold an expression, as the same one, or all would have \
-             one name"
+            "`{old}` names replicas: the new name must contain an expression too, or all replicas would have one name"
         ));
     }
     if all.iter().any(|one| one.is_in_expression) && (!is_name(name) || name == INDEX) {
         return Err(format!(
-            "`{old}` is used in expressions, where `{name}` is no name: letters, digits and `_`, and not `{INDEX}`"
+            "`{old}` is used in expressions, where `{name}` is not a name: letters, digits and `_`, and not `{INDEX}`"
         ));
     }
     if old != name {
@@ -71,7 +70,7 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
             // One of several replicas keeps its index.
             let new = replica(&old, written, name);
             let new = new.ok_or_else(|| {
-                format!("`{written}` is one of the replicas `{old}`: the new name has to hold the same expression")
+                format!("`{written}` is one of the replicas `{old}`: the new name must contain the same expression")
             })?;
             Ok((place, new))
         })
@@ -105,7 +104,7 @@ fn refusal(scene: &Scene, symbol: &Symbol) -> Option<String> {
             let component = &own.component.name.text;
             Some(format!("`{name}` is the name that the class of `{component}` gives the topic"))
         }
-        Symbol::Index { .. } => Some(format!("`{INDEX}` is what replicas are counted by")),
+        Symbol::Index { .. } => Some(format!("`{INDEX}` is the number of a replica")),
         _ => None,
     }
 }
@@ -167,7 +166,7 @@ fn named_among_others(scene: &Scene, symbol: &Symbol, old: &str) -> Result<(), S
         ends.chain(outline.sources.iter().filter(|_| !is_component))
     });
     match written.map(|one| &one.text).find(|text| group(old).is_none() && is_replica(text, old)) {
-        Some(other) => Err(format!("`{other}` names it along with others, and would not any more")),
+        Some(other) => Err(format!("`{other}` names this replica together with others, and would lose it")),
         None => Ok(()),
     }
 }

@@ -54,7 +54,7 @@ fn of_class(declaration: &ClassDeclaration, registry: &Registry) -> Vec<(String,
         if property.required && !needing.is_empty() {
             // A table beside the composite may give it.
             let test = format!("{} or property/@name = {name} or @*:overrides", is_no(&needing));
-            tests.push((test, doc("has to be given.")));
+            tests.push((test, doc("is required.")));
         }
         // What expressions in replicas come to is not known.
         if let Some(test) = of_value(property) {

@@ -66,8 +66,8 @@ fn classes_properties_and_values_are_names_with_what_there_is_to_say_about_them(
         values("ClassName"),
         HashMap::from(
             [
-                ("example.Lamp", "Gives light.\nHas to be given: `shining`."),
-                ("example.Torch", "Another name of example.Lamp.\nGives light.\nHas to be given: `shining`."),
+                ("example.Lamp", "Gives light.\nRequired: `shining`."),
+                ("example.Torch", "Another name of example.Lamp.\nGives light.\nRequired: `shining`."),
             ]
             .map(|(name, doc)| (name.to_owned(), doc.to_owned()))
         )
@@ -77,7 +77,7 @@ fn classes_properties_and_values_are_names_with_what_there_is_to_say_about_them(
         properties["brightness"],
         "example.Lamp: a number from 0.5 to 10.0 [lx], `5.0` unless given. More than <nothing> & \"less\" than the sun."
     );
-    assert_eq!(properties["shining"], "example.Lamp: `steady` or `blinking`, has to be given. The way it shines.");
+    assert_eq!(properties["shining"], "example.Lamp: `steady` or `blinking`, required. The way it shines.");
     for task in TaskProperties::declarations() {
         assert!(properties[&task.name].starts_with("every periodic class: "), "{}", task.name);
     }

@@ -131,7 +131,7 @@ fn about_class(class: &RegisteredClass) -> String {
     }
     if let Some(alias) = declaration.also.iter().find(|alias| alias.name == class.name()) {
         for (property, value) in &alias.preset {
-            add(&mut text, &format!("`{property}` is {value} unless given."));
+            add(&mut text, &format!("The default of `{property}` is {value}."));
         }
     }
     add(&mut text, &paragraph(&declaration.doc));
@@ -141,7 +141,7 @@ fn about_class(class: &RegisteredClass) -> String {
     let mut required: Vec<String> = required.map(|property| format!("`{}`", property.name)).collect();
     required.dedup();
     if !required.is_empty() {
-        add(&mut text, &format!("Has to be given: {}.", required.join(", ")));
+        add(&mut text, &format!("Required: {}.", required.join(", ")));
     }
     text
 }
@@ -153,7 +153,7 @@ fn about_property(property: &PropertyDeclaration) -> String {
     }
     match &property.default {
         Some(default) if !default.is_empty() => text.push_str(&format!(", `{default}` unless given")),
-        _ if property.required => text.push_str(", has to be given"),
+        _ if property.required => text.push_str(", required"),
         _ => {}
     }
     text.push_str(". ");

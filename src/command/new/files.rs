@@ -74,8 +74,8 @@ pub(super) fn source(api: Option<&str>) -> Result<Source, String> {
                 return Ok(Source::Checkout(checkout.to_owned()));
             }
             Err(format!(
-                "the sources of this program are no longer in `{}`: say where saoms-api comes from, `--api GIT-URL`, \
-                 `--api FOLDER` or `--api {}`",
+                "the sources of this program are no longer in `{}`: give the source of saoms-api with `--api \
+                GIT-URL`, `--api FOLDER` or `--api {}`",
                 checkout.display(),
                 env!("CARGO_PKG_VERSION")
             ))
@@ -111,7 +111,7 @@ pub(super) fn plugin(names: &Names, kind: PluginKind, source: &Source) -> Vec<(P
             include_str!("templates/component/lib.rs"),
             include_str!("templates/component/fleet.rs"),
             include_str!("templates/component/fleet.composite"),
-            "counts, and says on a topic of its own how far it is",
+            "counts, and publishes the count on its own topic",
             false,
         ),
         PluginKind::Robot => (

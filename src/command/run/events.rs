@@ -88,7 +88,7 @@ impl Events {
         } else {
             match std::str::from_utf8(line) {
                 Ok(text) => self.inject(text.trim_end_matches('\r'), now, handle),
-                Err(_) => Err("found bytes that are no UTF-8".to_owned()),
+                Err(_) => Err("found bytes that are not UTF-8".to_owned()),
             }
         };
         match result {
@@ -147,7 +147,10 @@ fn refused(site: &str, topic: &str, error: &InjectError) -> String {
         (site, None) => format!("this fleet has no sites: write the event without `{site}:`"),
         ("", Some(first)) => {
             let sites = sites.join(", ");
-            format!("this fleet has sites: write for which one it is, as in `{first}: at 3s ...`; they are {sites}")
+            format!(
+                "this fleet has sites: write the site before the event, as in `{first}: at 3s ...`; the sites are \
+                {sites}"
+            )
         }
         (site, Some(_)) if let Some(meant) = meant => {
             format!("the fleet has no site `{site}`; did you mean `{meant}`?")

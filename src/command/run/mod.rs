@@ -157,7 +157,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     };
     let paths = PictureRegistration::linked("paths");
     if arguments.paths.is_some() && paths.is_none() {
-        eprint("error: no component of this program draws paths\n");
+        eprint("error: no component class of this program draws paths\n");
         return Exit::WrongInput;
     }
     let watched = arguments.reload.then(|| Watched::of(&assembly));

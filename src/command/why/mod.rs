@@ -126,12 +126,12 @@ pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
             String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]).into_owned()
         }
         Err(error) => {
-            return Err(format!("`{name}` is not text: byte {} is no UTF-8", error.utf8_error().valid_up_to() + 1));
+            return Err(format!("`{name}` is not text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1));
         }
     };
     read(&text).map_err(|error| match error {
         JournalReadError::NoJournal => {
-            format!("`{name}` holds no journal: write the report anew with `saoms run --report FILE`")
+            format!("`{name}` contains no journal: write the report again with `saoms run --report FILE`")
         }
         JournalReadError::Other => format!("`{name}` cannot be read: {error}"),
         JournalReadError::Malformed { .. } => format!("`{name}`, {error}"),
@@ -155,7 +155,7 @@ fn find<'a>(components: &'a [ComponentName], component: &str) -> Result<&'a Comp
         [] => Err(unknown(components, component)),
         ref several => {
             let names: Vec<String> = several.iter().map(|one| format!("`{}`", one.name)).collect();
-            Err(format!("`{component}` can be any of {}: say more of its path", names.join(", ")))
+            Err(format!("`{component}` can be any of {}: write more of its path", names.join(", ")))
         }
     }
 }
@@ -167,7 +167,7 @@ fn unknown(components: &[ComponentName], component: &str) -> String {
     let like = nearest_few(component, names.clone().chain(ids).chain(endings), 3);
     let quoted = |names: Vec<&str>| names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let help = match like[..] {
-        [] if components.is_empty() => "it had none at all".to_owned(),
+        [] if components.is_empty() => "it had no components".to_owned(),
         [] if components.len() > 12 => {
             format!("its {} components begin with {}", components.len(), quoted(names.take(12).collect()))
         }

@@ -80,26 +80,27 @@ fn a_class_has_to_be_in_the_library_that_is_named() {
         wrong("good.Sendr", "good").path(),
         &[
             "error[S3015]: the library `fleet/libgood.so` has no class `good.Sendr`",
-            "it has `good.Reader` and `good.Sender`",
+            "its classes are `good.Reader` and `good.Sender`",
             "replace `good.Sendr` with `good.Sender`",
         ],
     );
     refused(
         wrong("saoms.Robot", "good").path(),
-        &["has no class `saoms.Robot`", "linked into this program: leave `library` out"],
+        &["has no class `saoms.Robot`", "remove `library`: the class is part of this program"],
     );
     let two = wrong("elsewhere.Echo", "good");
     fs::copy(library("elsewhere"), two.path().join("fleet/libelse.so")).unwrap();
     refused(two.path(), &["has no class `elsewhere.Echo`", "the class is in `fleet/libelse.so`"]);
     let damaged = wrong("good.Sender", "text");
     fs::write(damaged.path().join("fleet/libtext.so"), "a text").unwrap();
-    refused(damaged.path(), &["error[S3015]", "libtext.so` is no shared library"]);
+    refused(damaged.path(), &["error[S3015]", "libtext.so` is not a shared library"]);
     let twice = wrong("good.Sender", "../other/good");
     fs::create_dir(twice.path().join("other")).unwrap();
     fs::copy(library("good"), twice.path().join("other/libgood.so")).unwrap();
     refused(
         twice.path(),
-        &["class `good.Sender` is there twice: in plugin `fleet/libgood.so` and in plugin `fleet/../other/libgood.so`"],
+        &["class `good.Sender` is registered twice: in plugin `fleet/libgood.so` and in plugin \
+            `fleet/../other/libgood.so`"],
     );
 }
 

@@ -81,10 +81,10 @@ fn what_is_no_library() {
     let folder = tempfile::tempdir().unwrap();
     let text = folder.path().join("libtext.so");
     fs::write(&text, "a text").unwrap();
-    assert_says(&refused(&text), &["libtext.so` is no shared library", "cdylib"]);
+    assert_says(&refused(&text), &["libtext.so` is not a shared library", "cdylib"]);
     fs::write(&text, "").unwrap();
-    assert_says(&refused(&text), &["is no shared library"]);
-    assert_says(&refused(Path::new(env!("CARGO_BIN_EXE_saoms"))), &["without a section `.saoms.plugin`"]);
+    assert_says(&refused(&text), &["is not a shared library"]);
+    assert_says(&refused(Path::new(env!("CARGO_BIN_EXE_saoms"))), &["has no section `.saoms.plugin`"]);
     fs::remove_file(&text).unwrap();
     assert_says(&refused(&text), &["libtext.so` cannot be read: No such file"]);
     assert_says(&refused(folder.path()), &["there is no library (`*.so`) in this folder"]);
@@ -104,10 +104,10 @@ fn a_library_for_another_machine() {
 
 #[test]
 fn a_library_without_metadata_or_with_damaged_ones() {
-    assert_says(&refused(&from_c("bare", None, &[])), &["bare.so` is a library without a section", "plugin!"]);
+    assert_says(&refused(&from_c("bare", None, &[])), &["bare.so` has no section", "plugin!"]);
     for (name, from, to, expected) in [
         ("brace.so", "{\"saoms\"", b"x\"saoms\"".as_slice(), "expected value at line 1 column 1"),
-        ("bytes.so", "\"plugin\"", b"\"\xff\xfe\xfd\xfc\xfb\xfa\"", "they are no text"),
+        ("bytes.so", "\"plugin\"", b"\"\xff\xfe\xfd\xfc\xfb\xfa\"", "they are not text"),
         ("other.so", "\"plugin\"", b"\"plugon\"", "found `plugon` for `saoms`, expected `plugin`"),
         ("entry.so", "\"entry\":", b"\"antry\":", "missing field `entry`"),
         ("list.so", "\"classes\":[", b"\"classes\":{", "key must be a string"),
@@ -118,7 +118,7 @@ fn a_library_without_metadata_or_with_damaged_ones() {
     let path = said("kind.so", "\"periodic\"", b"\"peliodic\"");
     assert_says(&refused(&path), &["kind.so", "class `good.Sender` is malformed", "peliodic"]);
     let path = said("severity.so", "\"warning\"", b"\"warming\"");
-    assert_says(&refused(&path), &["`warming` is none of `note`, `warning` and `error`"]);
+    assert_says(&refused(&path), &["found the severity `warming`, expected `note`, `warning` or `error`"]);
 }
 
 #[test]
@@ -148,11 +148,11 @@ fn a_name_that_is_registered_twice() {
     assert_eq!(run.code, Some(2), "{}", run.text);
     assert_says(
         &run.text,
-        &["class `good.Sender` is there twice: in plugin `./libone.so` and in plugin `./libother.so`"],
+        &["class `good.Sender` is registered twice: in plugin `./libone.so` and in plugin `./libother.so`"],
     );
     assert_eq!(run.text.matches("error").count(), 1, "{}", run.text);
     let path = said("built-in.so", "good.Sender", b"saoms.Robot");
-    let expected = "class `saoms.Robot` is there twice: in this program and in plugin";
+    let expected = "class `saoms.Robot` is registered twice: in this program and in plugin";
     assert_says(&refused(&path), &[expected, "built-in.so`"]);
 }
 
@@ -203,7 +203,10 @@ fn a_library_that_nobody_named_is_left_out_with_a_warning() {
     // Of one that is in order, no code runs, and its rules do not judge.
     let check = saoms(folder.path(), &["check", "t.composite"]);
     assert_eq!(check.code, Some(0), "{}", check.text);
-    assert_says(&check.text, &["warning: plugin `./libgood.so` was found and not named: its rules", "note[S3016]"]);
+    assert_says(
+        &check.text,
+        &["warning: plugin `./libgood.so` was found, but no option names it: its rules", "note[S3016]"],
+    );
 }
 
 /// Reads what a file with these bytes offers. No part of it may be loaded.

@@ -91,7 +91,7 @@ fn what_was_probably_meant_is_proposed() {
             r#""saoms.World"/>"#,
             &map("....\n.##.\n.#..\n"),
             "(in this row and 1 more)",
-            "write `@` for each `#`",
+            "replace each `#` with `@`",
         ),
     ] {
         assert_hint(test, &told(test, &[("fleet.composite", &hall(from, to))]), code, help);
@@ -121,8 +121,8 @@ fn a_robot_in_another_composite_than_the_world_is_not_given_a_target() {
     let robot = robot.replace(r#"<reference name="world" target="World"/>"#, "");
     let told = |test, [inner, outer]: [(&str, String); 2]| told(test, &[(inner.0, &inner.1), (outer.0, &outer.1)]);
     for (test, files, help) in [
-        ("inner world", nested(&others, &robot), "wire the reference `world` of `Robot7` to `A/World`, through"),
-        ("inner robot", nested(&robot, &others), "wire the reference `world` of `A/Robot7` to `World`, through"),
+        ("inner world", nested(&others, &robot), "wire the reference `world` of `Robot7` to `A/World`, and promote"),
+        ("inner robot", nested(&robot, &others), "wire the reference `world` of `A/Robot7` to `World`, and promote"),
         ("both", nested(&format!("{others}{robot}"), ""), "<reference name=\"world\" target=\"World\"/>"),
     ] {
         assert_hint(test, &told(test, files), "S5009", help);

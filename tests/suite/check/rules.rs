@@ -110,22 +110,26 @@ fn luggage_is_looked_at_wherever_it_may_be() {
     assert_eq!(
         with_scenario(map, "at 1s luggage (5,1) to (4,9)\nat 1s luggage (1,1)..(2,1) to (1,2)"),
         [
-            "error S5001 luggage cannot be at (5,1): it is outside the map, which goes from (0,0) to (4,2)",
-            "error S5001 luggage cannot be at (4,9): it is outside the map, which goes from (0,0) to (4,2)",
-            "error S5001 there is no free block from (1,1) to (2,1), so no luggage can be there",
-            "error S5001 luggage cannot be at (1,2): it is blocked on the map",
+            "error S5001 luggage cannot be at (5,1): this block is outside the map, which goes from (0,0) to (4,2)",
+            "error S5001 luggage cannot be at (4,9): this block is outside the map, which goes from (0,0) to (4,2)",
+            "error S5001 luggage cannot be from (1,1) to (2,1): these blocks are all blocked",
+            "error S5001 luggage cannot be at (1,2): this block is blocked on the map",
         ]
     );
     assert_eq!(
         with_scenario(map, "at 1s luggage (0,0)..(5,1) to (4,2)"),
-        ["warning S5001 the blocks from (0,0) to (5,1) reach beyond the map, which ends at (4,2)"]
+        ["warning S5001 the blocks from (0,0) to (5,1) are partly outside the map, which ends at (4,2)"]
     );
     let without = [
         ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage random to (70,7)")][..], false),
         MASTER,
         ("Robot1", "saoms.Robot", &[], false),
     ];
-    assert_eq!(found(&without), ["error S5001 `random` needs an area to draw from, and nothing in the fleet says one"]);
+    assert_eq!(
+        found(&without),
+        ["error S5001 `random` needs an area to draw a block from, but no component of the \
+        fleet defines one"]
+    );
     // A wrong line and an impossible one are reported together.
     let both = with_scenario(map, "at 1s lugage (1,1) to (0,0); at 1s luggage (1,1) to (0,0)");
     assert_eq!(both.len(), 2, "{both:?}");
@@ -142,7 +146,8 @@ fn chargers_are_looked_at_in_the_world_that_they_are_in() {
         [
             "error S5002 the charger of robot 2 is at (0,2), blocked on the map",
             "error S5002 the charger of robot 9 is at (0,9), outside the map, which goes from (0,0) to (3,3)",
-            "warning S5009 this robot is wired to no world, and others are: neither the world nor they know where it is",
+            "warning S5009 this robot is not wired to a world, but others are: the world and the other robots do not \
+            know where it is",
             "warning S5002 the charger of robot 8 is at (0,8), outside the map, which goes from (0,0) to (3,3)",
         ]
     );
@@ -155,8 +160,9 @@ fn robots_outside_of_the_world_are_told_unless_a_wire_has_a_fault() {
     fn robot(name: &str, is_wired: bool) -> Component<'_> {
         (name, "saoms.Robot", &[], is_wired)
     }
-    let beside =
-        "warning S5009 this robot is wired to no world, and others are: neither the world nor they know where it is";
+    let beside = "warning S5009 this robot is not wired to a world, but others are: the world and the other robots \
+        do not \
+        know where it is";
     assert_eq!(
         found(&[world, ROBOT, robot("Robot2", false), robot("Robot3", false), robot("Robot4", true)]),
         [beside, beside]
@@ -284,8 +290,8 @@ fn events_of_unknown_robots_are_found() {
     assert_eq!(
         scenario("at 1s breakdown Robt1; at 2s breakdown Robot2"),
         [
-            "warning S5005 no robot is called `Robt1`: it stands for robot 1, which is `Robot1`",
-            "warning S5005 no robot is called `Robot2`: it stands for robot 2, which is `Lift5`",
+            "warning S5005 no robot has the ID `Robt1`: it means robot 1 here, whose ID is `Robot1`",
+            "warning S5005 no robot has the ID `Robot2`: it means robot 2 here, whose ID is `Lift5`",
         ]
     );
     assert_eq!(
@@ -293,8 +299,8 @@ fn events_of_unknown_robots_are_found() {
         [
             "error S5005 the fleet has no robot 7",
             "error S5005 the fleet has no robot from 4 to 6",
-            "error S5005 of the robots from 1 to 3 the fleet has only 2",
-            "error S5005 `Lift5` stands for robot 5, and the robot of this name has the number 2",
+            "error S5005 the fleet has only 2 of the robots from 1 to 3",
+            "error S5005 `Lift5` means robot 5 here, but the robot with this ID has the number 2",
         ]
     );
 }
@@ -327,9 +333,9 @@ fn parts_of_a_map_without_a_charger_are_found() {
     assert_eq!(
         with_scenario(map, "at 1s luggage (4,0) to (0,3); at 1s luggage random to (0,0)"),
         [
-            "error S5007 no way on the map leads to (4,0) from the charger of any robot",
-            "error S5007 no way on the map leads to (0,3) from the charger of any robot",
-            "warning S5007 no way on the map leads to 9 of the 13 free blocks here from the charger of any robot",
+            "error S5007 the map has no path from any robot's charger to (4,0)",
+            "error S5007 the map has no path from any robot's charger to (0,3)",
+            "warning S5007 the map has no path from any robot's charger to 9 of these 13 free blocks",
         ]
     );
     let two = found(&[
@@ -339,7 +345,7 @@ fn parts_of_a_map_without_a_charger_are_found() {
         ROBOT,
         ("Robot2", "saoms.Robot", &[("chargeX", "4"), ("chargeY", "1")], true),
     ]);
-    assert_eq!(two, ["error S5007 no way on the map leads from where the luggage is to where it has to go"]);
+    assert_eq!(two, ["error S5007 the map has no path from the start of this luggage to its destination"]);
 }
 
 #[test]
@@ -352,10 +358,10 @@ fn scenarios_of_which_nothing_comes_are_told() {
     let luggage = [("scenario", "at 1s luggage (1,0) to (4,0)")];
     let landing = [("scenario", "at 1s landing 2; at 2s luggage (1,0) to (4,0)")];
     let robot = ("Robot2", "saoms.Robot", &[][..], false);
-    let sleep = "warning S5008 all robots sleep, and none is woken to bring the luggage of this scenario";
+    let sleep = "warning S5008 all robots sleep, and nothing wakes them to bring the luggage of this scenario";
     assert_eq!(
         with(&luggage, &[robot]),
-        ["warning S5008 no component passes the events of this scenario on to the robots"]
+        ["warning S5008 no component forwards the events of this scenario to the robots"]
     );
     assert_eq!(with(&luggage, &[MASTER]), ["warning S5008 there is no robot to bring the luggage of this scenario"]);
     assert_eq!(with(&luggage, &[MASTER, KEEPER, SLEEPER]), [sleep]);
@@ -377,9 +383,9 @@ fn scenarios_of_which_nothing_comes_are_told() {
 fn a_world_that_no_robot_knows_is_told() {
     let blocked: &[(&str, &str)] = &[("blocked", "(3,1)")];
     let unwired = ("Robot1", "saoms.Robot", &[][..], false);
-    let message = "warning S5009 no robot is wired to this world, so robots move through its blocked blocks";
+    let message = "warning S5009 no robot is wired to this world, so the robots ignore its blocked blocks";
     assert_eq!(found(&[("World", "saoms.World", blocked, false), unwired]), [message]);
-    let message = "warning S5009 no robot is wired to this world, so it sees neither robots nor what they deliver";
+    let message = "warning S5009 no robot is wired to this world, so the world sees no robots and no delivered luggage";
     assert_eq!(found(&[("World", "saoms.World", &[], false), unwired]), [message]);
     assert!(found(&[("World", "saoms.World", blocked, false), ROBOT]).is_empty());
 }
@@ -390,7 +396,8 @@ fn what_is_wrong_whatever_a_faulty_component_is_comes_with_its_fault() {
     let environment = ("Environment", "saoms.Environment", luggage, false);
     let world = ("World", "saoms.World", &[("width", "5")][..], false);
     let low = ("Robot1", "saoms.Robot", &[("battery", "-1")][..], true);
-    let outside = "error S5001 luggage cannot be at (3,11): it is outside the map, which goes from (0,0) to (4,10)";
+    let outside = "error S5001 luggage cannot be at (3,11): this block is outside the map, which goes from (0,0) to \
+        (4,10)";
     let battery = "error S3008 property `battery`: `-1` is out of range: expected a number from 0.0 to 100.0 [%]";
     assert_eq!(found(&[world, environment, low]), [outside, battery], "robot 1 is no unknown robot");
     let far = ("Robot2", "saoms.Robot", &[("chargeX", "7")][..], true);

@@ -14,7 +14,7 @@ fn one_master_passes_on_the_events_of_an_environment() {
     };
     let with = |properties| found(&[WORLD, ENVIRONMENT, MASTER, second(properties), ROBOT]);
     let message =
-        "error S5010 `Master2` passes on the same events as `Master`: all luggage is requested and counted twice";
+        "error S5010 `Master2` forwards the same events as `Master`: all luggage is requested and counted twice";
     assert_eq!(with(&[]), [message]);
     assert_eq!(with(&[("topicRename", "ELMSTOPIC,jobs")])[0], message);
     assert!(with(&[("runOnStartup", "false")]).is_empty(), "it may relieve the other one");
@@ -29,8 +29,8 @@ fn one_environment_numbers_the_luggage() {
     let with = |properties| found(&[WORLD, ENVIRONMENT, second(properties), MASTER, ROBOT]);
     assert_eq!(
         with(&[("scenario", "at 9s breakdown Robot1; at 5s luggage (1,1) to (2,2)")]),
-        ["error S5011 `Environment` and `Environment2` both number their luggage from 1 on: of two pieces with one \
-          number only the first is brought"]
+        ["error S5011 `Environment` and `Environment2` both number their luggage from 1: of two pieces with the same \
+            number, only the first is delivered"]
     );
     assert!(with(&[("scenario", "at 9s breakdown Robot1")]).is_empty(), "it has no luggage");
     let elsewhere = with(&[("scenario", "at 5s luggage (1,1) to (2,2)"), ("topicRename", "ETOPIC,events")]);
@@ -75,7 +75,7 @@ fn robots_of_a_world_share_their_topics() {
 fn robots_beside_the_world_need_chargers_of_their_own() {
     let beside = ("Robot2", "saoms.Robot", &[("chargeY", "1")][..], false);
     let told = found(&[WORLD, ENVIRONMENT, MASTER, ROBOT, beside]);
-    assert_eq!(told[1], "error S5003 robots 1 and 2 both start at (0,1), where their chargers are");
+    assert_eq!(told[1], "error S5003 robots 1 and 2 both start at (0,1): their chargers are on the same block");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_breakdown_is_of_a_robot_that_hears_of_it() {
     };
     let far = [("topicRename", "FAULTTOPIC,far")];
     assert!(with(&[], &[]).is_empty());
-    let told = "error S5005 robot 2 does not hear of this: it hears of breakdowns on the topic `far`";
+    let told = "error S5005 robot 2 does not receive this event: it receives breakdowns on the topic `far`";
     assert_eq!(with(&far, &[]), [told]);
     let second = |renamed: &'static [(&'static str, &'static str)]| -> Component<'_> {
         ("Master2", "saoms.MasterEnvironment", renamed, false)
@@ -121,9 +121,9 @@ fn a_broken_robot_is_not_broken_again() {
         found(&[WORLD, ("Environment", "saoms.Environment", &environment, false), MASTER, ROBOT])
     };
     assert!(with("at 1s breakdown Robot1; at 2s breakdown 1..1; at 3s end").len() == 1);
-    let twice = "warning S5015 robot 1 breaks down twice: the second time nothing happens";
+    let twice = "warning S5015 robot 1 breaks down twice: the second breakdown has no effect";
     assert_eq!(with("at 1s breakdown Robot1; at 2s breakdown 1"), [twice]);
-    let again = "warning S5015 robot 1 breaks down again and again: after the first time nothing happens";
+    let again = "warning S5015 robot 1 breaks down repeatedly: only the first breakdown has an effect";
     assert_eq!(with("from 1s every 2s breakdown 1"), [again]);
 }
 
@@ -165,8 +165,9 @@ fn one_robot_has_to_reach_both_ends_of_luggage() {
         ])
     };
     assert!(with("at 1s luggage (0,0) to (20,1); at 1s luggage (21,0)..(30,0) to (40,1)").is_empty());
-    let message =
-        "no robot can bring luggage from (3,1) to (30,1): the charger of each robot is too far from one of them";
+    let message = "no robot can bring luggage from (3,1) to (30,1): the charger of each robot is too far from one of \
+        the two \
+        blocks";
     assert_eq!(with("at 1s luggage (3,1) to (30,1)"), [format!("error S5006 {message}")]);
     assert_eq!(with("at 1s luggage (3,1)..(4,1) to (30,1)"), [format!("warning S5006 {message}")]);
 }
@@ -232,11 +233,11 @@ fn shifts_schedule_others_that_wait_for_them() {
     assert!(shifts(&[("Early", "work=1s", "Robot1")], true).is_empty());
     assert_eq!(
         shifts(&[("Early", "work=1s", "Robot1")], false),
-        ["`Robot1` works in shifts of `Early`, and runs from the start of the fleet until its first one ends"]
+        ["`Robot1` runs from the start of the fleet, but `Early` schedules it only for its shifts"]
     );
     assert_eq!(
         shifts(&[("Early", "work=1s", "Early")], true),
-        ["`Early` schedules itself: after its first shift it runs no more"]
+        ["`Early` schedules itself: it stops at the end of its first shift"]
     );
 }
 
@@ -247,6 +248,7 @@ fn two_shifts_of_a_component_do_not_overlap() {
     assert!(two("work=1s shifts=5", "start=5s work=9s").is_empty());
     assert_eq!(
         two("work=1s pause=1s", "start=3s work=1500ms pause=500ms"),
-        ["both `Early` and `Late` schedule `Robot1` at 4s: the later one sets anew when it ends"]
+        ["the shifts of `Early` and `Late` overlap: both schedule `Robot1` at 4s, and the shift that starts later \
+            decides when it stops"]
     );
 }

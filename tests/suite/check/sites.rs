@@ -73,7 +73,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              NEnvironment:Environment:North scenario=at 1s luggage random to (2,2)
              NMaster:MasterEnvironment:North
              NRobot1:Robot:North@World",
-            &["S5001 `random` needs an area to draw from"],
+            &["S5001 `random` needs an area to draw a block from"],
         ),
         (
             "S5002: a robot of a site without a world is on no map",
@@ -89,7 +89,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
             "S5003: two robots of two sites that hear of each other start on one block",
             "NRobot1:Robot:North chargeY=1|topicRename=RLMSTOPIC,/robots
              SRobot2:Robot:South chargeY=1|topicRename=RLMSTOPIC,/robots",
-            &["S5003 robots 1 and 2 both start at (0,1), where their chargers are"],
+            &["S5003 robots 1 and 2 both start at (0,1): their chargers are on the same block"],
         ),
         (
             "S5003: robots of two sites that share the events alone do not",
@@ -122,7 +122,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              NMaster:MasterEnvironment:North topicRename=EETOPIC,/EETOPIC
              SMasterRobot:MasterRobot:South topicRename=EETOPIC,/EETOPIC
              SRobot7:Robot:South",
-            &["S5005 robot 7 does not hear of this"],
+            &["S5005 robot 7 does not receive this event"],
         ),
         (
             "S5006: the robots of the other site do not bring it",
@@ -142,7 +142,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              World:World:South topicRename=ETOPIC,/ETOPIC|map=...@..&#10;...@..
              SMaster:MasterEnvironment:South topicRename=ETOPIC,/ETOPIC
              SRobot1:Robot:South@World",
-            &["S5007 no way on the map leads to (4,1) from the charger of any robot"],
+            &["S5007 the map has no path from any robot's charger to (4,1)"],
         ),
         (
             "S5008: the master of another site hears the events",
@@ -158,14 +158,14 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              World:World:South topicRename=ETOPIC,/ETOPIC
              SMaster:MasterEnvironment:South topicRename=ETOPIC,/ETOPIC
              SRobot1:Robot:South@World",
-            &["S5008 no component passes the events of this scenario on to the robots"],
+            &["S5008 no component forwards the events of this scenario to the robots"],
         ),
         (
             "S5008: a master of the same site hears others",
             "Environment:Environment:North scenario=at 1s luggage (1,1) to (2,2)
              Master:MasterEnvironment:North topicRename=ETOPIC,/ETOPIC
              Robot1:Robot:North",
-            &["S5008 no component passes the events of this scenario on to the robots"],
+            &["S5008 no component forwards the events of this scenario to the robots"],
         ),
         (
             "S5008: the robots of another site hear of no luggage",
@@ -173,7 +173,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              NMaster:MasterEnvironment:North topicRename=EETOPIC,/EETOPIC
              SMasterRobot:MasterRobot:South topicRename=EETOPIC,/EETOPIC
              SRobot1:Robot:South",
-            &["S5008 no robot hears of the luggage of this scenario"],
+            &["S5008 no robot receives the luggage of this scenario"],
         ),
         (
             "S5008: a world outside does not hear where the luggage is",
@@ -181,7 +181,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)
              NMaster:MasterEnvironment:North
              NRobot1:Robot:North@World",
-            &["S5008 the world of the robots does not hear of the luggage of this scenario"],
+            &["S5008 the world of the robots does not receive the luggage of this scenario"],
         ),
         (
             "S5008: a world outside hears of it",
@@ -235,7 +235,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
             "S5010: masters of two sites pass on the same events",
             "NMaster:MasterEnvironment:North topicRename=ETOPIC,/ETOPIC
              SMaster:MasterEnvironment:South topicRename=ETOPIC,/ETOPIC",
-            &["S5010 `SMaster` passes on the same events as `NMaster`"],
+            &["S5010 `SMaster` forwards the same events as `NMaster`"],
         ),
         (
             "S5010: masters of two sites pass on their own",
@@ -249,7 +249,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)|topicRename=ETOPIC,/ETOPIC
              Master:MasterEnvironment:
              Robot1:Robot:",
-            &["S5011 `NEnvironment` and `SEnvironment` both number their luggage from 1 on"],
+            &["S5011 `NEnvironment` and `SEnvironment` both number their luggage from 1:"],
         ),
         (
             "S5011: masters of two sites pass it on on one topic",
@@ -258,7 +258,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)
              SMaster:MasterEnvironment:South topicRename=ELMSTOPIC,/ELMSTOPIC
              Robot1:Robot:",
-            &["S5011 `NEnvironment` and `SEnvironment` both number their luggage from 1 on"],
+            &["S5011 `NEnvironment` and `SEnvironment` both number their luggage from 1:"],
         ),
         (
             "S5012: robots of two sites in one world know where they are",
@@ -282,7 +282,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              SMaster:MasterRobot:South topicRename=EETOPIC,/EETOPIC
              SRobot1:Robot:South runOnStartup=false
              SShift:Shift:South@SRobot1/TaskInterface work=1s",
-            &["S5015 robot 1 breaks down twice: the second time nothing happens"],
+            &["S5015 robot 1 breaks down twice: the second breakdown has no effect"],
         ),
         (
             "S5016: the worlds of two sites hear of one environment",

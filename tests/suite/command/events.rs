@@ -118,7 +118,10 @@ fn an_event_says_its_site() {
     let (output, text) = yard.run(&["--virtual", "--events", "-", "--for", "10min"], lines);
     assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
     assert!(text.contains("North/Robot001    deposited luggage 1000001"), "{text}");
-    assert!(text.contains("line 2 of the events is ignored: this fleet has sites: write for which one"), "{text}");
+    assert!(
+        text.contains("line 2 of the events is ignored: this fleet has sites: write the site before the event"),
+        "{text}"
+    );
     assert!(
         text.contains("line 3 of the events is ignored: the fleet has no site `Nort`; did you mean `North`?"),
         "{text}"

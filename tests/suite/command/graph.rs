@@ -71,7 +71,7 @@ fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
     let (code, picture, error) = graph(&[&file("page.composite", "<html><body/></html>")]);
     assert!((code, picture.as_str()) == (2, "") && error.contains("error[S1001]"), "{error}");
     let (code, _, error) = graph(&["composites/hall.composite", "-o", "hall.jpeg"]);
-    assert!(code == 2 && error.contains("`hall.jpeg` says no format"), "{error}");
+    assert!(code == 2 && error.contains("`hall.jpeg` is not that of a format"), "{error}");
     let (code, _, error) = graph(&["composites/hall.composite", "-o", "no/such/folder/hall.svg"]);
     assert!(code == 1 && error.contains("cannot be written to `no/such/folder/hall.svg`"), "{error}");
     // What is written while it is made can fail in its middle.

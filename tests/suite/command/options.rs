@@ -36,7 +36,7 @@ fn a_picture_has_one_format() {
     let path = folder.join("hall.svg");
     let (code, _, error) = answer(&saoms(&["graph", HALL, "-o", path.to_str().unwrap(), "--format", "dot"]));
     assert_eq!(code, 2);
-    assert!(error.contains("another format than the ending of") && !path.exists(), "{error}");
+    assert!(error.contains("`--format` differs from the ending of") && !path.exists(), "{error}");
     assert_eq!(answer(&saoms(&["graph", HALL, "-o", path.to_str().unwrap(), "--format", "svg"])).0, 0);
 }
 

@@ -100,14 +100,14 @@ fn what_a_run_reads_is_no_output_by_whatever_path() {
             let (code, out, error) = answer(&site.run(&[option, name]));
             assert_eq!((code, out.as_str()), (2, ""), "{option} {name}");
             assert!(error.contains(&format!("cannot be written to `{name}`")), "{error}");
-            assert!(error.contains("read") && error.contains(&format!("give `{option}` another file")), "{error}");
+            assert!(error.contains("input") && error.contains(&format!("give `{option}` another file")), "{error}");
             assert!(error.ends_with("\n1 error: nothing was started\n"), "{error}");
         }
         for (other, name) in
             [("link.csv", "robots.csv"), ("twin.scenario", "south.scenario"), ("./robots.csv", "robots.csv")]
         {
             let error = stderr(&site.run(&[option, other]));
-            assert!(error.contains(&format!("to `{other}`: it is `{name}`, which is read")), "{error}");
+            assert!(error.contains(&format!("to `{other}`: it is `{name}`, which is an input")), "{error}");
         }
     }
     assert_eq!(read.map(|name| fs::read(site.path().join(name)).unwrap()), before);
@@ -145,7 +145,7 @@ fn a_picture_is_drawn_over_no_file_of_the_fleet() {
         let before = fs::read(site.path().join(name)).unwrap();
         let output = saoms_in(site.path(), &["graph", "site.composite", "-o", name, "--format", "dot"]);
         assert_eq!(code(&output), 2, "{name}");
-        assert!(stderr(&output).contains("which is read"), "{}", stderr(&output));
+        assert!(stderr(&output).contains("which is an input"), "{}", stderr(&output));
         assert_eq!(fs::read(site.path().join(name)).unwrap(), before);
     }
 }
@@ -158,7 +158,7 @@ fn schemas_are_written_over_no_plugin() {
     let before = fs::read(site.path().join("libhello.so")).unwrap();
     let output = saoms_in(site.path(), &["schema", "-o", "schemas", "--plugin", "libhello.so"]);
     assert_eq!(code(&output), 2);
-    assert!(stderr(&output).contains("`libhello.so`, which is read"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("`libhello.so`, which is an input"), "{}", stderr(&output));
     assert_eq!(fs::read(site.path().join("libhello.so")).unwrap(), before);
     assert_eq!(fs::read_dir(site.path().join("schemas")).unwrap().count(), 1, "nothing was written");
 }

@@ -111,7 +111,7 @@ fn wrong_questions_are_told() {
     let mut value: Value = serde_json::from_slice(&fs::read(folder.join("report.json")).unwrap()).unwrap();
     value.as_object_mut().unwrap().remove("journal");
     fs::write(folder.join("old.json"), value.to_string()).unwrap();
-    assert!(refused(&folder, &["Robot7", "--report", "old.json"]).contains("`old.json` holds no journal"));
+    assert!(refused(&folder, &["Robot7", "--report", "old.json"]).contains("`old.json` contains no journal"));
 }
 
 #[test]

@@ -81,10 +81,10 @@ fn a_battery_is_of_one_kind() {
         fleet(1, "100ms", "1s", &battery, "at 1s luggage (2,1) to (3,1)").shown()
     };
     for (properties, expected) in [
-        (&["discharge", "dischargePerBlock", "chargePerSecond"][..], "by execution, and by distance or time"),
+        (&["discharge", "dischargePerBlock", "chargePerSecond"][..], "per execution and also by distance or time"),
         (&["dischargePerSecond"], "`chargePerSecond` is missing"),
         (&["dischargePerBlock"], "`chargePerSecond` is missing"),
-        (&["chargePerSecond"], "the battery discharges by execution, and so it charges"),
+        (&["chargePerSecond"], "the battery discharges per execution, so it also charges per execution"),
     ] {
         let shown = found(properties);
         assert!(shown.contains(expected) && shown.contains("help: "), "{properties:?}: {shown}");

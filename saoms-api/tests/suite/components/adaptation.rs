@@ -275,7 +275,7 @@ fn two_loops_cannot_add_one_entry() {
     let failure = host.run(|context| car.initialize(context)).unwrap_err();
     assert_eq!(
         failure.message(),
-        "loop `Again`: the knowledge has an entry `saved` already: no loop can add another one"
+        "loop `Again`: the knowledge already has an entry `saved`: no loop can add another one"
     );
 }
 
@@ -317,7 +317,7 @@ fn wrong_entries_are_refused() {
         say(knowledge.effector::<f64>("charge").map(drop)),
         "the loop does not declare that it changes entry `charge`: write `effects(\"charge\")`, and ask in `initialize`"
     );
-    assert_eq!(say(knowledge.set_value(3, true.into())), "entry `charge`: `yes` is no \"float64\"");
+    assert_eq!(say(knowledge.set_value(3, true.into())), "entry `charge`: `yes` is not a \"float64\"");
     assert_eq!(say(knowledge.set_value(9, true.into())), "there is no entry 9");
     assert!(say(knowledge.set_to_bytes(6, &[1])).starts_with("entry `peers`: "));
     let strange = "this entry is not one of this knowledge: ask for it in `initialize`";

@@ -24,9 +24,7 @@ pub(super) fn read(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
                 && start == end
             {
                 let message = format!("found {end}, where the luggage is already: expected another block");
-                return Err(words
-                    .fault(words.text(&to.bytes), message)
-                    .help("luggage has to be brought from one block to another one"));
+                return Err(words.fault(words.text(&to.bytes), message).help("write two different blocks"));
             }
             EventSpec::Luggage { from, to }
         }
@@ -61,13 +59,13 @@ fn spot(words: &mut Tokenizer<'_>) -> Result<Spanned<Spot>, TextFault> {
 fn block(words: &Tokenizer<'_>, word: &str) -> Result<Block, TextFault> {
     let block: Block = word.parse().map_err(|_| words.wrong(word, BLOCK).instead(nearest(word, [RANDOM])))?;
     if block.x < 0 || block.y < 0 {
-        return Err(words.fault(word, format!("found `{word}`, and every area starts at (0,0)")));
+        return Err(words.fault(word, format!("found `{word}`, but every area starts at (0,0)")));
     }
     Ok(block)
 }
 
 fn pieces(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
-    const EXPECTED: &str = "how many pieces of luggage are expected, such as `4`";
+    const EXPECTED: &str = "a number of pieces of luggage, such as `4`";
     let word = words.next(EXPECTED)?;
     word.parse().map_err(|_| words.wrong(word, EXPECTED))
 }
@@ -76,7 +74,7 @@ fn pieces(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
 fn some(words: &Tokenizer<'_>, drawn: RandomRange<u32>) -> Result<RandomRange<u32>, TextFault> {
     let last = words.last();
     match drawn.most {
-        0 => Err(words.fault(last, format!("found `{last}`, expected at least 1 piece: for none no robot is woken"))),
+        0 => Err(words.fault(last, format!("found `{last}`, expected at least 1 piece"))),
         _ => Ok(drawn),
     }
 }

@@ -76,10 +76,10 @@ fn read_line(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
             _ => nearest(start, STARTS),
         };
         let fault = words.wrong(start, "`at`, `from` or `then` at the start of a line").instead(near);
-        return Err(fault.help("a line is such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`"));
+        return Err(fault.help("write a line such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`"));
     }
     if start == "then" && endless {
-        let message = "the line before never ends, so nothing comes after it";
+        let message = "the line before has no end, so nothing can follow it";
         return Err(words.fault(start, message).help("end it: `100 times`, or `until 60s`"));
     }
     let time = drawn(&mut words, time)?;
@@ -88,23 +88,23 @@ fn read_line(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
         let is_repeated = line.split_whitespace().any(|word| word == "every");
         if let Some(next) = words.peek().filter(|next| is_repeated || *next == "until") {
             let message = match is_repeated {
-                true => format!("found `{next}` before `every`, which comes right behind the first time"),
-                false => "found `until` without `every`: nothing says how often this happens".to_owned(),
+                true => format!("found `{next}` before `every`; `every` comes directly after the first time"),
+                false => "found `until` without `every`, which says how often this happens".to_owned(),
             };
             return Err(words.fault(next, message).help(REPEATED));
         }
-        let message = "found no `every` after `from` and its time: what happens once happens `at` a time";
+        let message = "expected `every` after `from` and its time; an event that happens once starts with `at`";
         return Err(words.fault(start, message).instead(Some("at")));
     }
     if every.is_some() && start == "at" {
-        let message = "found `every` after `at`: what happens again and again happens `from` a time on";
+        let message = "found `every` after `at`; an event that is repeated starts with `from`";
         return Err(words.fault(start, message).instead(Some("from")));
     }
     let given = if words.peek_second() == Some("times") { Some(times(&mut words)?) } else { None };
     let until = if words.take("until") { Some(until(&mut words, every.is_some(), start, time)?) } else { None };
     let first = words.peek().unwrap_or_default();
     if words.peek_second() == Some("luggage") && first.parse::<u64>().is_ok() {
-        let message = format!("found `{first}` before `luggage`: how often it happens is said with `times`");
+        let message = format!("found `{first}` before `luggage`, expected a number of times, such as `{first} times`");
         return Err(words.fault(first, message).instead(Some(format!("{first} times"))));
     }
     let bytes = words.bytes(first);
@@ -132,7 +132,7 @@ fn times(words: &mut Tokenizer<'_>) -> Result<u64, TextFault> {
     words.take("times");
     match number.parse() {
         Ok(times @ 1..=MOST) => Ok(times),
-        _ => Err(words.wrong(number, &format!("how often it happens: a whole number from 1 to {MOST}"))),
+        _ => Err(words.wrong(number, &format!("the number of times: a whole number from 1 to {MOST}"))),
     }
 }
 
@@ -202,7 +202,7 @@ pub(super) fn drawn<'a, T: Copy + PartialOrd>(
     let second = words.span(start, words.last());
     if most < least {
         let span = words.span(first, second);
-        let message = format!("found `{span}`, expected the lesser one first");
+        let message = format!("found `{span}`, expected the smaller value first");
         return Err(words.fault(span, message).instead(Some(format!("{second}..{first}"))));
     }
     Ok(RandomRange { least, most })

@@ -62,21 +62,20 @@ pub(super) fn overloaded(
         (share * robots(ranges), Severity::Warning, "usually")
     };
     let count = needed.ceil();
-    let (there, are) = if ranges.len() == 1 { ("robot", "is") } else { ("robots", "are") };
+    let there = if ranges.len() == 1 { "robot" } else { "robots" };
     let pieces: f64 = usual.iter().map(|line| 60.0 / line.every).sum();
     let each = needed / pieces * 60.0;
     let message = format!(
-        "luggage comes faster for ever than the fleet can bring it and charge: {} pieces a minute, each {how} {} s of \
-         a robot's time with its share of charging, keep {needed:.1} robots busy, and there {are} {} {there} with a \
-         charger",
+        "luggage comes faster than the fleet can deliver it: {} pieces per minute need {needed:.1} robots, since \
+        each piece takes {how} {} s of a robot's time, charging included; the fleet has {} {there} with a charger",
         rounded(pieces),
         rounded(each),
         ranges.len(),
     );
     let longer = needed / robots(ranges);
     let help = format!(
-        "have {count} robots with chargers of their own, or let pieces come {longer:.1} times as seldom; lines that \
-         end (`100 times`, `until 10min`) are worked off later"
+        "use {count} robots, each with its own charger, or make the time between pieces {longer:.1} times as long; \
+        if the line ends (`100 times`, `until 10min`), the robots can deliver the rest later"
     );
     Some(Finding::new(place, message).severity(severity).help(help))
 }

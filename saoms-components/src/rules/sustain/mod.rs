@@ -30,8 +30,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5006",
         name: "unsustainable",
-        meaning: "The robots cannot do the work with the charge that they get: luggage is farther off than a full \
-            battery lasts, or comes faster for ever than they can bring it and charge.",
+        meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or it \
+            comes, without end, faster than the robots can deliver it and charge.",
         severity: Severity::Error,
         rule: None,
     },

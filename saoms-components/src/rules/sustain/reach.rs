@@ -38,8 +38,8 @@ pub(super) fn out_of_reach(
     of_spot.or_else(|| out_of_one_reach(area, ranges, piece, ways))
 }
 
-const HELP: &str = "put a charger closer to it, or let the robots need less energy: `discharge` counts executions, so that \
-    a slow world needs more; with `dischargePerBlock` and `chargePerSecond` it does not";
+const HELP: &str = "put a charger closer to this block, or reduce the energy that a move needs; `discharge` is per \
+    execution, so slow moves need more energy; `dischargePerBlock` with `chargePerSecond` does not depend on the speed";
 
 /// Finding for luggage whose ends are in the reach of some robot each, and of no robot both.
 fn out_of_one_reach(area: &WorldMap, ranges: &[Range], piece: &LuggageLine, ways: &mut Ways<'_>) -> Option<Finding> {
@@ -52,10 +52,12 @@ fn out_of_one_reach(area: &WorldMap, ranges: &[Range], piece: &LuggageLine, ways
             let is_one = piece.from.value.block().is_some() && piece.to.value.block().is_some();
             let severity = if is_one { Severity::Error } else { Severity::Warning };
             let message = format!(
-                "no robot can bring luggage from {from} to {to}: the charger of each robot is too far from one of them"
+                "no robot can bring luggage from {from} to {to}: the charger of each robot is too far from one of \
+                the two blocks"
             );
             return Some(Finding::new(piece.whole(), message).severity(severity).help(
-                "a robot charges at its own charger alone: put one nearer to both, or let robots need less energy",
+                "put the charger of a robot closer to both blocks, or reduce the energy that a move needs; each \
+                robot uses its own charger",
             ));
         }
     }

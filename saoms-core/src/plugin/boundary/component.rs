@@ -155,7 +155,8 @@ impl DynComponent for ImportedComponent {
         let _entered = enter(self.owner, Function::WaitsFor);
         // SAFETY: as in `save`.
         call_for_bytes(&mut bytes, |text, error| unsafe { waits_for(instance, text, error) })?;
-        let text = String::from_utf8(bytes).map_err(|_| Failure::new("what it waits for is no text in UTF-8"))?;
+        let text =
+            String::from_utf8(bytes).map_err(|_| Failure::new("the text that says what it waits for is not UTF-8"))?;
         Ok(Some(text).filter(|text| !text.is_empty()))
     }
 }

@@ -86,7 +86,7 @@ impl ComponentHost<'_> {
         };
         schema.check(message.bytes()).map_err(|error| {
             let name = self.shared.lock().bus.name(topic).to_string();
-            Failure::new(format!("topic `{name}`: it sends what is no message `{}`: {error}", schema.name()))
+            Failure::new(format!("topic `{name}`: what it sends is not a message `{}`: {error}", schema.name()))
         })
     }
 }
@@ -278,9 +278,9 @@ impl Host for ComponentHost<'_> {
 
     fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn DynLoop>, Failure> {
         if !self.part.initializing {
-            return Err(Failure::new("a component can only take its loops in `initialize`; keep what `loops` returns"));
+            return Err(Failure::new("take the loops in `initialize`, and keep what `loops` returns"));
         }
-        let one = self.spec().loops.get(place as usize).ok_or("there are not so many loops")?;
+        let one = self.spec().loops.get(place as usize).ok_or("there are fewer loops")?;
         let constructed = contained(|| about(&subject(&self.part.name), || one.class.construct(&one.values)));
         let constructed = constructed.and_then(|made| made);
         constructed.map_err(|failure| Failure::new(format!("loop `{}`: {failure}", one.name)))

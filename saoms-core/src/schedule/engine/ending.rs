@@ -48,7 +48,7 @@ impl Engine {
     /// Ends the run after a fault of the engine itself.
     pub(crate) fn break_down(&mut self) {
         self.phase = RunPhase::Ended;
-        self.reasons.push("a fault of the program itself, told on standard error, ended the run".to_owned());
+        self.reasons.push("an error of the program itself, reported on standard error, ended the run".to_owned());
     }
 
     /// The next component that has to shut down. A component whose code runs follows when the code returns.

@@ -23,8 +23,11 @@ pub(crate) fn of_reference(reference: &ReferenceElement, version: Version, repor
     of_callback(reference.contract().callback.as_ref(), &reference.name, report);
     let mut uris = bindings.iter().filter_map(|one| one.uri.as_ref()).filter(|uri| !uri.is_empty());
     if let (true, Some(target), Some(uri)) = (version.is_1_1(), reference.targets.first(), uris.next()) {
-        let message =
-            format!("reference {} has a target, and a binding that leads to {}", quoted(&reference.name), quoted(uri));
+        let message = format!(
+            "reference {} has a target and also a binding that leads to {}",
+            quoted(&reference.name),
+            quoted(uri)
+        );
         let one = Diagnostic::new(&codes::TARGET_IN_TWO_WAYS, uri.location, message).rule("ASM50026");
         report.push(one.label(target.location, "the target").help("keep one of them"));
     }
@@ -41,7 +44,7 @@ pub(crate) fn uris(service: &ServiceElement, version: Version, report: &mut Repo
                 if uri.is_empty() { binding.tag() } else { uri.location },
                 message,
             );
-            report.push(one.help("remove it: a service is where its component is, and references name that"));
+            report.push(one.help("remove it: references find a service by the name of its component"));
         }
     }
 }
@@ -68,7 +71,7 @@ fn names(what: &str, of: &Text, bindings: &[Binding], report: &mut Report<'_>) {
             None => Diagnostic::new(&codes::BINDING_REPEATED, place, message),
             // Whoever serves them may tell them apart by their kinds.
             Some(unnamed) => {
-                let message = format!("{message}: `binding.{}` without a name is called so", unnamed.kind);
+                let message = format!("{message}: this is the default name of `binding.{}`", unnamed.kind);
                 Diagnostic::new(&codes::BINDING_REPEATED, place, message).severity(Severity::Warning)
             }
         };

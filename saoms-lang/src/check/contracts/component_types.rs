@@ -47,7 +47,8 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
             let one = Diagnostic::new(&codes::COMPONENT_TYPE_MISSING, implementation.tag(), message);
             let kind = implementation.origin.element(&member.composite.document).local_name();
             report.push(one.help(format!(
-                "{} does not declare them: write a component type, a file of its name that ends with `.componentType`",
+                "{} does not declare them: write them in a component type, a file with the same name and the ending \
+                `.componentType`",
                 quoted(kind)
             )));
         }

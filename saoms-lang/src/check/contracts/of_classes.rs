@@ -92,8 +92,8 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
                 let message = format!("{whose} has no reference {}", quoted(name));
                 let one = Diagnostic::new(&codes::UNKNOWN_REFERENCE, name.location, message);
                 let promoting = format!("`<reference name=\"{}\" promote=\"COMPONENT/reference\"/>`", escaped(name));
-                let help = format!("it has those of its components that it promotes: write {promoting} in it");
-                report.push(one.label(inner.main().name.location, "this one").help(help));
+                let help = format!("a composite has only the references that it promotes: write {promoting} in it");
+                report.push(one.label(inner.main().name.location, "the composite").help(help));
                 continue;
             }
             unknown(&codes::UNKNOWN_REFERENCE, ("reference", "references"), name, &whose, &names, report);
@@ -113,7 +113,7 @@ fn swapped(service: &ServiceElement, whose: &str, document: &Document, report: &
     };
     let spans = [Some(element.name_span()), element.end_name_span()].into_iter().flatten();
     let edits = spans.map(|span| Edit { location: span.in_file(document.file()), replacement: tag.clone() });
-    let message = format!("{} of {whose} is a reference, and no service", quoted(&service.name));
+    let message = format!("{} of {whose} is a reference, not a service", quoted(&service.name));
     let one = Diagnostic::new(&codes::UNKNOWN_SERVICE, service.name.location, message);
     report.push(one.suggest_edits(replacing(element.name(), &tag), edits.collect()));
 }
@@ -143,6 +143,6 @@ fn bindings(bindings: &[Binding], so: &str, report: &mut Report<'_>) {
         }
         let message = format!("{} is not supported: {so}", quoted(&format!("binding.{}", binding.kind)));
         let one = Diagnostic::new(&codes::BINDING_NOT_SERVED, binding.tag(), message);
-        report.push(one.help("remove it; other machines are reached through topics and the `url` of a message broker"));
+        report.push(one.help("remove it; to reach other machines, use topics and the `url` of a message broker"));
     }
 }

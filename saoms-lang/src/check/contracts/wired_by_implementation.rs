@@ -16,7 +16,7 @@ pub(crate) fn reference(reference: &ReferenceElement, version: Version, report: 
     } else if let Some(uri) = uris.into_iter().find(|uri| !uri.is_empty()) {
         (uri.location, "has a binding that leads to one", "ASM50013")
     } else if let Some(autowire) = reference.autowire.filter(|autowire| autowire.value) {
-        (autowire.location, "asks for one by `autowire`", "ASM50010")
+        (autowire.location, "has `autowire`", "ASM50010")
     } else {
         return;
     };
@@ -34,9 +34,9 @@ fn wired_twice(
     severity: Severity,
     report: &mut Report<'_>,
 ) {
-    let message = format!("reference {} is wired by its implementation, and {what}", quoted(name));
+    let message = format!("reference {} is wired by its implementation, but {what}", quoted(name));
     let one = Diagnostic::new(&codes::WIRED_BY_IMPLEMENTATION, at, message).severity(severity).rule(rule);
-    report.push(one.label(said, "said here").help("remove the target, or `wiredByImpl`"));
+    report.push(one.label(said, "`wiredByImpl` is set here").help("remove the target, or `wiredByImpl`"));
 }
 
 /// Reports references that implementations wire, and that the composite or its wires lead somewhere; these are few.

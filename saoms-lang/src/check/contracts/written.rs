@@ -57,6 +57,6 @@ fn type_and_element(property: &Property, rule: &'static str, report: &mut Report
     if let (Some(of), Some(element)) = (property.r#type(), property.element()) {
         let message = format!("the property {} has both a `type` and an `element`", quoted(&property.name));
         let one = Diagnostic::new(&codes::TYPE_AND_ELEMENT, at(element, property.tag()), message);
-        report.push(one.rule(rule).label(at(of, property.tag()), "the other one").help("remove one of them"));
+        report.push(one.rule(rule).label(at(of, property.tag()), "the `type`").help("remove one of them"));
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn plan<'a>(
     if class.class.declaration().knowledge.is_none() {
         let message = format!("class {} has no loops", quoted(class.class.name()));
         let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, first.tag(), message);
-        report.push(one.help("loops work on the knowledge of a component, and this one declares none"));
+        report.push(one.help("loops work on the knowledge of a component, but this component declares none"));
         return (loops, false);
     }
     let mut named: HashMap<&str, &LoopElement> = HashMap::new();
@@ -42,8 +42,11 @@ pub(super) fn plan<'a>(
             let message = format!("the loop {} is given twice", quoted(&one.name));
             report.push(
                 Diagnostic::new(&codes::LOOP_REPEATED, one.name.location, message)
-                    .label(first.name.location, "first here")
-                    .help("say all about a loop in one element; two loops of one class need two names"),
+                    .label(first.name.location, "first given here")
+                    .help(
+                        "write everything about a loop in one element; two loops of the same class need different \
+                        names",
+                    ),
             );
             is_sound = false;
         } else {
@@ -116,7 +119,7 @@ fn by_default<'a>(
             }
             None => {
                 let (class, name) = (quoted(class.class.name()), quoted(name));
-                let message = format!("class {class} has the loop {name}, and no such loop is registered");
+                let message = format!("class {class} has the loop {name}, but no such loop is registered");
                 let at = member.component.name.location;
                 report.push(Diagnostic::new(&codes::UNKNOWN_CLASS, at, message));
                 is_sound = false;
@@ -136,13 +139,13 @@ fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
         let Some((what, at)) = given.chain(properties).next() else { return true };
         let message = format!("the loop {} is removed, but has {what}", quoted(&one.name));
         let one = Diagnostic::new(code, at, message).label(remove.location, "removed here");
-        report.push(one.help("a removed loop has no class, place or properties"));
+        report.push(one.help("remove this, or keep the loop: a removed loop has no class, place or properties"));
         return false;
     }
     if let (Some(before), Some(after)) = (&one.before, &one.after) {
-        let message = format!("the loop {} is given two places", quoted(&one.name));
-        let one = Diagnostic::new(code, after.location, message).label(before.location, "the other one");
-        report.push(one.help("a loop stands directly before another, or directly after another: keep one"));
+        let message = format!("the loop {} has two places", quoted(&one.name));
+        let one = Diagnostic::new(code, after.location, message).label(before.location, "the `before`");
+        report.push(one.help("keep either `before` or `after`"));
         return false;
     }
     true
@@ -154,9 +157,10 @@ fn unchanged(one: &LoopElement, report: &mut Report<'_>) {
     if says_something || !one.properties.is_empty() || one.is_misread {
         return;
     }
-    let message = format!("this has no effect: the component has the loop {} from its class", quoted(&one.name));
+    let message =
+        format!("this element has no effect: the component already has the loop {} from its class", quoted(&one.name));
     let one = Diagnostic::new(&codes::LOOP_UNCHANGED, one.tag(), message);
-    report.push(one.help("remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties"));
+    report.push(one.help("remove it, or write what to change: `class`, `before`, `after`, `remove` or properties"));
 }
 
 /// Reports a name that is none of a component's loops.
@@ -172,7 +176,7 @@ pub(super) fn report_unknown(
     let known = ("its loops are", names.iter().copied());
     let one = report.unknown(&codes::UNKNOWN_LOOP, name.location, message, name, known);
     let one = if names.is_empty() { one.help("it has none") } else { one };
-    report.push(if is_removal { one } else { one.help("to add a loop, say which: `class=\"...\"`") });
+    report.push(if is_removal { one } else { one.help("to add a loop, name its class: `class=\"...\"`") });
 }
 
 fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
@@ -181,7 +185,7 @@ fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
     if registry.get(class).is_some() {
         let component = format!("`<implementation.rust class=\"{class}\"/>`");
-        return one.help(format!("it is a class of components: those are implemented by it, with {component}"));
+        return one.help(format!("it is a component class: a component uses it with {component}"));
     }
     for meant in registry.nearest_loops(class) {
         one = one.suggest(replacing(class, meant), class.location, escaped(meant));
@@ -192,7 +196,8 @@ fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
         1..=SHOWN => format!("the loops linked into this program are {}", list(names)),
         count => {
             format!(
-                "looked among the {count} loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin"
+                "`saoms components` lists the {count} loops of this program and its plugins; `--plugin PATH` adds \
+                the loops of a plugin"
             )
         }
     })

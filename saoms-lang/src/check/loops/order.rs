@@ -72,7 +72,7 @@ pub(super) fn sort<'a>(
             [] => format!("the loop {} is placed beside itself", quoted(&last.name)),
             _ => {
                 let names = list(stuck.iter().map(|one| one.name.as_str()));
-                format!("the order of the loops {names} goes in a circle")
+                format!("the order of the loops {names} is circular")
             }
         };
         let mut one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message)

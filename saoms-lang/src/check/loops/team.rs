@@ -62,7 +62,7 @@ impl TeamDiagnostics<'_, '_> {
                 let known = self.class.class.declaration().knowledge.as_ref().map_or("", |known| &known.name);
                 let (wanted, known) = (quoted(wanted.unwrap_or_default()), quoted(known));
                 let message = format!(
-                    "the loop {} works on the knowledge {wanted}, and component {component} has {known}",
+                    "the loop {} works on the knowledge {wanted}, but component {component} has {known}",
                     self.name(at)
                 );
                 let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, self.place_or_component(at), message);
@@ -70,10 +70,12 @@ impl TeamDiagnostics<'_, '_> {
             }
             TeamFault::UnknownEntry { at, entry, verb } => {
                 let (name, wanted) = (self.name(at), quoted(entry));
-                let message = format!("the loop {name} {verb} {wanted}, and component {component} has no such entry");
+                let message = format!("the loop {name} {verb} {wanted}, but component {component} has no such entry");
                 let one = Diagnostic::new(&codes::UNKNOWN_ENTRY, self.place_or_component(at), message);
                 one.help(match nearest(entry, self.entries.iter().copied()) {
-                    Some(near) => format!("there is {}: is the loop made for another component?", quoted(near)),
+                    Some(near) => {
+                        format!("the nearest entry is {}: is the loop made for another component?", quoted(near))
+                    }
                     None => format!("the entries are {}", list(self.entries.iter().copied())),
                 })
             }
@@ -120,7 +122,8 @@ impl TeamDiagnostics<'_, '_> {
         };
         let bare = self.loops[with].name;
         one.help(format!(
-            "{} is an effector, which one loop alone may change: replace {other}, with `name=\"{bare}\"`, or remove it, with `<saoms:loop name=\"{bare}\" remove=\"true\"/>`",
+            "only one loop may change the effector {}: replace {other} with `name=\"{bare}\"`, or remove it with \
+            `<saoms:loop name=\"{bare}\" remove=\"true\"/>`",
             quoted(entry)
         ))
     }

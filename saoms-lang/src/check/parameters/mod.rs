@@ -249,7 +249,7 @@ impl<'a> Parameters<'a> {
             escaped(name),
             quoted(&owner.name)
         );
-        one.label(owner.name.location, "gives it none").help(help)
+        one.label(owner.name.location, "this component gives no value").help(help)
     }
 
     fn named_by<'n>(&self, unit: usize, source: &'n str) -> Option<(&'n str, &Parameter<'a>)> {
@@ -297,15 +297,15 @@ impl<'a> Parameters<'a> {
         // One value is no list.
         let count = Some(whole.raw.0.len()).filter(|count| *count > 1).unwrap_or_default();
         let exceeded = [
-            (&self.values, count, "4000000 values", "takes all values of a property has each of them"),
-            (&self.text, whole.raw.bytes(), "64 MB of text", "takes a long text has it"),
+            (&self.values, count, "4000000 values", "takes all values of a property has a copy of each value"),
+            (&self.text, whole.raw.bytes(), "64 MB of text", "takes a long text has a copy of it"),
         ]
         .into_iter()
         .find(|(budget, cost, ..)| !budget.spend(*cost as u64));
         let Some((budget, _, most, has)) = exceeded else { return Ok(whole) };
         if budget.is_to_report() {
-            let message = format!("sources make more than {most}");
-            let help = format!("each component that {has}: use fewer");
+            let message = format!("the components take more than {most} by `source`");
+            let help = format!("use fewer: each component that {has}");
             report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, source.location, message).help(help));
         }
         Err(Faulty)
@@ -341,9 +341,12 @@ impl<'a> Parameters<'a> {
                 // No `source` can name one that is of the wrong form, which is reported.
                 let is_open = is_open || name.contains(char::is_whitespace);
                 if !used.contains(&(origin.file(), origin.element)) && !is_open {
-                    let message = format!("the property {} of the composite is used by no component", quoted(name));
+                    let message = format!("no component uses the property {} of the composite", quoted(name));
                     let one = Diagnostic::new(&codes::UNUSED_PROPERTY, name.location, message);
-                    report.push(one.help(format!("a component takes its value with `source=\"${}\"`", escaped(name))));
+                    report.push(one.help(format!(
+                        "remove it, or use its value in a component with `source=\"${}\"`",
+                        escaped(name)
+                    )));
                 }
             }
         }

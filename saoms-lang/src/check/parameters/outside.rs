@@ -25,7 +25,7 @@ impl Parameters<'_> {
                 let message = format!("{} is set twice", quoted(&setting.name));
                 report.push(
                     Diagnostic::new(&codes::SETTING_REPEATED, setting.name.location, message)
-                        .label(earlier.name.location, "first here")
+                        .label(earlier.name.location, "first set here")
                         .help("keep one of them"),
                 );
                 continue;
@@ -64,7 +64,9 @@ impl Parameters<'_> {
         let mut all = self.units.iter().filter_map(|unit| Some((unit.by_name.get(name)?, unit.owner?)));
         let (parameter, owner) = all.next()?;
         Some(format!(
-            "the composite {} inside has one, and has its value from component {}: let that take it from a property of the outermost composite, `<property name=\"{}\" source=\"$...\"/>`, and set this one",
+            "the inner composite {} has this property, and component {} gives it a value: take the value from a \
+            property of the outermost composite there, `<property name=\"{}\" source=\"$...\"/>`, and set that \
+            property",
             quoted(&parameter.composite.name),
             quoted(&owner.name),
             escaped(name)
@@ -82,12 +84,12 @@ impl Parameters<'_> {
             return match assumes {
                 true => one
                     .severity(Severity::Warning)
-                    .help("as an implementation, it takes the value that its component gives it"),
+                    .help("where the composite implements a component, that component gives the value"),
                 false => one,
             };
         };
         let message = format!(
-            "component {} has to give the property {} of its composite a value",
+            "component {} must give a value to the property {} of its composite",
             quoted(&owner.name),
             quoted(name)
         );
@@ -98,7 +100,7 @@ impl Parameters<'_> {
         match self.units[unit].by_name.get(name.as_str()).and_then(|parameter| parameter.given) {
             Some(Given::Component(place, given)) => match given.source() {
                 Some(source) => {
-                    let one = missing(source.location, format!("{message}: its source has none"));
+                    let one = missing(source.location, format!("{message}: its source has no value"));
                     self.supply(place.unit, source, one)
                 }
                 None => missing(given.name.location, message).help("write the value inside"),

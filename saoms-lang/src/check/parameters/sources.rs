@@ -151,7 +151,7 @@ impl<'a> Parameters<'a> {
         unit.source = Some(Faulty);
         if source.contains(['$', '(']) {
             let fault = braced(source).unwrap_or_else(|| {
-                PathFault::unknown(0..source.len(), format!("{} is not a path from a property", quoted(source)))
+                PathFault::unknown(0..source.len(), format!("{} is not the path of a property", quoted(source)))
             });
             return self.malformed(source, 0, fault, report);
         }
@@ -173,7 +173,7 @@ impl<'a> Parameters<'a> {
         if kind == PathFaultKind::TooMany {
             if self.elements.is_to_report() {
                 let one = Diagnostic::new(&codes::FLEET_TOO_LARGE, at, message);
-                report.push(one.help("ask for parts by their names, by an attribute or by a place, without `//`"));
+                report.push(one.help("name the parts, or use an attribute or a position, without `//`"));
             }
             return Faulty;
         }
@@ -187,7 +187,7 @@ impl<'a> Parameters<'a> {
         }
         if kind == PathFaultKind::Unknown {
             one = match self.options.assume_classes {
-                true => one.severity(Severity::Warning).help("another program may understand it: it is taken as given"),
+                true => one.severity(Severity::Warning).help("it is not checked: another program may understand it"),
                 false => one.help(format!(
                     "a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: {FORMS}"
                 )),
@@ -202,7 +202,7 @@ impl<'a> Parameters<'a> {
 fn braced(source: &str) -> Option<PathFault> {
     let (name, _) = source.strip_prefix("${")?.split_once('}')?;
     let written = format!("${{{name}}}");
-    let fault = PathFault::unknown(0..written.len(), "names of properties stand without braces here");
+    let fault = PathFault::unknown(0..written.len(), "write the property's name without braces here");
     is_name(name.trim()).then(|| PathFault { instead: Some((written, format!("${}", name.trim()))), ..fault })
 }
 

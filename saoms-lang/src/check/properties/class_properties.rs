@@ -163,7 +163,7 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         if let (true, Some(source)) = (slot.is_unset, property.source())
             && !self.parameters.is_lack_reported(unit, source)
         {
-            let message = format!("the property {} has no value: its source has none", quoted(&declaration.name));
+            let message = format!("the property {} has no value: its source has no value", quoted(&declaration.name));
             let one = Diagnostic::new(&codes::PROPERTY_MISSING, source.location, message);
             self.report.push(self.parameters.supply(unit, source, one));
         }

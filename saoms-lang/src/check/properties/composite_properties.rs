@@ -53,7 +53,7 @@ fn unknown(property: &Property, names: &[&str], inner: &Unit<'_>, report: &mut R
     let known = ("its properties are", names.iter().copied());
     let one = match taken_inside(name, inner) {
         Some(source) => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message)
-            .label(source, "taken here")
+            .label(source, "its value is used here")
             .help(format!("declare it in the composite: `<property name=\"{}\"/>`", escaped(name))),
         None => report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known),
     };

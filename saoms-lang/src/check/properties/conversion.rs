@@ -125,7 +125,7 @@ fn one_value(piece: &Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> 
             let (name, expected) = (target.quoted(), declaration.expected());
             let message = format!("property {name}: found {found}, expected {expected}");
             let code = if text.is_empty() { &codes::VALUE_EMPTY } else { &codes::VALUE_TYPE };
-            Diagnostic::new(code, text.location, message).help("write each as an element inside")
+            Diagnostic::new(code, text.location, message).help("write each of them as an element inside")
         }
         (Piece::Whole(text, ..), _) => return text_value(text, target, report),
         (Piece::Text(text), _) => return text_value(text, target, report),

@@ -65,7 +65,7 @@ impl<'a> Fleet<'a> {
         let message = format!("component {} declares no {what} {}", quoted(&component.name), quoted(name));
         let mut one = Diagnostic::new(code, at, message).severity(Severity::Warning);
         if let Some(declared) = names(side, &component.services, &component.references).find(|own| *own == meant) {
-            one = one.label(declared.location, "what it declares");
+            one = one.label(declared.location, "its own declaration");
         }
         one = one.suggest(replacing(name, meant), at, escaped(meant));
         one.rule = rule.or(one.rule);
@@ -112,10 +112,11 @@ impl<'a> ForeignType<'a> {
         let all = if what == "property" { "properties".to_owned() } else { format!("{what}s") };
         let known = (&*format!("its {all} are"), names.iter().copied());
         let mut one = report.unknown(code, at, message, name, known);
-        one = one.label(self.described.tag(), "what it has is described here");
+        one = one.label(self.described.tag(), "its component type");
         if !self.is_whole {
-            one =
-                one.severity(Severity::Warning).help(format!("if its class has it, add the {what} to the description"));
+            one = one
+                .severity(Severity::Warning)
+                .help(format!("if the class has it, add the {what} to the component type"));
         }
         one.rule = rule.or(one.rule);
         report.push(one);

@@ -29,7 +29,7 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
         }
     };
     let one = match stands_for(giver, table) {
-        Some(lacking) => one.help(format!("{} is missing: you may mean it", quoted(lacking))),
+        Some(lacking) => one.help(format!("did you mean {}, which is missing?", quoted(lacking))),
         None => one,
     };
     report.push(match is_task {
@@ -102,7 +102,7 @@ pub(crate) fn missing(
         true => format!("the {}", giver.what),
         false => format!("{} {}", giver.what, quoted(giver.name)),
     };
-    let message = format!("{who} lacks the property {}", quoted(name));
+    let message = format!("{who} needs the property {}", quoted(name));
     report.push(
         Diagnostic::new(&codes::PROPERTY_MISSING, giver.name.location, message)
             .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),

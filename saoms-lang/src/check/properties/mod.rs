@@ -87,6 +87,6 @@ pub(crate) fn check_all<'a>(
 fn given_twice(property: &Property, first: &Property) -> Diagnostic {
     let message = format!("the property {} is given twice", quoted(&property.name));
     Diagnostic::new(&codes::PROPERTY_REPEATED, property.name.location, message)
-        .label(first.name.location, "first here")
+        .label(first.name.location, "first given here")
         .help("keep one of them")
 }

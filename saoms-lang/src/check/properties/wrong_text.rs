@@ -38,13 +38,13 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
     if let Some(meant) = by_index.filter(|meant| meant != text.trim()) {
         return match has_index {
             true => one.suggest(replacing(text, &meant), text.location, escaped(&meant)),
-            false => one.help(format!("{} is for replicas: give the component a `saoms:count`", quoted(&meant))),
+            false => one.help(format!("{} is only for replicas: give the component a `saoms:count`", quoted(&meant))),
         };
     }
     let inside = |before, behind| text.trim().strip_prefix(before)?.strip_suffix(behind);
     let (one, name) = match has_expression(text) {
         true => (
-            one.help("`${...}` stands for a number in components with a `saoms:count` alone"),
+            one.help("`${...}` is evaluated only in components with a `saoms:count`"),
             inside("${", "}").filter(|name| name.trim() != INDEX),
         ),
         false => (one, inside("$(arg ", ")").or_else(|| inside("$", ""))),

@@ -249,7 +249,7 @@ fn twice(code: &Text, level: SeverityLevel, first: &SetBy) -> Diagnostic {
         true => format!("the severity of {code} is set twice"),
         false => format!("the severity of {code} is set to `{other}` and to `{one}`"),
     };
-    Diagnostic::new(&codes::SEVERITY, code.location, message).label(first.at, "first here").help("keep one of them")
+    Diagnostic::new(&codes::SEVERITY, code.location, message).label(first.at, "first set here").help("keep one of them")
 }
 
 fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {

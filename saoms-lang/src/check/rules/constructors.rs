@@ -116,7 +116,7 @@ fn findings(
 }
 
 fn help(class: &str) -> String {
-    format!("{} says what its properties mean", quoted(&format!("saoms components {class}")))
+    format!("{} describes its properties", quoted(&format!("saoms components {class}")))
 }
 
 /// Lets the constructors of all components judge their values.

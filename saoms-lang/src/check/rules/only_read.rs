@@ -34,11 +34,14 @@ pub(super) fn check(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], options: &
 }
 
 fn diagnostic(library: &Path, at: Location, is_to_start: bool) -> Diagnostic {
-    let message = format!("no code of the library {} runs: no option names it", quoted(&library.display().to_string()));
+    let message = format!(
+        "the code of the library {} does not run: no option names the library",
+        quoted(&library.display().to_string())
+    );
     let one = Diagnostic::new(&codes::ONLY_READ, at, message);
     let name = format!("if you trust it, name it: `--plugin {}`", library.display());
     match is_to_start {
         true => one.help(name),
-        false => one.severity(Severity::Note).help(format!("its constructors do not judge values; {name}")),
+        false => one.severity(Severity::Note).help(format!("its constructors do not check the values; {name}")),
     }
 }

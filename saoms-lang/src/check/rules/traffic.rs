@@ -149,7 +149,7 @@ impl All<'_> {
             format!("{} {hear} on topic {}: others use {}", self.who(&users), quoted(&topic.name), quoted(&meant.name));
         let one = Diagnostic::new(&codes::TOPIC_NEAR, self.at(end, topic), message)
             .label(self.at(other, meant), format!("uses {}", quoted(&meant.name)));
-        report.push(one.help("`topicRename` gives topics other names: remove a pair from it, or correct its new name"));
+        report.push(one.help("correct `topicRename`: remove a pair, or change its new name"));
     }
 
     fn near(&self, lone: &TrafficTopic, meant: &TrafficTopic, report: &mut Report<'_>) {
@@ -169,7 +169,7 @@ impl All<'_> {
             .label(self.at(other, meant), format!("{do_not} {}", quoted(&meant.name)));
         report.push(match self.is_renamed(end, lone) {
             true => one.replace(&self.local(end, lone), at, &self.local(end, meant)),
-            false => one.help("`topicRename` gives topics other names"),
+            false => one.help("connect the two topics with `topicRename`"),
         });
     }
 
@@ -230,7 +230,8 @@ impl All<'_> {
                 let one = Diagnostic::new(&codes::QUEUE, at, message);
                 report.push(
                     one.help(format!(
-                        "{writers} it{in_all}: there are so many if each sends one per execution, usually there are fewer"
+                        "{writers} it{in_all}: this is the case if each sends one message per execution; usually \
+                        there are fewer"
                     ))
                     .help(format!(
                         "if a run reports lost messages, give the readers a `queue` of {burst}, or a shorter `period`"
@@ -248,7 +249,7 @@ impl All<'_> {
                     format_duration(fastest)
                 );
                 let one = Diagnostic::new(&codes::READER_FASTER, self.at(reader, topic), message);
-                report.push(one.help("some of its executions find nothing new"));
+                report.push(one.help("some of its executions receive nothing new"));
             }
         }
     }

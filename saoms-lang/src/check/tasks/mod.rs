@@ -88,7 +88,7 @@ impl Task<'_, '_> {
             }
         }
         let message =
-            format!("`useJMS` is false, and component {} {}", quoted(&self.component.name), uses.join(" and "));
+            format!("`useJMS` is false, but component {} {}", quoted(&self.component.name), uses.join(" and "));
         report.push(
             Diagnostic::new(&codes::USE_JMS, given.place, message)
                 .help("set `useJMS` to true: without it a component cannot publish or subscribe"),
@@ -107,7 +107,7 @@ impl Task<'_, '_> {
             );
             let one =
                 Diagnostic::new(&codes::DEADLINE, self.place("deadline").unwrap_or(self.component.tag()), message)
-                    .help("a deadline is at most the period");
+                    .help("shorten the deadline: it can be at most the period");
             report.push(match self.place("period") {
                 Some(period) => one.label(period, "the period"),
                 None => one,
@@ -159,7 +159,7 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
     let at = report.part(url, fault.at);
     let message = format!("{} is not an address of a message broker: {}", quoted(url), fault.message);
     let one = Diagnostic::new(&codes::BROKER_URL, at, message)
-        .help("an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535");
+        .help("write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535");
     report.push(match fault.instead {
         Some(instead) if instead.is_empty() => one.suggest("remove it", at, instead),
         Some(instead) => one.suggest(format!("replace it with {}", quoted(&instead)), at, escaped(&instead)),

@@ -118,7 +118,7 @@ fn shared(
         quoted(value)
     );
     let one = Diagnostic::new(&codes::NOT_UNIQUE, user.place, message);
-    let one = one.help(format!("every {word} needs its own"));
+    let one = one.help(format!("give every {word} its own {}", quoted(&declaration.name)));
     let own = later.component.properties.iter().filter_map(Property::only_text);
     let is_own = earlier.scope == later.scope && own.clone().any(|text| text.location == user.place);
     report.push(match first.place == user.place {
@@ -142,7 +142,7 @@ fn task(value: &str, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut R
     report.push(
         Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message)
             .other(first.place, "the first")
-            .help("messages and reports name tasks by their ID"),
+            .help("give each its own ID: give each its own ID: messages and reports name tasks by their ID"),
     );
 }
 

@@ -187,8 +187,8 @@ impl<'a> Unfolding<'a, '_, '_> {
     pub(crate) fn is_beyond(&mut self, component: &ComponentElement) -> bool {
         let is_beyond = self.fleet.members.len() >= COMPONENTS;
         if is_beyond {
-            let message = format!("replicas and composites in them make more than {COMPONENTS} components");
-            let help = "replicas of composites with replicas multiply: use fewer";
+            let message = format!("the replicas have more than {COMPONENTS} components in all");
+            let help = "use fewer replicas: replicas inside a replicated composite multiply";
             self.too_large(component.name.location, message, help);
         }
         is_beyond

@@ -60,10 +60,10 @@ impl<'a> Unfolding<'a, '_, '_> {
             return false;
         }
         let message = match is_too_deep {
-            true => format!("composites are inside each other more than {COMPOSITE_DEPTH} deep"),
-            false => format!("inner composites make more than {COMPONENTS} components"),
+            true => format!("composites are nested more than {COMPOSITE_DEPTH} deep"),
+            false => format!("the inner composites have more than {COMPONENTS} components in all"),
         };
-        let help = "a composite inside a composite multiplies the components: use fewer";
+        let help = "use fewer: each use of a composite adds all of its components";
         self.too_large(naming.name.location, message, help);
         true
     }
@@ -97,11 +97,11 @@ impl<'a> Unfolding<'a, '_, '_> {
             names.push(format!("{} more", circle.len() - SHOWN));
         }
         names.push(names[0].clone());
-        let message = format!("composites contain each other in a circle: {}", names.join(" -> "));
+        let message = format!("composites contain each other in a cycle: {}", names.join(" -> "));
         let mut one = Diagnostic::new(&codes::COMPOSITE_CIRCLE, naming.name.location, message)
-            .help("a composite cannot be a part of itself: remove one of these");
+            .help("remove one of these: a composite cannot contain itself");
         for by in self.open[start + 1..].iter().filter_map(|open| open.by).take(8) {
-            one = one.label(by.name.location, "through this");
+            one = one.label(by.name.location, "it is contained here");
         }
         self.report.push(one);
         true

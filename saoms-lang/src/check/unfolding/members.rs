@@ -92,11 +92,13 @@ impl<'a> Unfolding<'a, '_, '_> {
         // A colon ends the site of an event from outside.
         let is_wrong = |sign: char| sign.is_whitespace() || matches!(sign, ':' | '$');
         if own.split('/').any(|name| name.is_empty() || name.contains(is_wrong)) {
-            let message = format!("{} is not a name of a site", quoted(&own));
+            let message = format!("{} is not a site name", quoted(&own));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, written.location, message);
             self.report.push(match own.strip_prefix('$').filter(|name| is_local_name(name)) {
                 Some(name) => one.replace(&own, written.location, &format!("${{{name}}}")),
-                None => one.help("write a name as `North`, without blanks and `:`, or several with `/` between them"),
+                None => one.help(
+                    "write a name such as `North`, without blanks and `:`, or several names with `/` between them",
+                ),
             });
             return around;
         }

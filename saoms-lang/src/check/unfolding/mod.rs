@@ -247,7 +247,7 @@ impl<'a> Unfolding<'a, '_, '_> {
                 format!("the composite {} is `local`, and the one that includes it is not", quoted(&composite.name));
             let one = Diagnostic::new(&codes::INCLUDE_LOCAL, naming.name.location, message)
                 .help("give both composites the same `local`");
-            self.report.push(one.label(local.location, "said here"));
+            self.report.push(one.label(local.location, "`local` is set here"));
         }
         self.open(place, composite, unit, Some(naming));
     }

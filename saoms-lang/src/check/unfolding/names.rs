@@ -20,7 +20,7 @@ pub(crate) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         let place = given.unwrap_or(&member.component.name).location;
         let earlier = first.entry(member.path()).or_insert(place);
         if *earlier != place && given.is_some() {
-            let message = format!("there are two components of the path {}", quoted(member.path()));
+            let message = format!("two components have the path {}", quoted(member.path()));
             let one = Diagnostic::new(&codes::COMPONENT_REPEATED, place, message);
             report.push(one.label(*earlier, "the first").help("give each its own path, or none"));
         }
@@ -78,14 +78,14 @@ pub(crate) fn loose(naming: Naming<'_>, around: &Composite, found: &Composite) -
     };
     let namespace = found.namespace();
     let taken = match namespace {
-        "" => "that in no namespace is taken".to_owned(),
-        namespace => format!("that of {} is taken", quoted(namespace)),
+        "" => "the composite in no namespace is used".to_owned(),
+        namespace => format!("the composite in {} is used", quoted(namespace)),
     };
     let message = format!("{why}: {taken}");
     let one = Diagnostic::new(code(naming, around), name.location, message).severity(Severity::Warning);
-    let one = one.label(found.name.location, "this one");
+    let one = one.label(found.name.location, "this composite is used");
     if namespace.is_empty() {
-        return one.help("give it a `targetNamespace`, and name it with a prefix that is bound to that");
+        return one.help("give it a `targetNamespace`, and name it with a prefix of that namespace");
     }
     if let Some(bound) = prefix_of(namespace, element) {
         let right = format!("{bound}:{local}");
@@ -155,9 +155,8 @@ pub(crate) fn not_found(
         one = one.help(format!("the prefix {} is not declared", quoted(prefix)));
     }
     if local.ends_with(".composite") {
-        one = one.help(
-            "it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file",
-        );
+        one =
+            one.help("write the composite's `name` with the prefix of its `targetNamespace`, not the name of its file");
     }
     // Without a prefix it is taken for one of the target namespace, which had better be said.
     let around = naming.origin.element(&composite.document);
@@ -171,7 +170,7 @@ pub(crate) fn not_found(
         one = one.help(searched.clone());
     }
     if missing.searched.is_empty() {
-        one = one.help("give the file of that composite, too, beside this one");
+        one = one.help("name the file of that composite in the command as well");
     }
     one
 }

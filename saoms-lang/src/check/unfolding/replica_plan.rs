@@ -53,13 +53,13 @@ impl<'a> Plan<'a> {
                 _ => {}
             }
             let (what, at) = match (&replicas.from, &replicas.overrides) {
-                (Some(from), _) => ("`from` is about".to_owned(), from.location),
-                (_, Some(overrides)) => ("`overrides` is about".to_owned(), overrides.location),
-                _ => (format!("{} is a name of", quoted(&component.name)), component.name.location),
+                (Some(from), _) => ("`from` is for".to_owned(), from.location),
+                (_, Some(overrides)) => ("`overrides` is for".to_owned(), overrides.location),
+                _ => (format!("{} is a name for", quoted(&component.name)), component.name.location),
             };
-            let message = format!("{what} replicas, and nothing says how many there are");
+            let message = format!("{what} replicas, but the number of replicas is missing");
             let one = Diagnostic::new(&codes::REPLICAS, at, message);
-            report.push(one.help("add `saoms:count=\"...\"`"));
+            report.push(one.help("add `saoms:count=\"...\"` to the component to the component"));
             return Err(Faulty);
         };
         let count = number(written, names, report);
@@ -69,23 +69,24 @@ impl<'a> Plan<'a> {
         let span = component.origin.element(document).span();
         let cost = count.unsigned_abs().saturating_mul(1 + u64::from(span.end - span.start) / REPLICA_BYTES);
         let (message, help) = match from.checked_add(count) {
-            _ if count < 0 => {
-                (format!("there cannot be {count} replicas"), "the number of replicas is 0 or more".to_owned())
-            }
+            _ if count < 0 => (format!("there cannot be {count} replicas"), "write a number of 0 or more".to_owned()),
             _ if count.unsigned_abs() > left => {
                 let message = match left {
                     REPLICAS => format!("{count} replicas are more than a fleet can have"),
-                    _ => format!("with {count} replicas here there are more than a fleet can have"),
+                    _ => format!("with these {count} replicas, the fleet has too many"),
                 };
-                (message, format!("a fleet has at most {REPLICAS} replicas"))
+                (message, format!("use fewer: a fleet has at most {REPLICAS} replicas"))
             }
             _ if cost > left => (
-                format!("{count} replicas are more than a fleet can have of one that is so long"),
+                format!("{count} replicas of this length are more than a fleet can have"),
                 format!(
-                    "a replica of more than {REPLICA_BYTES} bytes counts as several, and a fleet has at most {REPLICAS}: put long values into a property that all take as `source`"
+                    "put long values into a property of the composite, and use it as `source`: a replica of more \
+                    than {REPLICA_BYTES} bytes counts as several, and a fleet has at most {REPLICAS}"
                 ),
             ),
-            None => ("the indices go beyond 64 bits".to_owned(), "choose a smaller `saoms:from`".to_owned()),
+            None => {
+                ("the largest index does not fit into 64 bits".to_owned(), "choose a smaller `saoms:from`".to_owned())
+            }
             Some(end) => {
                 let names = Rc::clone(names);
                 let lines = table.ok().flatten();
@@ -125,7 +126,7 @@ impl<'a> Plan<'a> {
         let is_other = |row: &Row| is_name(row) != is_by_name && is_index(row) == is_by_name;
         if !table.rows.is_empty() && table.rows.iter().all(is_other) {
             let (key, values) = (quoted(&table.key), quoted(other));
-            let message = format!("the first column is {key}, and its values are of {values}");
+            let message = format!("the first column is called {key}, but it contains values of {values}");
             let one = Diagnostic::new(&codes::OVERRIDES, table.key.location, message);
             return report.push(one.suggest(replacing(&table.key, other), table.key.location, other));
         }
@@ -138,22 +139,22 @@ impl<'a> Plan<'a> {
             let Some(index) = found else {
                 let is_possible = if is_by_name { self.is_possible(&row.key) } else { is_index(row) };
                 let message = match row.key.is_empty() {
-                    true => "this row does not say which replica it is about".to_owned(),
+                    true => "this row does not name its replica".to_owned(),
                     false => format!("there is no replica {}", quoted(&row.key)),
                 };
                 let one = match is_by_name {
                     true if is_possible => Diagnostic::new(&codes::OVERRIDES, row.key.location, message)
-                        .help("there would be one if `saoms:count` were larger"),
+                        .help("increase `saoms:count`, or remove the row"),
                     true => {
-                        let known = ("the table says nothing of", free.iter().copied());
+                        let known = ("replicas without a row are", free.iter().copied());
                         let one = report.unknown(&codes::OVERRIDES, row.key.location, message, &row.key, known);
                         match one.suggestions.is_empty() {
-                            true => one.help(format!("they are called {}", quoted(&self.component.name))),
+                            true => one.help(format!("the replicas have the names {}", quoted(&self.component.name))),
                             false => one,
                         }
                     }
                     false => Diagnostic::new(&codes::OVERRIDES, row.key.location, message).help(format!(
-                        "the indices go from {} to {}",
+                        "use an index from {} to {}",
                         self.first,
                         self.left.end - 1
                     )),
@@ -167,9 +168,9 @@ impl<'a> Plan<'a> {
             match self.rows.get(&index) {
                 None => _ = self.rows.insert(index, place),
                 Some(first) => {
-                    let message = format!("there are two lines about the replica {}", quoted(&row.key));
+                    let message = format!("two rows are about the replica {}", quoted(&row.key));
                     let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
-                    report.push(one.label(table.rows[*first].key.location, "the first").help("merge them into one"));
+                    report.push(one.label(table.rows[*first].key.location, "the first").help("merge them"));
                 }
             }
         }
@@ -228,7 +229,7 @@ fn has_index(component: &ComponentElement, names: &Rc<Names>, report: &mut Repor
     if render(name, &mut |name| instance.value(name)).is_err() {
         return true;
     }
-    let message = format!("all replicas would be called {}", quoted(name));
+    let message = format!("all replicas would have the name {}", quoted(name));
     let meant = with_index(name);
     let one = Diagnostic::new(&codes::REPLICAS, name.location, message);
     // What is written in the same way elsewhere, as in an ID, is meant in the same way.
@@ -292,7 +293,7 @@ pub(crate) fn report_faults(text: &Text, faults: &[ExpressionFault], names: &Nam
 fn with_values(one: Diagnostic, written: &str, names: &Names) -> Diagnostic {
     let inside = parse(written).ok();
     let asked = inside.iter().flat_map(Expression::names);
-    let known = asked.filter_map(|(name, _)| Some((names.place(name)?, format!("{} is this", quoted(name)))));
+    let known = asked.filter_map(|(name, _)| Some((names.place(name)?, format!("the value of {}", quoted(name)))));
     known.fold(one, |one, (place, what)| one.label(place, what))
 }
 
@@ -304,7 +305,7 @@ fn wrong(written: &str, at: Location, problem: &ExpressionError, names: &Names) 
     match instead {
         Some(instead) if instead.is_empty() => one.suggest(format!("remove {}", quoted(written)), at, ""),
         Some(instead) => one.suggest(replacing(written, instead.trim()), at, escaped(instead)),
-        None if help.is_none() => one.help("`docs/fleets.md` says what expressions are"),
+        None if help.is_none() => one.help("`docs/fleets.md` describes expressions"),
         None => one,
     }
 }

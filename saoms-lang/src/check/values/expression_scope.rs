@@ -125,7 +125,7 @@ impl Names {
             "true" | "yes" | "on" => return problem.instead("true"),
             "false" | "no" | "off" => return problem.instead("false"),
             _ if name == INDEX => {
-                return problem.help("`index` is what replicas are counted by: give the component a `saoms:count`");
+                return problem.help("give the component a `saoms:count`: `index` is the number of a replica");
             }
             _ => {}
         }
@@ -150,7 +150,7 @@ fn value(property: &Property, text: Option<&Text>, is_unset: bool) -> Result<Exp
             ),
             false => (
                 "simple value",
-                "an expression takes one text: give it one, or a part of the value, as with `source=\"$name/part\"`",
+                "give the property one simple value, or use a part of the value, as with `source=\"$name/part\"`",
             ),
         };
         return Err(ExpressionError::new(format!("the property {name} has no {what}")).help(help));
@@ -165,7 +165,7 @@ fn value(property: &Property, text: Option<&Text>, is_unset: bool) -> Result<Exp
         _ => None,
     };
     let wrong = |expected: &str| {
-        Err(ExpressionError::new(format!("the property {name} is {}, and its type asks for {expected}", quoted(text))))
+        Err(ExpressionError::new(format!("the property {name} is {}, but its type requires {expected}", quoted(text))))
     };
     match of {
         "boolean" => boolean.map_or_else(|| wrong("`true` or `false`"), |value| Ok(ExpressionValue::Boolean(value))),

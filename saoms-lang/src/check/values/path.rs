@@ -19,13 +19,14 @@ use crate::source::Text;
 use crate::syntax::{Attribute, Element};
 
 /// The fault of a step of another form.
-const NO_STEP: &str = "no step of a path is written like this";
+const NO_STEP: &str = "this is not a step of a path";
 
 /// The place of an element among its siblings.
 pub(crate) const POSITION: &str = "position()";
 
 /// The forms of steps, for help.
-pub(crate) const FORMS: &str = "steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`";
+pub(crate) const FORMS: &str = "write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or \
+    `name[@attribute='value']`, and at the end `@attribute` or `text()`";
 
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum PathFaultKind {
@@ -59,7 +60,7 @@ impl PathFault {
 
     /// The fault of a step where paths have looked at too many elements.
     pub(crate) fn too_many(step: Range<usize>) -> Self {
-        let message = format!("paths of sources look at more than {PATH_ELEMENTS} elements");
+        let message = format!("the paths of sources visit more than {PATH_ELEMENTS} elements");
         Self { kind: PathFaultKind::TooMany, ..Self::new(step, message) }
     }
 
@@ -235,25 +236,25 @@ impl<'p> Test<'p> {
             return PathFault::new(at, self.no_place(named));
         };
         let Some(name) = of.strip_prefix('@') else {
-            return PathFault::new(at, format!("no part here has {} as its part {}", quoted(value), quoted(of)));
+            return PathFault::new(
+                at,
+                format!("no part here contains a part {} with the value {}", quoted(of), quoted(value)),
+            );
         };
         let values = named.iter().take(SEARCHED_PARTS).filter_map(|one| attribute(*one, name)).take(LISTED_PARTS);
         let values: Vec<_> = values.map(|one| one.value()).collect();
         let known = match values.is_empty() {
-            true => "none has it".to_owned(),
+            true => "no part has this attribute".to_owned(),
             false => format!("its values are {}", list(values.iter().map(|value| &**value))),
         };
-        let message = format!("no part here has {} as its {}: {known}", quoted(value), quoted(name));
+        let message =
+            format!("no part here has the attribute {} with the value {}: {known}", quoted(name), quoted(value));
         PathFault::new(at, message).near(value, values.iter().map(|value| &**value))
     }
 
     /// The message for a path into `<value>` elements: a variable is the values, not the elements around them.
     pub(crate) fn of_values(&self) -> &'static str {
-        if self.name == Some("value") {
-            "; the values of a property are `$name` itself, the second is `$name[2]`"
-        } else {
-            ""
-        }
+        if self.name == Some("value") { "; to get the second value of a property, write `$name[2]`" } else { "" }
     }
 
     /// The reason why none of these elements is at a position: positions count within each parent.
@@ -263,10 +264,13 @@ impl<'p> Test<'p> {
             named.chunk_by(|one, other| parent(one) == parent(other)).map(<[Element<'_>]>::len).collect();
         let counted = is_counted(named.len(), self.name);
         match groups[..] {
-            [_] | [] => format!("there {counted}, from `[1]` on"),
+            [_] | [] => format!("there {counted}, counted from `[1]`"),
             _ => {
                 let (most, count) = (groups.iter().max().copied().unwrap_or_default(), groups.len());
-                format!("there {counted} in {count} elements, at most {most} in each, and a place counts in each")
+                format!(
+                    "there {counted} in {count} elements, at most {most} per element, and `[...]` counts within each \
+                    element"
+                )
             }
         }
     }
@@ -309,7 +313,7 @@ fn different<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
 fn no_attribute(at: Range<usize>, name: &str, around: &[Element<'_>]) -> PathFault {
     let known = different(around.iter().flat_map(|one| one.attributes()).map(Attribute::local_name));
     let said = match known.is_empty() {
-        true => "there are none here".to_owned(),
+        true => "there are no attributes here".to_owned(),
         false => format!("the attributes are {}", list(known.iter().copied())),
     };
     PathFault::new(at, format!("there is no attribute {}; {said}", quoted(name))).near(local(name), known)

@@ -139,11 +139,10 @@ pub(crate) fn raw<'a>(
     match (ways.next(), ways.next()) {
         (Some((first, _)), Some((second, _))) => {
             let message = format!("the property {} is given a value in two ways", quoted(&property.name));
-            report.push(
-                Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message)
-                    .label(first, "the other one")
-                    .help("write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`"),
-            );
+            report
+                .push(Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other value").help(
+                "write it in one way: as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
+            ));
             Err(Faulty)
         }
         (only, _) => Ok(only.map_or_else(|| Raw(Vec::new()), |(_, raw)| raw)),
@@ -195,7 +194,7 @@ pub(crate) fn beside_source(property: &Property, source: &Text, document: &Docum
     let message = format!("the property {} is given a value beside its `source`", quoted(&property.name));
     let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, at, message).severity(Severity::Warning);
     let one = Diagnostic { rule: None, ..one };
-    report.push(one.label(source.location, "this counts").help("this value is ignored: keep one of them"));
+    report.push(one.label(source.location, "this `source` is used").help("keep one of the two: the value is ignored"));
 }
 
 /// The values of XML in a file.

@@ -61,7 +61,7 @@ fn meant(local: &str) -> Option<&'static str> {
 
 /// Reports a type of XML Schema that is written without a prefix, and so is one of another namespace.
 fn unprefixed(of: &Text, meant: &'static str, element: Element<'_>, document: &Document, report: &mut Report<'_>) {
-    let message = format!("the type {} without a prefix is none of XML Schema", quoted(of));
+    let message = format!("the type {} without a prefix is not a type of XML Schema", quoted(of));
     let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message).severity(Severity::Warning);
     if let Some(prefix) = prefix_of_schema(element) {
         let meant = format!("{prefix}:{meant}");

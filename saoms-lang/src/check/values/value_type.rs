@@ -66,7 +66,7 @@ fn holds(
         return false;
     }
     let message = format!(
-        "the property {} is of the type {}: found {}, expected {}",
+        "the property {} has the type {}: found {}, expected {}",
         quoted(&property.name),
         quoted(named),
         if value.is_empty() { "nothing".to_owned() } else { quoted(value) },
@@ -92,13 +92,13 @@ pub(crate) fn check_match(own: Typed<'_>, other: Typed<'_>, source: Option<Locat
     }
     let (at, whose, help, rule) = match source {
         None => {
-            let help = "leave `type` out: that of the declaration is used";
+            let help = "remove `type`: the type of the declaration is used";
             (here.location, "where it is declared", help, "ASM50036")
         }
-        Some(at) => (at, "where its value comes from", "give both one type", "ASM50038"),
+        Some(at) => (at, "where its value comes from", "give both the same type", "ASM50038"),
     };
     let message = format!(
-        "the property {} is of the type {}, and of {} {whose}",
+        "the property {} has the type {} here, but {} {whose}",
         quoted(&own.property.name),
         quoted(here),
         quoted(there)

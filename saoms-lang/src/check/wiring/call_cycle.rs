@@ -59,7 +59,7 @@ impl<'f> CallCycles<'f> {
             names.push(format!("{} more", circle.len() - SHOWN));
         }
         names.push(name(last.to));
-        let message = format!("components call each other in a circle: {}", names.join(" -> "));
+        let message = format!("components call each other in a cycle: {}", names.join(" -> "));
         let mut one = Diagnostic::new(&codes::CALL_CYCLE, last.place, message)
             .at(format!("{} calls {}", name(last.member), name(last.to)))
             .help("a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic");

@@ -102,7 +102,8 @@ impl<'f> Wires<'f, '_> {
         let declared = inner.into_iter().flat_map(|inner| inner.references()).find(|one| one.name == name);
         for text in declared.map_or(&[][..], |declared| &declared.targets) {
             let is_inside = inner.is_some_and(|inner| fleet.find(inner.scope, parts(text).0).is_some());
-            let help = "what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`";
+            let help = "use `<wire>` to wire components inside the composite: the target of a composite's reference \
+                is outside of it";
             report.within(Severity::Error, is_inside.then_some(help), |report| {
                 self.add(text, (scope, own), true, interface, &mut ends, report);
             });

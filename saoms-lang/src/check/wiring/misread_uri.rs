@@ -33,13 +33,13 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
     if text.contains("${") {
         let group = pattern(text);
         let is_known = fleet.group(scope, parts(&group).0).is_some();
-        let help = "outside of replicas there is no index; `*` names all replicas";
+        let help = "`${index}` works only inside replicas; use `*` to name all replicas";
         return is_known.then(|| Misread { meant: Some(group), help: help.to_owned() });
     }
     if text.contains(LISTED) {
         let named: Vec<&str> = text.split(LISTED).filter(|name| !name.is_empty()).collect();
         let is_known = |name: &&str| fleet.find(scope, parts(name).0).is_some();
-        let help = "several stand between blanks".to_owned();
+        let help = "separate several names with blanks".to_owned();
         return named.iter().any(is_known).then(|| Misread { meant: Some(named.join(" ")), help });
     }
     let places = text.char_indices().filter(|(_, character)| BEHIND.contains(character));
@@ -49,7 +49,7 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
     let parts: Vec<&str> = behind.split(['/', '.']).collect();
     let promoted = fleet.find(scope, component).and_then(|member| inside(member, &parts, side, fleet));
     let plain = || {
-        let help = format!("the name of a {} stands behind `/`", side.name());
+        let help = format!("write the name of a {} after `/`", side.name());
         Misread { meant: Some(format!("{component}/{behind}")), help }
     };
     Some(promoted.unwrap_or_else(plain))
@@ -77,10 +77,10 @@ pub(crate) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'
         }
     };
     let (inner_name, outer) = (quoted(first), quoted(name));
-    let why = format!("{inner_name} is inside of {outer}, and reached by what the composite of {outer} promotes");
+    let why = format!("{inner_name} is inside {outer}: use what the composite of {outer} promotes");
     Some(match promoted[..] {
         [only] => Misread { meant: Some(format!("{name}/{only}")), help: why },
-        [] => Misread { meant: None, help: format!("{why}: of {inner_name} it promotes no {}", side.name()) },
+        [] => Misread { meant: None, help: format!("{why}; it promotes no {} of {inner_name}", side.name()) },
         _ => Misread { meant: None, help: format!("{why}: {}", list(promoted)) },
     })
 }

@@ -77,7 +77,7 @@ pub(crate) fn reference(
         Diagnostic::new(&codes::INTERFACE_DIFFERS, at, message)
             .rule("ASM60008")
             .label(first_at, "the first")
-            .help("promote each by a reference of its own: no service has both interfaces"),
+            .help("promote each with its own reference: no service has both interfaces"),
     );
     false
 }
@@ -150,10 +150,10 @@ fn overridden(by: &ReferenceElement, fixed: &[(ReferenceId<'_>, Location)], flee
         }
     }
     let one = Diagnostic::new(&codes::PROMOTED_FIXED, at, message);
-    let one = places.into_iter().fold(one, |one, place| one.label(place, "said here"));
+    let one = places.into_iter().fold(one, |one, place| one.label(place, "`nonOverridable` is set here"));
     match fixed {
-        [_] => one.help("do not promote it, or leave `nonOverridable` out"),
-        _ => one.help("do not promote them, or leave `nonOverridable` out"),
+        [_] => one.help("do not promote it, or remove `nonOverridable`"),
+        _ => one.help("do not promote them, or remove `nonOverridable`"),
     }
 }
 
@@ -177,7 +177,7 @@ fn widened(
                 narrower.iter().map(|one| format!("{} takes {}", uri(one.place, fleet), quoted(one.takes.name())));
             let named: Vec<String> = named.collect();
             format!(
-                "{} promotes {} references that {} does not narrow: {}",
+                "{} promotes {} references whose multiplicity is narrower than {}: {}",
                 quoted(&by.name),
                 narrower.len(),
                 quoted(outer.name()),
@@ -190,7 +190,7 @@ fn widened(
     let fitting: Vec<&str> = Multiplicity::ALL.into_iter().filter(fits).map(Multiplicity::name).collect();
     let one = Diagnostic::new(&codes::PROMOTED_MULTIPLICITY, at, message).severity(severity);
     match fitting[..] {
-        [] => one.help("none fits all of them: promote them by several references"),
+        [] => one.help("promote them with several references: no multiplicity fits all of them"),
         _ => one.help(format!("it can be {}", list(fitting))),
     }
 }

@@ -149,11 +149,15 @@ fn needs_target(place: ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
 }
 
 fn unwired(reference: &ReferenceElement, report: &mut Report<'_>) {
-    let message =
-        format!("reference {} of the composite is wired to no service: calls through it fail", quoted(&reference.name));
+    let message = format!(
+        "reference {} of the composite is not wired to a service: calls through it fail",
+        quoted(&reference.name)
+    );
     let at = if reference.name.is_empty() { reference.tag() } else { reference.name.location };
     let one = Diagnostic::new(&codes::PROMOTED_UNWIRED, at, message);
-    report.push(one.help("the composite runs by itself, and nothing around it can wire its references"));
+    report.push(one.help(
+        "wire the component's reference inside the composite: a composite that runs by itself has nothing around it",
+    ));
 }
 
 /// The name of what a URI promotes of a component that is taken as given, as far as it is written anywhere. Faults are
@@ -216,7 +220,7 @@ fn find<'f>(
             Diagnostic::new(code, text.location, format!("component {component} has no {what}s to promote"))
         }
         (None, None) => {
-            let message = format!("component {component} has several {what}s: say which is promoted");
+            let message = format!("component {component} has several {what}s: name the one to promote");
             let help = format!("write `{text}/` and one of {}", list(names));
             Diagnostic::new(code, text.location, message).help(help)
         }

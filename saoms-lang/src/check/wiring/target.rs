@@ -45,7 +45,7 @@ pub(crate) fn target(
         let at = report.part(text, 0..uri.component.len());
         let message = format!("there is no component {} in these composites", quoted(uri.component));
         let one = unknown_component(uri.component, (scope, own), false, at, message, fleet, report);
-        let help = "it is taken as given: another composite of the domain may have it";
+        let help = "it is not checked: another composite of the domain may have it";
         report.push(one.severity(Severity::Warning).help(help));
         return Target::Open;
     }

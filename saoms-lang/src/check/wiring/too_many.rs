@@ -55,7 +55,7 @@ impl<'f> Wires<'f, '_> {
         let (component, _) = parts(text);
         let rest = &text[component.len()..];
         let own = &self.fleet.members[own];
-        let one = one.help(format!("{} stands for all replicas, and one is taken", quoted(component)));
+        let one = one.help(format!("{} names all replicas, but the reference takes one target", quoted(component)));
         let scope = self.fleet.members[members[0]].scope;
         let mine = own.instance.map(|instance| component.replacen('*', &instance.index.to_string(), 1));
         let is_there = |name: &String| self.fleet.find(scope, name).is_some_and(|one| members.contains(&one));

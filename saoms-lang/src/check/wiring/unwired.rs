@@ -71,7 +71,8 @@ impl Wires<'_, '_> {
             return is_unknown;
         }
         let (interface, component) = (&declared.interface.name, &own.component.name);
-        let message = format!("reference {} of component {} is wired to no service", quoted(name), quoted(component));
+        let message =
+            format!("reference {} of component {} is not wired to a service", quoted(name), quoted(component));
         let is_1_1 = own.composite.version.is_1_1();
         // One that is there and empty was reported by the loader.
         if let Some(target) = empty.and_then(|element| element.attribute("target")) {
@@ -90,7 +91,7 @@ impl Wires<'_, '_> {
             (false, true) => one.rule("ASM60033"),
             (false, false) => one.rule("ASM50040"),
         };
-        report.push(if is_1_1 { one } else { one.help("calls through it fail") });
+        report.push(if is_1_1 { one } else { one.help("without a target, calls through it fail") });
         is_1_1 || is_unknown
     }
 }

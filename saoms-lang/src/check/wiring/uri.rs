@@ -88,19 +88,20 @@ impl<'t> Uri<'t> {
         }
         let at = report.part(text, 0..self.component.len());
         if let Some(condition) = fleet.absent.get(&(scope, self.component)) {
-            let message = format!("the component {} is not there", quoted(self.component));
+            let message = format!("the component {} is excluded by its condition", quoted(self.component));
             let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
             // Promotions are written in services and references of composites, and have a rule of their own.
-            report.push(one.label(*condition, "this is false").help(match rule {
-                None => "give what names it the same condition",
+            report.push(one.label(*condition, "this condition is false").help(match rule {
+                None => "add the same condition to the element that names it",
                 Some(_) => {
-                    "what a composite promotes has no condition: put both into a composite that is included with this one"
+                    "put the component and the promotion into another composite, and include that with the same \
+                    condition: a promotion cannot have a condition"
                 }
             }));
             return None;
         }
         let one = if let Some([first, ..]) = fleet.group(scope, self.component) {
-            let message = format!("{} names all replicas, and one component is expected", quoted(self.component));
+            let message = format!("{} names all replicas, expected one component", quoted(self.component));
             let first = quoted(&fleet.members[*first].component.name);
             let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
             one.help(format!("name one of them, such as {first}"))
@@ -166,8 +167,8 @@ pub(crate) fn has_room(budget: &Budget, text: &Text, scope: usize, fleet: &Fleet
     let Some(group) = fleet.group(scope, parts(text).0) else { return true };
     let has_room = budget.spend(group.len() as u64);
     if !has_room && budget.is_to_report() {
-        let message = format!("groups of replicas make more than {WIRE_ENDS} ends of wires");
-        let help = "each replica of a group that calls a group has a wire to each of that: use fewer";
+        let message = format!("the groups of replicas have more than {WIRE_ENDS} ends of wires");
+        let help = "use fewer replicas: each replica of the first group has a wire to each replica of the second";
         report.push(Diagnostic::new(&codes::FLEET_TOO_LARGE, text.location, message).help(help));
     }
     has_room

@@ -50,7 +50,7 @@ pub(crate) fn wires<'f>(
             let is_replacing = wire.replace.is_some_and(|replace| replace.value);
             if let Some(from) = backwards((source, to), scope, fleet) {
                 let message = format!(
-                    "this wire goes backwards: {} offers a service, and {} is a reference",
+                    "this wire is reversed: {} offers a service, and {} is a reference",
                     quoted(source),
                     quoted(to)
                 );

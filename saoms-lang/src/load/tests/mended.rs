@@ -52,16 +52,16 @@ fn each_slip_is_told() {
     let all: Vec<String> = (0..LINES.len()).filter(wrong).flat_map(|place| told(&[place])).collect();
     expect_test::expect![[r#"
         2 [--] error S0101 `--` inside a comment | write single dashes
-        3 [&] error S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
+        3 [&] error S0109 `&` must start a reference such as `&amp;` | replace `&` with `&amp;`
         4 [</properti>] error S0102 `</properti>` found where `</property>` is expected | replace it with `</property>`
         5 [true] error S0105 the value of `many` is not in quotes | put it in quotes
         6 [&nbsp;] error S0109 unknown entity `&nbsp;`
         7 [name] error S0106 the attribute `name` is given twice | remove the second `name`
-        8 [“x.A”] error S0105 `“` is not a quote of XML: values are written between two `"` | replace it with `"x.A"`
+        8 [“x.A”] error S0105 `“` is not a quote of XML: write values between two `"` | replace it with `"x.A"`
         9 [xsi] error S0112 the prefix `xsi` is not declared | declare it in the root element: `xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"`
         10 [v] error S0105 white space is missing between two attributes | insert a blank
         11 [name] error S0105 the attribute `name` has no value | insert `=`
-        12 [:] error S0105 `:` stands between `name` and its value, and not `=` | replace `:` with `=`
+        12 [:] error S0105 found `:` between `name` and its value, expected `=` | replace `:` with `=`
         13 [,] error S0101 `,` is misplaced in the start tag of `property` | remove `,`
         14 ['six] error S0105 this value has no closing quote before `value` | close it with `'`
         15 [foo] error S0112 the prefix `foo` is not declared

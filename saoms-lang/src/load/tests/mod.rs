@@ -342,8 +342,8 @@ fn what_cannot_be_is_found_at_its_place() {
     faults_1_0(
         &format!("<component name='a b'>{JAVA}</component><component name='a/b'>{JAVA}</component>"),
         "
-2:18 [a b] error S1011 `a b` cannot be a name: it holds ` `
-2:86 [a/b] error S1011 `a/b` cannot be a name: it holds `/`",
+2:18 [a b] error S1011 `a b` cannot be a name: it contains ` `
+2:86 [a/b] error S1011 `a/b` cannot be a name: it contains `/`",
     );
     faults_1_0(
         &format!("<component name='a' autowire='yes'>{JAVA}<reference name='r' multiplicity='0..*'/></component>"),
@@ -355,7 +355,7 @@ fn what_cannot_be_is_found_at_its_place() {
         "<service name='s'/><reference name='r' promote=''/>",
         "
 2:2 [service] error S1008 `service` needs the attribute `promote`
-2:40 [promote=''] warning S1011 `reference` promotes nothing",
+2:40 [promote=''] warning S1011 the attribute `promote` of `reference` is empty",
     );
 }
 
@@ -369,8 +369,8 @@ fn the_versions_differ_where_they_do() {
     faults_1_0(
         &format!("<component xmlns='{OASIS}' name='a'>{JAVA}</component>"),
         "
-2:2 [component] error S1003 `component` is of SCA 1.1, and the composite is of SCA 1.0
-2:79 [implementation.java] error S1003 `implementation.java` is of SCA 1.1, and the composite is of SCA 1.0",
+2:2 [component] error S1003 `component` is of SCA 1.1, but the composite is of SCA 1.0
+2:79 [implementation.java] error S1003 `implementation.java` is of SCA 1.1, but the composite is of SCA 1.0",
     );
     let draft = Version::Oasis200903.namespace();
     let (composite, faults) = loaded(&format!(
@@ -424,7 +424,7 @@ fn an_ill_formed_place_hides_nothing_before_or_behind_it() {
          2:2 [component] error S1008 `component` needs the attribute `name`\n\
          2:2 [component] warning S1010 a component has no implementation\n\
          3:2 [component] warning S1010 the component `a` has no implementation\n\
-         4:22 [&] error S0109 `&` starts a reference and none follows | replace `&` with `&amp;`\n\
+         4:22 [&] error S0109 `&` must start a reference such as `&amp;` | replace `&` with `&amp;`\n\
          5:2 [propery] error S1004 SCA 1.0 has no element `propery` | replace `propery` with `property`\n\
          5:2 [propery] error S1008 `propery` needs the attribute `name`\n"
     );

@@ -30,7 +30,7 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     says(b"\xef\xbb\xbf<a/>", "");
     says(b"<?xml version='1.0' encoding='ISO-8859-1'?><a/>", "");
     let empty = "1:1 [] error S0005 the file is empty\n\
-        a composite is at least `<composite xmlns=\"...\" name=\"...\" targetNamespace=\"...\"/>`";
+        write at least `<composite xmlns=\"...\" name=\"...\" targetNamespace=\"...\"/>`";
     says(b"", empty);
     assert!(reading(b" \r\n\t", MAX_SIZE).contains("the file is empty"));
     assert!(reading(b"\xef\xbb\xbf", MAX_SIZE).contains("the file is empty"));
@@ -47,14 +47,14 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     assert!(reading(b"\0\0\0<\0\0\0a", MAX_SIZE).contains("UTF-32BE"));
     says(
         b"<?xml version='1.0' encoding = \"ISO-8859-1\"?>\n<a>caf\xe9</a>",
-        "2:7 [\u{fffd}] error S0007 the file is declared to be in `ISO-8859-1`, expected UTF-8\n\
-         convert it: `iconv -f ISO-8859-1 -t UTF-8 DIR/f.composite`; until then nothing of the file is checked",
+        "2:7 [\u{fffd}] error S0007 the XML declaration says `ISO-8859-1`, expected UTF-8\n\
+         convert it: `iconv -f ISO-8859-1 -t UTF-8 DIR/f.composite`; the file cannot be checked before",
     );
     says(
         b"<a>caf\xe9</a>",
         "1:7 [\u{fffd}] error S0007 the byte 0xE9 is not valid UTF-8\n\
-         if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 DIR/f.composite`; until then \
-         nothing of the file is checked",
+         if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 DIR/f.composite`; \
+         the file cannot be checked before",
     );
 }
 
@@ -86,8 +86,8 @@ fn a_file_that_is_not_there_has_neighbours() {
     );
     assert_eq!(shown("notes"), format!("{missing}there is `DIR/notes.txt`"));
     assert_eq!(shown("xyz"), format!("{missing}the folder has `DIR/airport.composite`, `DIR/airport2.composite`"));
-    assert_eq!(shown("sup/a"), format!("{missing}there is no directory `DIR/sup` either"));
-    assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file and no directory"));
+    assert_eq!(shown("sup/a"), format!("{missing}there is no directory `DIR/sup`"));
+    assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file, not a directory"));
     let directory = "1:1 [] error S0002 found a directory, expected a file\n";
     assert_eq!(shown("sub"), directory);
     assert_eq!(shown(""), format!("{directory}it has `DIR/airport.composite`, `DIR/airport2.composite`"));

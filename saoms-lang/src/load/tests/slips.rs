@@ -40,7 +40,7 @@ fn a_namespace_that_is_nearly_one_of_ours_is_told() {
 fn an_element_of_another_version_is_told_once() {
     faults_1_1(
         &format!("<component name='a' xmlns:o='{OSOA}'><o:implementation.foo/>{JAVA}</component>"),
-        "2:66 [o:implementation.foo] error S1003 `o:implementation.foo` is of SCA 1.0, and the composite is of SCA 1.1",
+        "2:66 [o:implementation.foo] error S1003 `o:implementation.foo` is of SCA 1.0, but the composite is of SCA 1.1",
     );
 }
 
@@ -124,11 +124,11 @@ fn what_one_version_of_sca_alone_has_is_told_once() {
     );
     faults_1_0(
         &inside,
-        "2:2 [documentation] warning S1004 `documentation` is an element of SCA 1.1, and this file is of SCA 1.0",
+        "2:2 [documentation] warning S1004 `documentation` is an element of SCA 1.1, but this file is of SCA 1.0",
     );
     faults_1_1(
         &inside,
-        "3:36 [operation] warning S1004 `operation` is an element of SCA 1.0, and this file is of SCA 1.1",
+        "3:36 [operation] warning S1004 `operation` is an element of SCA 1.0, but this file is of SCA 1.1",
     );
 }
 

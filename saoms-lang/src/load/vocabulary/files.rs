@@ -3,26 +3,26 @@
 use super::{Holds, Kind, Known};
 
 attributes! {
-    COMPOSITE = required "composite" Composite: "Its name, with a prefix of its namespace.";
-    LOCATION = known "location" Uri: "The folder of the contribution that it comes from.";
+    COMPOSITE = required "composite" Composite: "The name of the composite, with a prefix of its namespace.";
+    LOCATION = known "location" Uri: "The folder of the contribution that exports it.";
     PACKAGE = required "package" Text: "A package of classes.";
     NAMESPACE = required "namespace" Namespace: "The target namespace of composites.";
     NAME = required "name" Text: "The name under which files are exported.";
-    FROM = required "location" Uri: "The folder of the contribution that it comes from.";
-    PATH = known "path" Text: "The folder of the files, in the contribution.";
+    FROM = required "location" Uri: "The folder of the contribution that exports it.";
+    PATH = known "path" Text: "The folder of the files in the contribution.";
     URI = required "uri" Uri: "A file of the contribution.";
 }
 
 kinds! {
     /// The root of the file.
-    pub CONTRIBUTION = "contribution": "What a folder of composites runs, gives to others and takes from them." {
-        known "targetNamespace" Uri: "Often written, as in composites. It means nothing.";
+    pub CONTRIBUTION = "contribution": "Describes a folder of composites: what it runs, exports and imports." {
+        known "targetNamespace" Uri: "Allowed as in composites. SAOMS ignores it.";
     } ["deployable", "import", "import.java", "import.resource", "import.c", "import.cpp", "export",
         "export.java", "export.resource", "export.c", "export.cpp", "documentation", "extensions"]
 
     /// The root of a component type.
-    pub(in crate::load) COMPONENT_TYPE = "componentType": "What the implementation of the same name offers, needs and can be told." {
-        old "constrainingType" Text: "The type that this has to conform to. Not looked at.";
+    pub(in crate::load) COMPONENT_TYPE = "componentType": "Describes the services, references and properties of the implementation of the same name." {
+        old "constrainingType" Text: "The type that this has to conform to. SAOMS ignores it.";
         known "requires" Names: "The intents of policies that apply.";
         known "policySets" Names: "The policy sets that apply.";
     } ["implementation.", "service", "reference", "property", "requires", "policySetAttachment",
@@ -47,7 +47,7 @@ pub(super) static PARTS: [Kind; 11] = [
 const fn part(name: &'static str, attributes: &'static [Known]) -> Kind {
     Kind {
         name,
-        doc: "What contributions take from each other.",
+        doc: "What contributions share with each other.",
         attributes,
         children: &["documentation", "extensions"],
     }

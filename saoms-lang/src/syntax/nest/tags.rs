@@ -108,7 +108,7 @@ pub(super) fn not_closed(input: Input<'_>, outer: Named<'_>, inner: Named<'_>) -
     let close = format!("</{}>", outer.name);
     let message = without_end_tag(input, outer);
     let one = input.fault(&codes::XML_UNCLOSED, outer.at.start, outer.at.end, message);
-    let one = one.label(inner.at.in_file(input.file), "this belongs beside it, not in it");
+    let one = one.label(inner.at.in_file(input.file), "this element belongs after it, not in it");
     let text = input.text;
     let inside = input.slice(outer.start_tag.end, inner.start_tag.start);
     if inside.trim().is_empty() && !ends_with_slash(input, outer) {
@@ -127,7 +127,7 @@ pub(super) fn outside(input: Input<'_>, place: Span, root: Option<Named<'_>>) ->
     let message = "text outside of the root element";
     let one = input.fault(&codes::XML_OUTSIDE_ROOT, place.start, place.end, message);
     match root {
-        None => one.help("a file has one root element; only comments and instructions can be before it"),
+        None => one.help("move it into the root element, or remove it; only comments and instructions can be outside"),
         Some(root) => one.label(root.at.in_file(input.file), "the root element"),
     }
 }

@@ -28,13 +28,13 @@ impl Tag<'_, '_> {
         let limit = self.limit;
         self.fault(|| {
             if is_end {
-                let message = format!("the start tag of {shown} is never closed");
+                let message = format!("the start tag of {shown} has no `>`");
                 return input.ended(&codes::XML_UNCLOSED, name.start, name.end, message);
             }
             let message = format!("the start tag of {shown} has no `>` before the next `<`");
             input
                 .fault(&codes::XML_UNCLOSED, limit, limit + 1, message)
-                .label(name.in_file(input.file), "this tag is open")
+                .label(name.in_file(input.file), "the start tag")
                 .help("close it with `>` or `/>`")
         });
     }
@@ -147,7 +147,7 @@ impl Tag<'_, '_> {
                     let instead = if has_space { "" } else { " " };
                     return one.mend(format!("remove {what}"), instead);
                 }
-                one.help("attributes are written `name=\"value\"`; the tag ends with `>` or `/>`")
+                one.help("write attributes as `name=\"value\"`, and end the tag with `>` or `/>`")
             });
         }
         if is_separator || byte == b'&' {

@@ -16,7 +16,7 @@ impl Tag<'_, '_> {
             let Some(length) = memchr::memchr3(quote, b'<', b'&', &bytes[at as usize..]) else {
                 self.fault(|| {
                     let name = quoted(input.slice(one.start, one.start + one.name_len));
-                    let message = format!("the value of {name} is never closed");
+                    let message = format!("the value of {name} has no closing quote");
                     input.ended(&codes::XML_UNCLOSED, quote_at, quote_at + 1, message)
                 });
                 return self.open_value(one, quote_at);

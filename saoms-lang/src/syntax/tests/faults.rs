@@ -91,9 +91,9 @@ fn what_is_not_well_formed_is_found_at_its_place() {
     let shown = CASES.iter().map(|text| format!("{text}\n    {}\n", fault(text).replace('\n', "\n    ")));
     expect_test::expect![[r#"
         <a
-            1:2 [a] S0103 the start tag of `a` is never closed
+            1:2 [a] S0103 the start tag of `a` has no `>`
         <a b='
-            1:6 ['] S0103 the value of `b` is never closed
+            1:6 ['] S0103 the value of `b` has no closing quote
         <a>x
             1:2 [a] S0103 `<a>` has no end tag
         <a><b></a>
@@ -132,16 +132,16 @@ fn what_is_not_well_formed_is_found_at_its_place() {
             1:9 [<] S0105 `<` in the value of `b`
             1:14 [</a>] S0102 `</a>` closes nothing: no element is open
         <a b='1><c/></a>
-            1:6 ['1] S0105 the value of `b` is not closed | close it with `'`
+            1:6 ['1] S0105 the value of `b` has no closing quote | close it with `'`
         <a b='1"/><c/></a>
-            1:6 ['1"] S0105 the value of `b` is not closed | replace `"` with `'`
+            1:6 ['1"] S0105 the value of `b` has no closing quote | replace `"` with `'`
             1:12 [c] S0104 a second root element: a file has exactly one
         <a b='1 c='2'/>
             1:6 ['1] S0105 this value has no closing quote before `c` | close it with `'`
         <a b '1'/>
             1:4 [b] S0105 the attribute `b` has no value | insert `=`
         <a b: '1'/>
-            1:5 [:] S0105 `:` stands between `b` and its value, and not `=` | replace `:` with `=`
+            1:5 [:] S0105 found `:` between `b` and its value, expected `=` | replace `:` with `=`
         <a b='1', c='2'/>
             1:9 [,] S0101 `,` is misplaced in the start tag of `a` | remove `,`
         <a b='1'/>
@@ -175,15 +175,15 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a></a b=''>
             1:8 [b] S0101 `b` is misplaced in an end tag
         <a></a
-            1:4 [</a] S0103 this end tag is never closed
+            1:4 [</a] S0103 this end tag has no `>`
         <a>&nbsp;</a>
             1:4 [&nbsp;] S0109 unknown entity `&nbsp;`
         <a>&AMP;</a>
             1:4 [&AMP;] S0109 unknown entity `&AMP;` | replace `&AMP;` with `&amp;`
         <a>a & b</a>
-            1:6 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
+            1:6 [&] S0109 `&` must start a reference such as `&amp;` | replace `&` with `&amp;`
         <a b='x&y'/>
-            1:8 [&] S0109 `&` starts a reference and none follows | replace `&` with `&amp;`
+            1:8 [&] S0109 `&` must start a reference such as `&amp;` | replace `&` with `&amp;`
         <a>&#0;</a>
             1:4 [&#0;] S0109 `&#0;` is not a character that XML allows
         <a>&#xD800;</a>
@@ -199,11 +199,11 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a><!-- x ---></a>
             1:11 [--] S0101 `--` inside a comment | write single dashes
         <a><!-- x </a>
-            1:4 [<!--] S0103 this comment is never closed
+            1:4 [<!--] S0103 this comment has no end
         <a><![CDATA[ x </a>
-            1:4 [<![CDATA[] S0103 this CDATA section is never closed
+            1:4 [<![CDATA[] S0103 this CDATA section has no end
         <a><?p x </a>
-            1:4 [<?] S0103 this processing instruction is never closed
+            1:4 [<?] S0103 this processing instruction has no end
         <a><!x></a>
             1:4 [<!] S0101 `<!` starts a comment (`<!--`) or a CDATA section (`<![CDATA[`), and nothing else here
         <!DOCTYPE a><a/>
@@ -215,9 +215,9 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a><?xml version='1.0'?></a>
             1:4 [<?xml version='1.0'?>] S0111 the XML declaration is not at the very start of the file
         <?xml?><a/>
-            1:3 [xml] S0111 an XML declaration starts with its version
+            1:3 [xml] S0111 the XML declaration must start with `version`
         <?xml encoding='UTF-8'?><a/>
-            1:3 [xml] S0111 an XML declaration starts with its version
+            1:3 [xml] S0111 the XML declaration must start with `version`
         <?xml version='2.0'?><a/>
             1:16 [2.0] S0111 `2.0` is not a value of version in an XML declaration
         <?xml version='1.0' encoding='-'?><a/>
@@ -229,7 +229,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <?xml version='1.0' standalone='maybe'?><a/>
             1:33 [maybe] S0111 `maybe` is not a value of standalone in an XML declaration
         <?xml version='1.0' x?><a/>
-            1:21 [x] S0111 this is not a declaration of version, encoding or standalone
+            1:21 [x] S0111 expected `version`, `encoding` or `standalone` here
         <?XML x?><a/>
             1:3 [XML] S0111 `XML` is reserved: an instruction cannot have this name
         <?1?><a/>
@@ -245,13 +245,13 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a><b xmlns:p='u'/><p:c/></a>
             1:21 [p] S0112 the prefix `p` is not declared
         <a xmlns:p=''/>
-            1:4 [xmlns:p=''] S0112 a prefix cannot be bound to no namespace
+            1:4 [xmlns:p=''] S0112 the namespace of a prefix cannot be empty
         <a xmlns:xmlns='u'/>
             1:4 [xmlns:xmlns='u'] S0112 the prefix `xmlns` cannot be declared
         <a xmlns:xml='u'/>
-            1:4 [xmlns:xml='u'] S0112 the prefix `xml` stands for its own namespace and for no other
+            1:4 [xmlns:xml='u'] S0112 the prefix `xml` cannot be declared for another namespace than its own
         <a xmlns='http://www.w3.org/2000/xmlns/'/>
-            1:4 [xmlns='http://www.w3.org/2000/xmlns/'] S0112 nothing can be bound to the namespace of declarations
+            1:4 [xmlns='http://www.w3.org/2000/xmlns/'] S0112 no prefix can have the namespace of `xmlns`
         <xmlns:a/>
             1:2 [xmlns] S0112 the prefix `xmlns` is not declared
         <
@@ -277,6 +277,11 @@ fn a_fault_before_a_forbidden_character_comes_first() {
 fn where_reading_stops_is_said() {
     for text in ["<a><!-- x </a>", "<a><![CDATA[ x </a>", "<a><?p x </a>"] {
         let faults = super::parse(super::FileId(0), &super::Arc::new(text.into())).faults;
-        assert_eq!(faults[0].help, ["the rest of the file is inside it, and is not checked"], "{text}");
+        assert_eq!(
+            faults[0].help,
+            ["end it; until then, the rest of the file is part of it and is not \
+            checked"],
+            "{text}"
+        );
     }
 }

@@ -65,34 +65,34 @@ fn a_script_has_what_its_file_says_and_nothing_else() {
     );
     expect![[r#"
         4:17-21 error S3004: component `S` has no property `sped`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `sped` with `speed` [4:17-21 "speed"]
         5:16-20 error S2005: component `S` has no service `tock`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `tock` with `tick` [5:16-20 "tick"]
         6:18-22 error S2006: component `S` has no reference `lamp`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `lamp` with `lamps` [6:18-22 "lamps"]
         6:34-37 error S2012: component `S` has no service `tik`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `tik` with `tick` [6:34-37 "tick"]
         7:85-88 error S2012: component `S` has no service `tik`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `tik` with `tick` [7:85-88 "tick"]
         7:98-103 error S2012: component `S` has no service `other`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           help: its services are `tick`
         8:17-21 error S2016: component `S` has no reference `clok`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `clok` with `clock` [8:17-21 "clock"]
         8:33-36 error S2012: component `S` has no service `tik`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `tik` with `tick` [8:33-36 "tick"]
         9:30-33 error S2021: component `S` has no service `tik`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `tik` with `tick` [9:30-33 "tick"]
         10:32-37 error S2021: component `S` has no reference `lamsp`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           fix: replace `lamsp` with `lamps` [10:32-37 "lamps"]
     "#]]
     .assert_eq(&script(&wrong));
@@ -111,12 +111,12 @@ fn what_a_file_cannot_say_is_told() {
         run.componentType:3:2-11 error S1005: `component` is not allowed in `componentType`
           help: `componentType` can contain `implementation.*`, `service`, `reference`, `property`, `requires`, `policySetAttachment`, `documentation`, `extensions`
         run.componentType:3:22-26 error S1012: unexpected text in `componentType`: it contains elements only
-          help: remove it; comments stand between `<!--` and `-->`
+          help: remove it, or write a comment between `<!--` and `-->`
         run.componentType:3:27-34 error S1004: `service` is in no namespace
-          help: elements of SCA are in the namespace of the composite, extensions in one of their own
-        run.componentType:4:2-11 error S1003: `o:service` is of SCA 1.0, and the componentType is of SCA 1.1
+          help: write an element of SCA in the namespace of the composite, and an extension in its own namespace
+        run.componentType:4:2-11 error S1003: `o:service` is of SCA 1.0, but the componentType is of SCA 1.1
           run.componentType:1:2-15 the componentType
-          help: a composite and all of SCA inside it are of one namespace
+          help: use one namespace of SCA for a composite and everything in it
     "#]].assert_eq(&found(inside, &[("run.componentType", described)], true));
 }
 
@@ -126,13 +126,13 @@ fn a_class_may_have_more_than_its_file_says() {
     let wrong = format!("{RIGHT}\n<property name='sped'>1</property>\n<service name='another'/>");
     expect![[r#"
         4:17-21 warning S3004: component `S` has no property `sped`
-          run.componentType:1:2-15 what it has is described here
-          help: if its class has it, add the property to the description
+          run.componentType:1:2-15 its component type
+          help: if the class has it, add the property to the component type
           fix: replace `sped` with `speed` [4:17-21 "speed"]
         5:16-23 warning S2005: component `S` has no service `another`
-          run.componentType:1:2-15 what it has is described here
+          run.componentType:1:2-15 its component type
           help: its services are `tick`
-          help: if its class has it, add the service to the description
+          help: if the class has it, add the service to the component type
     "#]]
     .assert_eq(&class(&wrong).replace("Run.", "run."));
     let one = |inside| {
@@ -188,16 +188,16 @@ fn a_slip_in_a_name_that_a_component_of_an_unknown_class_declares_is_told() {
     let more = "help: if its class has both, declare this one in the component as well";
     expect![[r#"
         2:30-43 warning S2021: component `A` declares no service `ItemColection`
-          4:76-90 what it declares
+          4:76-90 its own declaration
           fix: replace `ItemColection` with `ItemCollection` [2:30-43 "ItemCollection"]
         3:32-42 warning S2021: component `A` declares no reference `stokQuotes`
-          5:20-31 what it declares
+          5:20-31 its own declaration
           fix: replace `stokQuotes` with `stockQuotes` [3:32-42 "stockQuotes"]
         6:93-108 warning S2012: component `A` declares no service `ItemsCollection`
-          4:76-90 what it declares
+          4:76-90 its own declaration
           fix: replace `ItemsCollection` with `ItemCollection` [6:93-108 "ItemCollection"]
         7:17-20 warning S2016: component `A` declares no reference `nxt`
-          5:71-75 what it declares
+          5:71-75 its own declaration
           fix: replace `nxt` with `next` [7:17-20 "next"]
     "#]]
     .assert_eq(&found(&near, &[], true).replace(&format!("  {more}\n"), ""));
@@ -214,7 +214,7 @@ fn a_value_in_a_component_type_is_one_and_written_once() {
     let component = "<component name='S'><implementation.java class='a.Run'/></component>";
     expect![[r#"
         Run.componentType:5:85-92 error S1005: `service` is not allowed in `extensions`
-          help: `extensions` contains no elements of SCA
+          help: `extensions` cannot contain elements of SCA
     "#]]
     .assert_eq(&found(component, &[("Run.componentType", inside)], true));
 }

@@ -65,10 +65,10 @@ fn a_composite_adds_replaces_removes_moves_and_parametrises_loops() {
 fn a_loop_of_which_nothing_changes_is_told() {
     assert_eq!(
         faults("<saoms:loop name=\"BatteryMS\"/>\n<saoms:loop name=\"PathMS\" remove=\"false\"/>"),
-        "3:2-12 warning S4510: this has no effect: the component has the loop `BatteryMS` from its class
-  help: remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties
-4:2-12 warning S4510: this has no effect: the component has the loop `PathMS` from its class
-  help: remove it, or say what is to change: `class`, `before`, `after`, `remove` or properties
+        "3:2-12 warning S4510: this element has no effect: the component already has the loop `BatteryMS` from its class
+  help: remove it, or write what to change: `class`, `before`, `after`, `remove` or properties
+4:2-12 warning S4510: this element has no effect: the component already has the loop `PathMS` from its class
+  help: remove it, or write what to change: `class`, `before`, `after`, `remove` or properties
 "
     );
 }
@@ -87,16 +87,17 @@ fn names_of_loops_and_their_classes_are_known() {
             "<saoms:loop name=\"ColisionMS\"/>\n<saoms:loop name=\"Saver\" class=\"example.BatterySafer\" before=\"PathSM\"/>"
         ),
         "3:19-29 error S4501: component `Cart` has no loop `ColisionMS`
-  help: to add a loop, say which: `class=\"...\"`
+  help: to add a loop, name its class: `class=\"...\"`
   fix: replace `ColisionMS` with `CollisionMS` [3:19-29 \"CollisionMS\"]
 4:33-53 error S3001: there is no loop class `example.BatterySafer`
-  help: looked among the 12 loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+  help: `saoms components` lists the 12 loops of this program and its plugins; `--plugin PATH` adds the loops of a \
+  plugin
   fix: replace `example.BatterySafer` with `example.BatterySaver` [4:33-53 \"example.BatterySaver\"]
 4:63-69 error S4501: component `Cart` has no loop `PathSM`
   fix: replace `PathSM` with `PathMS` [4:63-69 \"PathMS\"]
 "
     );
-    assert!(faults("<saoms:loop name=\"x\" class=\"example.Cart\"/>").contains("help: it is a class of components"));
+    assert!(faults("<saoms:loop name=\"x\" class=\"example.Cart\"/>").contains("help: it is a component class"));
 }
 
 #[test]
@@ -109,13 +110,13 @@ fn what_is_said_of_a_loop_makes_sense() {
         ),
         "3:48-61 error S4503: the loop `PathMS` is removed, but has `class`
   3:35-39 removed here
-  help: a removed loop has no class, place or properties
+  help: remove this, or keep the loop: a removed loop has no class, place or properties
 4:49-58 error S4502: the loop `BatteryMS` is given twice
-  4:19-28 first here
-  help: say all about a loop in one element; two loops of one class need two names
-5:58-67 error S4503: the loop `CollisionMS` is given two places
-  5:40-49 the other one
-  help: a loop stands directly before another, or directly after another: keep one
+  4:19-28 first given here
+  help: write everything about a loop in one element; two loops of the same class need different names
+5:58-67 error S4503: the loop `CollisionMS` has two places
+  5:40-49 the `before`
+  help: keep either `before` or `after`
 "
     );
 }
@@ -124,7 +125,7 @@ fn what_is_said_of_a_loop_makes_sense() {
 fn orders_lead_somewhere() {
     assert_eq!(
         faults("<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" before=\"PathMS\"/>"),
-        "4:38-44 error S4504: the order of the loops `PathMS` and `BatteryMS` goes in a circle
+        "4:38-44 error S4504: the order of the loops `PathMS` and `BatteryMS` is circular
   3:34-43 `PathMS` is placed beside `BatteryMS`
   help: place one of them before or after a loop that is not moved
 "
@@ -150,7 +151,8 @@ fn two_loops_cannot_change_one_effector() {
         faults("<saoms:loop name=\"Racer\" class=\"example.Racer\" before=\"PathMS\"/>"),
         "3:33-46 error S4507: the loops `PathMS` and `Racer` both effect `next`
   help: `PathMS` is a loop of class `example.Cart`
-  help: `next` is an effector, which one loop alone may change: replace `PathMS`, with `name=\"PathMS\"`, or remove it, with `<saoms:loop name=\"PathMS\" remove=\"true\"/>`
+  help: only one loop may change the effector `next`: replace `PathMS` with `name=\"PathMS\"`, or remove \
+  it with `<saoms:loop name=\"PathMS\" remove=\"true\"/>`
 "
     );
     assert_eq!(
@@ -159,7 +161,8 @@ fn two_loops_cannot_change_one_effector() {
         ),
         "4:33-46 error S4507: the loops `PathMS` and `Other` both effect `next`
   3:34-47 effects `next` as well
-  help: `next` is an effector, which one loop alone may change: replace `PathMS`, with `name=\"PathMS\"`, or remove it, with `<saoms:loop name=\"PathMS\" remove=\"true\"/>`
+  help: only one loop may change the effector `next`: replace `PathMS` with `name=\"PathMS\"`, or remove \
+  it with `<saoms:loop name=\"PathMS\" remove=\"true\"/>`
 "
     );
     assert_eq!(faults("<saoms:loop name=\"PathMS\" class=\"example.Racer\"/>"), "", "replaced");
@@ -168,12 +171,16 @@ fn two_loops_cannot_change_one_effector() {
 #[test]
 fn loops_fit_the_component() {
     assert_eq!(
-        faults("<saoms:loop name=\"Boating\" class=\"example.Boating\"/>\n<saoms:loop name=\"Dreamer\" class=\"example.Dreamer\"/>"),
-        "3:35-50 error S4505: the loop `Boating` works on the knowledge `example.Boat`, and component `Cart` has `example.Cart`
+        faults(
+            "<saoms:loop name=\"Boating\" class=\"example.Boating\"/>\n<saoms:loop name=\"Dreamer\" \
+            class=\"example.Dreamer\"/>"
+        ),
+        "3:35-50 error S4505: the loop `Boating` works on the knowledge `example.Boat`, but component `Cart` has \
+        `example.Cart`
   help: it is made for components of another class
-4:35-50 error S4506: the loop `Dreamer` senses `batery`, and component `Cart` has no such entry
-  help: there is `battery`: is the loop made for another component?
-4:35-50 error S4506: the loop `Dreamer` effects `mood`, and component `Cart` has no such entry
+4:35-50 error S4506: the loop `Dreamer` senses `batery`, but component `Cart` has no such entry
+  help: the nearest entry is `battery`: is the loop made for another component?
+4:35-50 error S4506: the loop `Dreamer` effects `mood`, but component `Cart` has no such entry
   help: the entries are `battery`, `busy`, `next` and `stopped`
 "
     );
@@ -202,7 +209,7 @@ fn loops_fit_the_component() {
     assert_eq!(
         faults_of(&[&gps], &[]),
         "3:2-8 error S4505: class `example.Gps` has no loops
-  help: loops work on the knowledge of a component, and this one declares none
+  help: loops work on the knowledge of a component, but this component declares none
 "
     );
 }
@@ -218,14 +225,14 @@ fn properties_of_loops_are_checked_as_those_of_components() {
   help: `patience`: How long to wait for others; the default is `3`
 3:86-94 error S3004: loop `example.CollisionMS` has no property `patiance`
   help: `patience` is given already: remove one of the two
-4:19-24 error S3006: loop `Saver` lacks the property `threshold`
+4:19-24 error S3006: loop `Saver` needs the property `threshold`
   help: add `<property name=\"threshold\">...</property>`: a number from 0.0 to 100.0 [%]
 "
     );
     assert_eq!(
         faults("<saoms:loop name=\"CollisionMS\">\n<property name=\"patience\">60</property></saoms:loop>"),
         "4:27-29 error S3014: loop `CollisionMS`: property `patience`: 60 is too long for so short a reach
-  help: `saoms components example.CollisionMS` says what its properties mean
+  help: `saoms components example.CollisionMS` describes its properties
 "
     );
 }
@@ -267,7 +274,7 @@ fn a_loop_is_in_the_namespace_of_saoms() {
         "3:32-37 error S1007: `saoms:loop` has no attribute `befor`
   fix: replace `befor` with `before` [3:32-37 \"before\"]
 3:48-62 error S1005: `saoms:property` is in the namespace of SAOMS
-  help: the properties of a loop are written as those of a component, as SCA has them
+  help: write the properties of a loop as elements of SCA, as in a component
   fix: replace `saoms:property` with `property` [3:48-62 \"property\"]
 "
     );

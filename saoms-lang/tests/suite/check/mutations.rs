@@ -83,8 +83,8 @@ proptest! {
 #[test]
 fn what_is_mutated_is_right_but_for_a_warning() {
     expect_test::expect![[r#"
-        5:18-19 warning S2022: reference `r` of the composite is wired to no service: calls through it fail
-          help: the composite runs by itself, and nothing around it can wire its references
+        5:18-19 warning S2022: reference `r` of the composite is not wired to a service: calls through it fail
+          help: wire the component's reference inside the composite: a composite that runs by itself has nothing around it
     "#]]
     .assert_eq(&crate::check::support::faults(EVERYTHING));
 }

@@ -62,7 +62,7 @@ fn services_and_references_are_those_of_the_class() {
           4:16-20 the first
           help: keep one of them
         6:94-104 warning S2009: `binding.ws` is not supported: the service can be called only inside this program
-          help: remove it; other machines are reached through topics and the `url` of a message broker
+          help: remove it; to reach other machines, use topics and the `url` of a message broker
         7:18-21 error S2006: class `example.Robot001` has no reference `GPS`
           fix: replace `GPS` with `gps` [7:18-21 "gps"]
         8:37-41 error S2008: the multiplicity `0..n` of `gps` is wider than `0..1` in class `example.Robot001`
@@ -101,13 +101,13 @@ fn promotions_have_to_exist() {
         6:16-17 error S2003: the composite has two services `a`
           2:16-17 the first
           help: give each its own name
-        6:28-29 error S2021: component `T` has several services: say which is promoted
+        6:28-29 error S2021: component `T` has several services: name the one to promote
           help: write `T/` and one of `left` and `right`
-        7:18-19 warning S2022: reference `r` of the composite is wired to no service: calls through it fail
-          help: the composite runs by itself, and nothing around it can wire its references
+        7:18-19 warning S2022: reference `r` of the composite is not wired to a service: calls through it fail
+          help: wire the component's reference inside the composite: a composite that runs by itself has nothing around it
         7:38-46 error S2007: reference `r` of the composite promotes references with the interfaces `example.Positions` and `example.Wheels`
           7:30-37 the first
-          help: promote each by a reference of its own: no service has both interfaces
+          help: promote each with its own reference: no service has both interfaces
         7:49-54 error S2021: component `N` has no reference `whels`
           fix: replace `whels` with `wheels` [7:49-54 "wheels"]
         8:30-31 error S2021: component `T` has no references to promote
@@ -140,20 +140,20 @@ fn attributes_of_the_other_version_are_told() {
 <property name="period" value="100"/><property name="number">1</property><service name="TaskInterface"><interface.java interface="unibg.robotics.tca.TaskInterface" remotable="false"/></service></component>
 <wire source="N/other" target="R" replace="true"/>"#;
     expect![[r#"
-        2:106-111 warning S1014: `value` of `property` is an attribute of SCA 1.1, and this file is of SCA 1.0
+        2:106-111 warning S1014: `value` of `property` is an attribute of SCA 1.1, but this file is of SCA 1.0
           help: SAOMS reads it, other programs may not: change the file to SCA 1.1
           help: or write the value as text inside
-        3:165-174 warning S1014: `remotable` of `interface.java` is an attribute of SCA 1.1, and this file is of SCA 1.0
+        3:165-174 warning S1014: `remotable` of `interface.java` is an attribute of SCA 1.1, but this file is of SCA 1.0
           help: SAOMS reads it, other programs may not: change the file to SCA 1.1
         4:15-16 error S2011: there is no component `N`
           help: the components are `R`
-        4:35-42 warning S1014: `replace` of `wire` is an attribute of SCA 1.1, and this file is of SCA 1.0
+        4:35-42 warning S1014: `replace` of `wire` is an attribute of SCA 1.1, but this file is of SCA 1.0
           help: SAOMS reads it, other programs may not: change the file to SCA 1.1
     "#]]
     .assert_eq(&faults_of(&[&fleet_1_0(inside)], &[]));
     expect![[r#"
         2:21-37 error S1007: `component` has no attribute `constrainingType`
-          help: it is one of SCA 1.0 alone: remove it
+          help: remove it: only SCA 1.0 has this attribute
         4:15-16 error S2011: there is no component `N`
           help: the components are `R`
     "#]]

@@ -23,10 +23,10 @@ fn an_element_of_sca_in_another_namespace_is_told() {
     let implementation = "<component name='A'><x:implementation.java xmlns:x='urn:x' class='example.Gps'/></component>
 <component name='B'><x:implementation.bpel xmlns:x='urn:x' process='x:b'/></component>";
     expect![[r#"
-        2:22-43 error S3002: `implementation.java` of another namespace cannot run here
-          help: give it the prefix of the elements around it, or none where they have none: then it is that of SCA
-        3:22-43 error S3002: `implementation.bpel` cannot run here
-          help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
+        2:22-43 error S3002: this program cannot run `implementation.java` of another namespace
+          help: to use the element of SCA, write it with the prefix of the elements around it, or without a prefix if they have none
+        3:22-43 error S3002: this program cannot run `implementation.bpel`
+          help: name the class of the component: `implementation.java class="..."` or `implementation.rust class="..."`
     "#]].assert_eq(&faults(implementation));
 }
 
@@ -37,8 +37,8 @@ fn a_prefix_in_a_list_of_names_has_a_namespace() {
     expect![[r#"
         2:39-48 warning S1011: the prefix `q` of `q:unknown` is not declared
           help: declare it in the root element: `xmlns:q="..."`, or correct it
-        3:17-18 warning S2026: the property `p` of the composite is used by no component
-          help: a component takes its value with `source="$p"`
+        3:17-18 warning S2026: no component uses the property `p` of the composite
+          help: remove it, or use its value in a component with `source="$p"`
         3:29-32 warning S1011: the prefix `q` of `q:e` is not declared
           help: declare it in the root element: `xmlns:q="..."`, or correct it
     "#]]

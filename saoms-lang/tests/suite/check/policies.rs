@@ -29,11 +29,11 @@ fn elements_of_policies_say_what_they_are_about() {
         2:73-79 error S1007: `requires` has no attribute `intent`
           fix: replace `intent` with `intents` [2:73-79 "intents"]
         4:25-29 error S1012: unexpected text in `requires`: it contains elements only
-          help: remove it; comments stand between `<!--` and `-->`
+          help: remove it, or write a comment between `<!--` and `-->`
         4:65-69 error S1005: `wire` is not allowed in `requires`
-          help: `requires` contains no elements of SCA
+          help: `requires` cannot contain elements of SCA
         5:85-89 error S1012: unexpected text in `extensions`: it contains elements only
-          help: remove it; comments stand between `<!--` and `-->`
+          help: remove it, or write a comment between `<!--` and `-->`
     "#]]
     .assert_eq(&found(&text));
 }

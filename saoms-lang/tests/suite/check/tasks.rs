@@ -42,7 +42,7 @@ fn topic_renames() {
         3:30-39 error S4002: bad `topicRename`: a pair with one name, `POSTOPIC,`
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a,b
-        3:30-42 error S4002: bad `topicRename`: 3 names where a pair has two
+        3:30-42 error S4002: bad `topicRename`: a pair has two names, found 3
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a::ORDERS
         3:42-48 error S4002: bad `topicRename`: a pair with one name, `ORDERS`
@@ -51,14 +51,14 @@ fn topic_renames() {
         3:42-42 error S4002: bad `topicRename`: a pair without names
           help: write `OLD,new` for each topic, and `::` between two of them
         A::B::C
-        3:30-37 error S4002: bad `topicRename`: 3 names where a pair has two
+        3:30-37 error S4002: bad `topicRename`: a pair has two names, found 3
           help: write `OLD,new` for each topic, and `::` between two of them
         ,
         3:30-31 error S4002: bad `topicRename`: a pair without names
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a::POSTOPIC,b
         3:42-50 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
-          3:30-38 first here
+          3:30-38 first renamed here
         POSTOPIC,ORDERS::ORDERS,c
         3:39-45 error S4002: bad `topicRename`: a chain: `POSTOPIC` is renamed to `ORDERS`, and `ORDERS` to `c`
           3:47-53 renamed again here
@@ -66,7 +66,7 @@ fn topic_renames() {
         3:39-47 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed to its own name
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a:ORDERS,b
-        3:30-49 error S4002: bad `topicRename`: 3 names where a pair has two
+        3:30-49 error S4002: bad `topicRename`: a pair has two names, found 3
           help: write `OLD,new` for each topic, and `::` between two of them
           fix: replace `POSTOPIC,a:ORDERS,b` with `POSTOPIC,a::ORDERS,b` [3:30-49 "POSTOPIC,a::ORDERS,b"]
         POSTOPC, pos001::POS002, pos002
@@ -76,7 +76,7 @@ fn topic_renames() {
           help: topics that keep their names are `ORDERS` and `POSTOPIC`
         &#80;OSTOPIC,a::POSTOPIC,b
         3:46-54 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
-          3:30-42 first here
+          3:30-42 first renamed here
     "#]]
     .assert_eq(&all);
 }
@@ -101,39 +101,39 @@ fn addresses_of_message_brokers() {
     expect![[r#"
         localhost
         3:22-31 error S4005: `localhost` is not an address of a message broker: there is no port
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         localhost:
         3:31-32 error S4005: `localhost:` is not an address of a message broker: there is no port
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         :61616
         3:22-28 error S4005: `:61616` is not an address of a message broker: there is no host
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         localhost:0
         3:32-33 error S4005: `localhost:0` is not an address of a message broker: port 0 is outside 1 to 65535
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         localhost:65536
         3:32-37 error S4005: `localhost:65536` is not an address of a message broker: port 65536 is outside 1 to 65535
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         localhost:6161x
         3:32-37 error S4005: `localhost:6161x` is not an address of a message broker: `6161x` is not a port
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         tcp://localhost:61616
         3:22-28 error S4005: `tcp://localhost:61616` is not an address of a message broker: found `tcp://` before host and port
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
           fix: remove it [3:22-28 ""]
         ::1:61616
         3:22-25 error S4005: `::1:61616` is not an address of a message broker: `::1` is not a host: an IPv6 address is written in brackets
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
           fix: replace it with `[::1]` [3:22-25 "[::1]"]
         local host:1
         3:27-28 error S4005: `local host:1` is not an address of a message broker: ` ` cannot be in the name of a host
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         [::g]:1
         3:22-27 error S4005: `[::g]:1` is not an address of a message broker: `[::g]` is not an IPv6 address
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         localhost:+1
         3:32-34 error S4005: `localhost:+1` is not an address of a message broker: `+1` is not a port
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
     "#]].assert_eq(&all);
 }
 
@@ -143,10 +143,10 @@ fn faults_of_other_properties_hide_none_of_these() {
         3:24-28 error S3007: property `delay`: `soon` is not a duration: expected a duration from 0ms to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `delay`: From the start to the first due execution; the default is `0ms`
         4:22-31 error S4005: `localhost` is not an address of a message broker: there is no port
-          help: an address is `host:port`, as in `localhost:61616`, with a port from 1 to 65535
-        4:66-71 error S4004: `useJMS` is false, and component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
+          help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
+        4:66-71 error S4004: `useJMS` is false, but component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
           help: set `useJMS` to true: without it a component cannot publish or subscribe
-        5:30-42 error S4002: bad `topicRename`: 3 names where a pair has two
+        5:30-42 error S4002: bad `topicRename`: a pair has two names, found 3
           help: write `OLD,new` for each topic, and `::` between two of them
     "#]]
     .assert_eq(&robot(
@@ -169,13 +169,13 @@ fn faults_of_other_properties_hide_none_of_these() {
 #[test]
 fn settings_that_do_not_go_together() {
     expect![[r#"
-        3:25-30 error S4004: `useJMS` is false, and component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
+        3:25-30 error S4004: `useJMS` is false, but component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
           help: set `useJMS` to true: without it a component cannot publish or subscribe
     "#]].assert_eq(&robot(r#"<property name="useJMS">false</property>"#));
     expect![[r#"
         3:27-32 warning S4007: the deadline of 150ms is longer than the period of 100ms: the next execution is due before it
           2:124-127 the period
-          help: a deadline is at most the period
+          help: shorten the deadline: it can be at most the period
     "#]]
     .assert_eq(&robot(r#"<property name="deadline">150ms</property>"#));
     expect![[r#"

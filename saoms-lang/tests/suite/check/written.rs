@@ -20,7 +20,7 @@ fn a_target_and_an_address_exclude_each_other() {
 <reference name='f' multiplicity='0..1'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>
 <reference name='g' multiplicity='0..n'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>";
     expect![[r#"
-        3:49-57 error S2054: reference `a` has a target, and a binding that leads to `http://a`
+        3:49-57 error S2054: reference `a` has a target and also a binding that leads to `http://a`
           3:29-30 the target
           help: keep one of them
     "#]]
@@ -34,10 +34,10 @@ fn bindings_without_a_name_are_called_as_what_they_bind() {
 <service name='c'><binding.ws/><binding.sca name='d'/></service>
 <service name='e'><binding.ws name='f'/><callback><binding.ws name='f'/><binding.jms name='f'/></callback></service>";
     expect![[r#"
-        3:33-44 warning S2040: service `a` has two bindings `a`: `binding.jms` without a name is called so
+        3:33-44 warning S2040: service `a` has two bindings `a`: this is the default name of `binding.jms`
           3:20-30 the first
           help: give each its own name
-        4:51-52 warning S2040: service `b` has two bindings `b`: `binding.ws` without a name is called so
+        4:51-52 warning S2040: service `b` has two bindings `b`: this is the default name of `binding.ws`
           4:20-30 the first
           help: give each its own name
         6:92-93 error S2040: the callback of `e` has two bindings `f`
@@ -149,21 +149,22 @@ fn values_are_written_as_their_types_ask_for() {
     assert_eq!(all(&right), "");
     let told = all(&wrong);
     for (place, one) in wrong.iter().enumerate() {
-        assert!(told.contains(&format!("error S2042: the property `p{place}` is of the type")), "{one:?}\n{told}");
+        assert!(told.contains(&format!("error S2042: the property `p{place}` has the type")), "{one:?}\n{told}");
     }
     expect![[r#"
-        3:60-61 error S2042: the property `p0` is of the type `xsd:duration`: found `5`, expected a duration such as `PT1H30M`
+        3:60-61 error S2042: the property `p0` has the type `xsd:duration`: found `5`, expected a duration such as `PT1H30M`
           3:39-51 the type
           help: change the value, or the type
-        4:48-49 error S2042: the property `p1` is of the type `xsd:duration`: found `P`, expected a duration such as `PT1H30M`
+        4:48-49 error S2042: the property `p1` has the type `xsd:duration`: found `P`, expected a duration such as `PT1H30M`
           4:27-39 the type
           help: change the value, or the type
     "#]].assert_eq(&all(&wrong[..2]));
     expect![[r#"
-        3:14-22 error S2042: the property `p0` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+        3:14-22 error S2042: the property `p0` has the type `xsd:int`: found nothing, expected a whole number of 32 bits
           3:39-46 the type
           help: change the value, or the type
-    "#]].assert_eq(&all(&[("int", "")]));
+    "#]]
+    .assert_eq(&all(&[("int", "")]));
 }
 
 #[test]
@@ -185,17 +186,17 @@ fn what_its_implementation_wires_nothing_else_wires() {
 <component name='B'><implementation.java class='x.B'/></component>
 <wire source='A/d' target='B'/><wire source='A/f' target='B/s' replace='true'/>";
     expect![[r#"
-        3:48-49 error S2038: reference `a` is wired by its implementation, and has a target
-          3:34-38 said here
+        3:48-49 error S2038: reference `a` is wired by its implementation, but has a target
+          3:34-38 `wiredByImpl` is set here
           help: remove the target, or `wiredByImpl`
-        3:128-136 error S2038: reference `b` is wired by its implementation, and has a binding that leads to one
-          3:85-89 said here
+        3:128-136 error S2038: reference `b` is wired by its implementation, but has a binding that leads to one
+          3:85-89 `wiredByImpl` is set here
           help: remove the target, or `wiredByImpl`
-        4:50-54 error S2038: reference `c` is wired by its implementation, and asks for one by `autowire`
-          4:34-38 said here
+        4:50-54 error S2038: reference `c` is wired by its implementation, but has `autowire`
+          4:34-38 `wiredByImpl` is set here
           help: remove the target, or `wiredByImpl`
-        7:15-18 error S2038: reference `d` is wired by its implementation, and starts a wire
-          4:90-94 said here
+        7:15-18 error S2038: reference `d` is wired by its implementation, but starts a wire
+          4:90-94 `wiredByImpl` is set here
           help: remove the target, or `wiredByImpl`
     "#]]
     .assert_eq(&found(inside, &[], true));
@@ -214,19 +215,19 @@ fn what_the_implementation_inside_wires_nothing_outside_wires() {
     let told = outcome(&[&part("outer", "", outer), &part("inner", "", inner)], &[]);
     let told: Vec<&str> = told.lines().filter(|line| line.contains("S2038")).collect();
     expect![[r#"
-        3:29-30 warning S2038: reference `a` is wired by its implementation, and has a target
-        4:81-84 warning S2038: reference `b` is wired by its implementation, and starts a wire"#]]
+        3:29-30 warning S2038: reference `a` is wired by its implementation, but has a target
+        4:81-84 warning S2038: reference `b` is wired by its implementation, but starts a wire"#]]
     .assert_eq(&told.join("\n"));
     let described = [("A.componentType", "<reference name='a' wiredByImpl='true'/>")];
     let inside = "<component name='A'><implementation.java class='x.A'/><reference name='a' target='C'/></component>
 <component name='C'><implementation.java class='x.C'/></component>
 <reference name='r' promote='A/a' wiredByImpl='true' target='C' multiplicity='0..1'/>";
     expect![[r#"
-        2:83-84 warning S2038: reference `a` is wired by its implementation, and has a target
-          A.componentType:2:34-38 said here
+        2:83-84 warning S2038: reference `a` is wired by its implementation, but has a target
+          A.componentType:2:34-38 `wiredByImpl` is set here
           help: remove the target, or `wiredByImpl`
-        4:62-63 warning S2038: reference `r` is wired by its implementation, and has a target
-          4:48-52 said here
+        4:62-63 warning S2038: reference `r` is wired by its implementation, but has a target
+          4:48-52 `wiredByImpl` is set here
           help: remove the target, or `wiredByImpl`
     "#]]
     .assert_eq(&found(inside, &described, true));

@@ -104,7 +104,7 @@ fn what_the_schema_of_1_1_forbids_is_told_where_it_stands() {
         definitions.xml:8:10 [externalAttachment] error S1008 `externalAttachment` needs the attribute `attachTo`
           add `attachTo="..."` to it
         definitions.xml:8:84 [binding.http] error S1004 SCA 1.1 has no element `binding.http`
-          an extension is written in the namespace of the one who defined it
+          if it is an extension, write it with a prefix of its own namespace
           `definitions` can contain `intent`, `policySet`, `bindingType`, `implementationType`, `externalAttachment`, `binding.*`, `documentation`
     "#]].assert_eq(&alone("definitions.xml", definitions(OASIS, inside)));
     let bare = format!("<definitions xmlns='{OASIS}'/>");

@@ -37,9 +37,9 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
         sca-contribution.xml:2:13 [composit] error S1007 `deployable` has no attribute `composit`
           replace `composit` with `composite`
         sca-contribution.xml:2:23 [t:a] warning S2051 the contribution has no composite `t:a`
-          it has none at all: is it put together from several folders?
+          it has no composites: is it made from several folders?
         sca-contribution.xml:2:28 [now] error S1012 unexpected text in `deployable`: it contains elements only
-          remove it; comments stand between `<!--` and `-->`
+          remove it, or write a comment between `<!--` and `-->`
         sca-contribution.xml:2:32 [component] error S1005 `component` is not allowed in `deployable`
           `deployable` can contain `documentation`, `extensions`
         sca-contribution.xml:2:57 [import] error S1008 `import` needs the attribute `namespace`
@@ -52,7 +52,7 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
           replace `pakage` with `package`
         sca-contribution.xml:3:15 [extensions] error S1006 `contribution` has a second `extensions`
         sca-contribution.xml:3:27 [deployable] error S1004 SCA 1.1 has no element `deployable`
-          `extensions` contains no elements of SCA
+          `extensions` cannot contain elements of SCA
         sca-contribution.xml:3:78 [location] error S1007 `export` has no attribute `location`
           `export` has the attributes `namespace`
         sca-contribution.xml:3:93 [composite] error S1005 `composite` is not allowed in `contribution`
@@ -61,13 +61,13 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
           replace `imports` with `import`
     "#]].assert_eq(&alone("sca-contribution.xml", description(OASIS, inside)));
     expect![[r#"
-        sca-contribution.xml:2:2 [documentation] warning S1004 `documentation` is an element of SCA 1.1, and this file is of SCA 1.0
+        sca-contribution.xml:2:2 [documentation] warning S1004 `documentation` is an element of SCA 1.1, but this file is of SCA 1.0
           other programs refuse it
           write a comment instead
-        sca-contribution.xml:2:18 [extensions] warning S1004 `extensions` is an element of SCA 1.1, and this file is of SCA 1.0
+        sca-contribution.xml:2:18 [extensions] warning S1004 `extensions` is an element of SCA 1.1, but this file is of SCA 1.0
           other programs refuse it
         sca-contribution.xml:2:79 [t:a] warning S2051 the contribution has no composite `t:a`
-          it has none at all: is it put together from several folders?
+          it has no composites: is it made from several folders?
     "#]].assert_eq(&alone(
         "sca-contribution.xml",
         description(
@@ -136,7 +136,7 @@ fn what_is_imported_is_exported_by_those_around() {
           replace `urn:robot` with `urn:robots`
     "#]].assert_eq(&told("urn:robot", export));
     expect![[r#"
-        a/sca-contribution.xml:2:20 [urn:robots] warning S2059 the contribution in `b` has the namespace `urn:robots`, and does not export it
+        a/sca-contribution.xml:2:20 [urn:robots] warning S2059 the contribution in `b` has the namespace `urn:robots`, but does not export it
           write `<export namespace="urn:robots"/>` in its description
     "#]].assert_eq(&told("urn:robots", ""));
 }

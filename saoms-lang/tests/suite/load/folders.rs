@@ -60,10 +60,10 @@ fn what_is_deployable_runs_and_what_nobody_names_is_a_fleet_of_its_own() {
         about.composite
         broken.composite
         lib/fleet.composite runs
-        META-INF/sca-contribution.xml:2:57 [other] warning S1011 `other` does not say its namespace
-          write it with a prefix of the target namespace of the composite
+        META-INF/sca-contribution.xml:2:57 [other] warning S1011 `other` has no namespace
+          write it with a prefix of the composite's target namespace
         META-INF/sca-contribution.xml:2:88 [u:fleet] warning S1011 the prefix `u` is not declared
-          write it with a prefix of the target namespace of the composite
+          write it with a prefix of the composite's target namespace
     "#]]
     .assert_eq(&fleets(&files));
 }
@@ -90,14 +90,14 @@ fn what_is_wrong_with_a_contribution_is_told() {
           add `composite="..."` to it
         sca-contribution.xml:6:13 [composit] error S1007 `deployable` has no attribute `composit`
           replace `composit` with `composite`
-        sca-contribution.xml:6:23 [fleet] warning S1011 `fleet` does not say its namespace
-          write it with a prefix of the target namespace of the composite
+        sca-contribution.xml:6:23 [fleet] warning S1011 `fleet` has no namespace
+          write it with a prefix of the composite's target namespace
         sca-contribution.xml:8:27 [locaton] error S1007 `export` has no attribute `locaton`
           `export` has the attributes `namespace`
         sca-contribution.xml:9:2 [imports] error S1004 SCA 1.1 has no element `imports`
           replace `imports` with `import`
         sca-contribution.xml:10:1 [text] error S1012 unexpected text in `contribution`: it contains elements only
-          remove it; comments stand between `<!--` and `-->`
+          remove it, or write a comment between `<!--` and `-->`
         sca-contribution.xml:10:6 [import.resource] error S1008 `import.resource` needs the attribute `uri`
           add `uri="..."` to it
         sca-contribution.xml:11:43 [component] error S1005 `component` is not allowed in `contribution`
@@ -169,11 +169,11 @@ fn deployables_say_their_namespace_once() {
     let files = [("fleet.composite", composite("urn:a", "fleet", "")), ("sca-contribution.xml", text)];
     expect![[r#"
         fleet.composite runs
-        sca-contribution.xml:2:57 [fleet] warning S1011 `fleet` does not say its namespace
-          write it with a prefix of the target namespace of the composite
-        sca-contribution.xml:2:88 [zz:fleet] warning S1011 `zz:fleet` is called deployable twice
+        sca-contribution.xml:2:57 [fleet] warning S1011 `fleet` has no namespace
+          write it with a prefix of the composite's target namespace
+        sca-contribution.xml:2:88 [zz:fleet] warning S1011 `zz:fleet` is listed as deployable twice
           keep one of them
-        sca-contribution.xml:2:122 [a:fleet] warning S1011 `a:fleet` is called deployable twice
+        sca-contribution.xml:2:122 [a:fleet] warning S1011 `a:fleet` is listed as deployable twice
           keep one of them
         sca-contribution.xml:2:133 [import.jva] error S1004 SCA 1.1 has no element `import.jva`
           replace `import.jva` with `import.java`
@@ -230,10 +230,10 @@ fn a_wrong_deployable_is_told_once() {
     expect![[r#"
         fleet.composite
         sca-contribution.xml:2:24 [flet] error S2051 the contribution has no composite `flet`
-          write it with a prefix of the target namespace of the composite
+          write it with a prefix of the composite's target namespace
           replace `flet` with `fleet`
         sca-contribution.xml:2:54 [u:hall] error S2051 the contribution has no composite `u:hall`
-          write it with a prefix of the target namespace of the composite
+          write it with a prefix of the composite's target namespace
           it has `fleet`
     "#]]
     .assert_eq(&fleets(&files));

@@ -40,11 +40,11 @@ fn what_is_imported_is_found_where_it_is_exported() {
 #[test]
 fn what_is_not_imported_says_what_is_lacking() {
     expect![[r#"
-        fleet/fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `fleet` and below; the contribution in `halls` has it: write `<import namespace="urn:b"/>` in `fleet/META-INF/sca-contribution.xml`
+        fleet/fleet.composite: b:hall is missing, near []; searched the files `*.composite` in `fleet` and below; the contribution in `halls` has it: write `<import namespace="urn:b"/>` in `fleet/META-INF/sca-contribution.xml`
     "#]]
     .assert_eq(&between("", "<export namespace='urn:b'/>"));
     expect![[r#"
-        fleet/fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `fleet` and below; the contribution in `halls` has it: write `<import namespace="urn:b"/>` in `fleet/META-INF/sca-contribution.xml`, and write `<export namespace="urn:b"/>` in `halls/sca-contribution.xml`
+        fleet/fleet.composite: b:hall is missing, near []; searched the files `*.composite` in `fleet` and below; the contribution in `halls` has it: write `<import namespace="urn:b"/>` in `fleet/META-INF/sca-contribution.xml`, and write `<export namespace="urn:b"/>` in `halls/sca-contribution.xml`
     "#]]
     .assert_eq(&between("", "<export namespace='urn:c'/>"));
     let files = [
@@ -52,8 +52,8 @@ fn what_is_not_imported_says_what_is_lacking() {
         ("fleet.composite", composite("urn:c", "fleet", "<include name='a:hall'/><include name='b:hall'/>")),
     ];
     expect![[r#"
-        fleet.composite: a:hall is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `sca-contribution.xml` imports the namespace `urn:a`, which no contribution that is known exports: name a composite of it beside this one, or write its folder as `location` of the `import`
-        fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `FOLDER` and below
+        fleet.composite: a:hall is missing, near []; searched the files `*.composite` in `FOLDER` and below; `sca-contribution.xml` imports the namespace `urn:a`, which no contribution that is known exports: name a composite of it beside this one, or write its folder as `location` of the `import`
+        fleet.composite: b:hall is missing, near []; searched the files `*.composite` in `FOLDER` and below
         sca-contribution.xml S1008
     "#]]
     .assert_eq(&links(&files, "fleet.composite"));
@@ -117,8 +117,8 @@ fn a_description_that_is_no_xml_is_judged_as_far_as_it_can_be_read() {
         sca-contribution.xml:1:94 [fleet] error S0105 the value of `composite` is not in quotes
           put it in quotes
         sca-contribution.xml:1:94 [fleet] warning S2051 the contribution has no composite `fleet`
-          write it with a prefix of the target namespace of the composite
-          it has none at all: is it put together from several folders?
+          write it with a prefix of the composite's target namespace
+          it has no composites: is it made from several folders?
         sca-contribution.xml:2:2 [deployabel] error S1004 SCA 1.1 has no element `deployabel`
           replace `deployabel` with `deployable`
         sca-contribution.xml:3:2 [import] error S1008 `import` needs the attribute `namespace`

@@ -123,8 +123,9 @@ fn what_is_not_found_says_where_and_what_is_near() {
     assert_eq!(
         links(&files, "fleet.composite"),
         "\
-fleet.composite: a:hal is missing, near [\"a:hall\"]; looked in the files `*.composite` in `FOLDER` and below
-fleet.composite: b:hall is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` has a composite `hall` of the namespace `urn:a`
+fleet.composite: a:hal is missing, near [\"a:hall\"]; searched the files `*.composite` in `FOLDER` and below
+fleet.composite: b:hall is missing, near []; searched the files `*.composite` in `FOLDER` and below; \
+`hall.composite` has a composite `hall` of the namespace `urn:a`
 fleet.composite: c:hall -> hall.composite
 fleet.composite: a:torn -> torn.composite
 torn.composite S0103
@@ -232,7 +233,8 @@ fn of_two_composites_of_one_name_in_a_folder_one_is_taken_and_both_are_told() {
         .iter()
         .map(|one| (one.code.id, one.severity.name(), sources.snippet(one.location), one.message.as_str()))
         .collect();
-    let message = "there are two composites `hall` in one namespace: that in `hall.composite` is taken, and not that in `copy.composite`";
+    let message = "there are two composites `hall` in one namespace: the one in `hall.composite` is used, not the \
+        one in `copy.composite`";
     assert_eq!(found, [("S2001", "warning", "a:hall", message)]);
 }
 
@@ -273,7 +275,7 @@ fn files_that_are_no_composites_are_named_with_the_reason() {
     ];
     // What is called as the name is meant by it, and says itself what is wrong.
     expect![[r#"
-        fleet.composite: b:lounge is missing, near []; looked in the files `*.composite` in `FOLDER` and below; `hall.composite` is not a composite: the file is in UTF-16LE, expected UTF-8; `more.composite` is not a composite: the file is empty; `other.composite` is not a composite: the root element is `contribution`, expected `composite`
+        fleet.composite: b:lounge is missing, near []; searched the files `*.composite` in `FOLDER` and below; `hall.composite` is not a composite: the file is in UTF-16LE, expected UTF-8; `more.composite` is not a composite: the file is empty; `other.composite` is not a composite: the root element is `contribution`, expected `composite`
         fleet.composite: b:hall is faulty
         fleet.composite: a:gate -> deep/gate.composite
         hall.composite S0007

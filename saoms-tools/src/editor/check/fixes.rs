@@ -64,8 +64,8 @@ pub fn fix_all<'d>(all: &'d [EditorDiagnostic], path: &Path, least: usize) -> Op
         of.push(one);
     }
     let title = match of.len() {
-        1 => "Mend the fault of this file that has one suggestion".to_owned(),
-        count => format!("Mend all {count} faults of this file that have one suggestion"),
+        1 => "Fix the error of this file that has one suggestion".to_owned(),
+        count => format!("Fix all {count} errors of this file that have one suggestion"),
     };
     let fix = Fix { title, edits: BTreeMap::from([(path.to_owned(), edits)]) };
     (of.len() >= least.max(1)).then_some(FixAction { fix, of, is_preferred: false })

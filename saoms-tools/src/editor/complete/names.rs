@@ -288,9 +288,8 @@ pub(super) fn parameters_of(
     let mut all = of_composite(scene, file, "", range);
     all.retain(|one| is_name(&one.label));
     all.extend(
-        replicated.map(|_| {
-            Proposal::new(INDEX, ProposalKind::Variable, range).detail("what replicas are counted by").rank(4)
-        }),
+        replicated
+            .map(|_| Proposal::new(INDEX, ProposalKind::Variable, range).detail("the number of a replica").rank(4)),
     );
     all
 }

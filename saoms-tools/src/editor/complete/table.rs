@@ -32,7 +32,10 @@ pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec
     match (line, column) {
         (0, 0) => {
             let one = |name: &str, what| Proposal::new(name, ProposalKind::Field, &range).detail(what);
-            vec![one(INDEX, "lines are about replicas by their index"), one("name", "by their names")]
+            vec![
+                one(INDEX, "each line names its replica by the index"),
+                one("name", "each line names its replica by the name"),
+            ]
         }
         (0, _) => columns(scene, of, &head, column, &range),
         (_, 0) => {

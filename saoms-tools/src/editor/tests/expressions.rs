@@ -66,7 +66,7 @@ fn names_in_expressions_lead_to_their_property_and_are_explained() {
         hover(&scene, at).map(|(text, _)| text).unwrap_or_default()
     };
     assert!(said(&at("s:count=\"bots", "s:count=\"bo|ts")).contains("a property of the composite `fleet`: `4`"));
-    assert!(said(&at("${(index", "${(ind|ex")).contains("the replicas of `R${index:02}` are counted by"));
+    assert!(said(&at("${(index", "${(ind|ex")).contains("the number of each replica of `R${index:02}`"));
     // In a component that is none of many, `index` is a name as any other.
     let plain = composite(r#"<property name="index"/><component name="P" s:if="ind|ex > 3"/>"#);
     assert_eq!(defined(&plain, &[]), ["fleet.composite:2:17 index"]);
@@ -80,18 +80,20 @@ fn what_would_break_an_expression_is_refused() {
         assert!(why.contains("is used in expressions"), "{why}");
     }
     let index = composite(&FLEET.replacen("${(index", "${(in|dex", 1));
-    assert!(renamed(&index, &others(), "i").unwrap_err().contains("counted by"));
+    assert!(renamed(&index, &others(), "i").unwrap_err().contains("the number of a replica"));
     // Where no expression uses it, any name does.
     let plain = composite(r#"<property name="a|"/><component name="C"><property name="b" source="$a"/></component>"#);
     assert!(renamed(&plain, &[], "my-a").is_ok());
     let chosen = composite(
         r#"<property name="start1|"/><property name="start2"/><component name="R${index}" s:count="2"><property name="b" source="$start${index / 1}/x"/></component>"#,
     );
-    assert!(renamed(&chosen, &[], "begin").unwrap_err().contains("names it along with others"));
+    assert!(renamed(&chosen, &[], "begin").unwrap_err().contains("names this replica together with others"));
     let worlds = composite(
         r#"<component name="W1|"/><component name="W2"/><component name="R${index}" s:count="2"><reference name="w" target="W${index}"/></component>"#,
     );
-    assert!(renamed(&worlds, &[], "World1").unwrap_err().contains("`W${index}` names it along with others"));
+    assert!(
+        renamed(&worlds, &[], "World1").unwrap_err().contains("`W${index}` names this replica together with others")
+    );
 }
 
 #[test]

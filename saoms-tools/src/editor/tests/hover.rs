@@ -67,8 +67,8 @@ fn everything_is_explained() {
     assert_eq!(said("<!-- comp|onent -->"), None);
     // Of what is not known, what it should be.
     says(&format!("{robot}<property name=\"non|sense\"/>"), "nonsense", &["**name**", "property"]);
-    says("<component name=\"R\" s:count=\"1|2\"/>", "12", &["How many replicas"]);
-    says("<wire source=\"nowhere\" replace=\"tr|ue\"/>", "true", &["takes the place"]);
+    says("<component name=\"R\" s:count=\"1|2\"/>", "12", &["The number of replicas"]);
+    says("<wire source=\"nowhere\" replace=\"tr|ue\"/>", "true", &["replaces the targets"]);
 }
 
 /// Every element that can stand in one of a kind, with the path of elements around it.

@@ -105,7 +105,7 @@ fn other_names_of_a_composite_are_renamed_too() {
             r#"<component name="Cart${index:03}" s:count="2"/><wire source="Cart001/r" target="Cart${index:03}"/>"#
         )]
     );
-    assert!(renamed(&replicas, &[], "Cart").unwrap_err().contains("stands for replicas"));
+    assert!(renamed(&replicas, &[], "Cart").unwrap_err().contains("names replicas"));
     // `R001` would be `Cart01`, or another one.
     let other = renamed(&replicas, &[], "Cart${index:02}").unwrap_err();
     assert!(other.contains("`R001` is one of the replicas"), "{other}");
@@ -122,7 +122,7 @@ fn what_names_all_replicas_leads_to_them_and_is_renamed() {
     assert_eq!(defined(&marked, &[]), ["fleet.composite:2:18 R${index:03}"]);
     let expected = text("Cart${index}", "Cart*", "B");
     assert_eq!(renamed(&marked, &[], "Cart${index}").unwrap(), [expected], "no single replica is named");
-    assert!(renamed(&marked, &[], "Cart").unwrap_err().contains("stands for replicas"));
+    assert!(renamed(&marked, &[], "Cart").unwrap_err().contains("names replicas"));
     let two = text("R${row}x${index}", "R*x*", "R1x22").replacen("R*x*", "R*x|*", 1);
     assert_eq!(defined(&two, &[]), ["fleet.composite:2:18 R${row}x${index}"]);
     let refused = renamed(&two, &[], "C${row}x${index}").unwrap_err();

@@ -30,7 +30,7 @@ fn one_mistake_in_replicas_of_composites_is_told_once() {
     "#]]
     .assert_eq(&halls(&format!("{}{wired}", right.replace("hall", "hal")), must));
     expect![[r#"
-        3:18-30 error S2025: component `Hall1` has to give the property `hall` of its composite a value (index 1, and in 2 more)
+        3:18-30 error S2025: component `Hall1` must give a value to the property `hall` of its composite (index 1, and in 2 more)
           hall:2:17-21 declared here, without a value
           help: add `<property name="hall">...</property>`
     "#]].assert_eq(&halls(wired, must));
@@ -74,7 +74,7 @@ fn the_index_is_meant_by_what_looks_like_it() {
     // Not where nothing is counted.
     expect![[r#"
         3:25-31 error S3007: property `number`: `$index` is not a whole number: expected a whole number from 1 to 99
-          help: `${index}` is for replicas: give the component a `saoms:count`
+          help: `${index}` is only for replicas: give the component a `saoms:count`
           help: `number`: The number of the robot
     "#]]
     .assert_eq(&of(&robot("R", "<property name=\"number\">$index</property>")));
@@ -90,7 +90,7 @@ fn the_index_is_meant_by_what_looks_like_it() {
 fn no_component_is_told_to_name_itself() {
     let reference = "<reference name=\"gps\" target=\"Robot\"/>";
     expect![[r#"
-        3:18-24 error S3006: component `Robots` lacks the property `number`
+        3:18-24 error S3006: component `Robots` needs the property `number`
           help: add `<property name="number">...</property>`: a whole number from 1 to 99
         4:31-36 error S2011: there is no component `Robot`
           help: the components are `G`
@@ -105,7 +105,7 @@ fn a_source_that_leads_to_nothing_says_what_gives_it_a_value() {
         of(&format!("{property}\n{}", robot("R", &number)))
     };
     expect![[r#"
-        4:33-35 error S3006: the property `number` has no value: its source has none
+        4:33-35 error S3006: the property `number` has no value: its source has no value
           2:17-18 declared here, without a value
           help: write it in the file, give `--set n=...`, or set `N` in the environment
     "#]]
@@ -158,11 +158,11 @@ fn a_type_of_xml_schema_without_its_prefix_is_told() {
     };
     let schema = "xmlns:xs=\"http://www.w3.org/2001/XMLSchema\"";
     expect![[r#"
-        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+        2:27-30 warning S2050: the type `int` without a prefix is not a type of XML Schema
           fix: replace `int` with `xs:int` [2:27-30 "xs:int"]
-        3:27-31 warning S2050: the type `bool` without a prefix is none of XML Schema
+        3:27-31 warning S2050: the type `bool` without a prefix is not a type of XML Schema
           fix: replace `bool` with `xs:boolean` [3:27-31 "xs:boolean"]
-        4:27-33 warning S2050: the type `intger` without a prefix is none of XML Schema
+        4:27-33 warning S2050: the type `intger` without a prefix is not a type of XML Schema
           fix: replace `intger` with `xs:integer` [4:27-33 "xs:integer"]
         7:63-83 warning S4006: `password` is given without `user` (in `R1`, index 1)
           help: give both, or neither
@@ -170,16 +170,16 @@ fn a_type_of_xml_schema_without_its_prefix_is_told() {
     "#]]
     .assert_eq(&with(&["int", "bool", "intger", "Customer"], schema));
     expect![[r#"
-        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+        2:27-30 warning S2050: the type `int` without a prefix is not a type of XML Schema
           fix: replace `int` with `xsd:int`, and declare `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` in the root element [2:27-30 "xsd:int"] [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
-        3:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+        3:27-30 warning S2050: the type `int` without a prefix is not a type of XML Schema
           fix: replace `int` with `xsd:int` [3:27-30 "xsd:int"]
         5:63-73 warning S4006: `password` is given without `user` (in `R1`, index 1)
           help: give both, or neither
         R1 (example.Robot) ID=Text("R1") number=Integer(1) gps->
     "#]].assert_eq(&with(&["int", "int"], ""));
     expect![[r#"
-        2:27-30 warning S2050: the type `int` without a prefix is none of XML Schema
+        2:27-30 warning S2050: the type `int` without a prefix is not a type of XML Schema
           fix: replace `int` with `xs:int`, and declare `xmlns:xs="http://www.w3.org/2001/XMLSchema"` in the root element [2:27-30 "xs:int"] [1:11-11 " xmlns:xs=\"http://www.w3.org/2001/XMLSchema\""]
         4:63-68 warning S4006: `password` is given without `user` (in `R1`, index 1)
           help: give both, or neither
@@ -210,7 +210,7 @@ fn one_value_that_is_wrong_for_two_properties_is_told_once() {
     );
     let schema = "xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\"";
     expect![[r#"
-        2:35-39 error S2042: the property `k` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
+        2:35-39 error S2042: the property `k` has the type `xsd:int`: found `many`, expected a whole number of 32 bits
           inner:2:26-33 the type
           help: change the value, or the type
         2:35-39 warning S4006: `password` is given without `user`
@@ -224,15 +224,15 @@ fn what_comes_from_outside_is_told_where_it_was_given() {
     let inside = "<property name=\"n\" type=\"xsd:int\" xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\">4</property>";
     let fleet = crate::check::support::fleet(&format!("{inside}\n{GPS}"));
     expect![[r#"
-        --set:1:3-3 error S2042: the property `n` is of the type `xsd:int`: found nothing, expected a whole number of 32 bits
+        --set:1:3-3 error S2042: the property `n` has the type `xsd:int`: found nothing, expected a whole number of 32 bits
           2:26-33 the type
           help: change the value, or the type
-        2:17-18 warning S2026: the property `n` of the composite is used by no component
-          help: a component takes its value with `source="$n"`
+        2:17-18 warning S2026: no component uses the property `n` of the composite
+          help: remove it, or use its value in a component with `source="$n"`
     "#]].assert_eq(&faults_of(&[&fleet], &["n="]));
     // What cannot be read may declare it.
     expect![[r#"
-        1:2-11 error S0103: the start tag of `composite` is never closed
+        1:2-11 error S0103: the start tag of `composite` has no `>`
           1:11-11 the file ends here
     "#]]
     .assert_eq(&faults_of(&["<composite"], &["n=1"]));
@@ -261,9 +261,9 @@ fn a_property_that_a_component_does_not_give_says_which() {
         outcome(&[&part("fleet", "", &component), &unit], &[])
     };
     expect![[r#"
-        unit:4:33-37 error S3006: the property `number` has no value: its source has none
+        unit:4:33-37 error S3006: the property `number` has no value: its source has no value
           unit:2:17-20 declared here, without a value
-          2:18-19 gives it none
+          2:18-19 this component gives no value
           help: add `<property name="who">...</property>` to the component `U`, which the composite implements
     "#]]
     .assert_eq(&with(""));
@@ -309,8 +309,8 @@ fn an_expression_that_nobody_reads_is_told() {
     .assert_eq(&with("${index}"));
     // It may mean something to the class.
     expect![[r#"
-        2:17-18 warning S2026: the property `n` of the composite is used by no component
-          help: a component takes its value with `source="$n"`
+        2:17-18 warning S2026: no component uses the property `n` of the composite
+          help: remove it, or use its value in a component with `source="$n"`
         R (example.Reader) title=Text("${other}")
     "#]]
     .assert_eq(&with("${other}"));

@@ -36,13 +36,15 @@ fn the_nearest_class_comes_first() {
     expect!["replace `MessageBroker` with `unibg.robotics.tca.MessageBrokerImpl`"].assert_eq(&fix("MessageBroker"));
     expect![[r#"
         2:49-66 error S3001: there is no class `example.BatteryMS`
-          help: it is a loop: give it to a component that has loops, by `<saoms:loop name="..." class="example.BatteryMS"/>` in it
-    "#]].assert_eq(&of(&component("example.BatteryMS")));
+          help: it is a loop: write `<saoms:loop name="..." class="example.BatteryMS"/>` in a component that has loops
+    "#]]
+    .assert_eq(&of(&component("example.BatteryMS")));
     let looping = "<component name=\"C\"><implementation.java class=\"example.Cart\"/><property name=\"ID\">C</property><property name=\"period\">1</property>\n<saoms:loop name=\"X\" class=\"example.Gps\"/></component>";
     expect![[r#"
         3:29-40 error S3001: there is no loop class `example.Gps`
-          help: it is a class of components: those are implemented by it, with `<implementation.rust class="example.Gps"/>`
-    "#]].assert_eq(&of(looping));
+          help: it is a component class: a component uses it with `<implementation.rust class="example.Gps"/>`
+    "#]]
+    .assert_eq(&of(looping));
 }
 
 #[test]
@@ -52,10 +54,10 @@ fn a_name_of_the_wrong_form_is_told_once() {
         robot("R 1", "<property name=\"num ber\">1</property><reference name=\"g ps\"/>")
     );
     expect![[r#"
-        2:17-23 error S1011: `awa ke` cannot be a name: it holds ` `
-          help: names are used in targets as `component/service`, and in lists between blanks
-        3:18-21 error S1011: `R 1` cannot be a name: it holds ` `
-          help: names are used in targets as `component/service`, and in lists between blanks
+        2:17-23 error S1011: `awa ke` cannot be a name: it contains ` `
+          help: remove it from the name: targets use `/` in `component/service`, and lists separate names with blanks
+        3:18-21 error S1011: `R 1` cannot be a name: it contains ` `
+          help: remove it from the name: targets use `/` in `component/service`, and lists separate names with blanks
         4:17-24 error S3004: class `example.Robot` has no property `num ber`
           fix: replace `num ber` with `number` [4:17-24 "number"]
         4:55-59 error S2006: class `example.Robot` has no reference `g ps`
@@ -73,32 +75,32 @@ fn replicas_that_lack_their_index_get_it() {
     };
     expect![[r#"
         3:21-32 error S3013: components `R1` and `R2` have the same `ID` `R{index:02}` (index 2, and in 1 more)
-          help: every robot needs its own
+          help: give every robot its own `ID`
           fix: replace `R{index:02}` with `R${index:02}` [3:21-32 "R${index:02}"]
     "#]]
     .assert_eq(&replicas("R${index}", "R{index:02}", "${index}"));
     expect![[r#"
-        2:18-26 error S2046: all replicas would be called `R{index}`
+        2:18-26 error S2046: all replicas would have the name `R{index}`
           fix: replace `R{index}` with `R${index}` [2:18-26 "R${index}"] [3:21-29 "R${index}"]
     "#]]
     .assert_eq(&replicas("R{index}", "R{index}", "${index}"));
     expect![[r#"
-        2:18-27 error S2046: all replicas would be called `R$(index)`
+        2:18-27 error S2046: all replicas would have the name `R$(index)`
           fix: replace `R$(index)` with `R${index}` [2:18-27 "R${index}"]
     "#]]
     .assert_eq(&replicas("R$(index)", "R${index}", "7"));
     expect![[r#"
-        2:18-19 error S2046: all replicas would be called `R`
+        2:18-19 error S2046: all replicas would have the name `R`
           fix: replace `R` with `R${index}` [2:18-19 "R${index}"]
     "#]]
     .assert_eq(&replicas("R", "S", "${index}"));
     expect![[r#"
-        2:18-27 error S2046: `R${index}` is a name of replicas, and nothing says how many there are
-          help: add `saoms:count="..."`
+        2:18-27 error S2046: `R${index}` is a name for replicas, but the number of replicas is missing
+          help: add `saoms:count="..."` to the component to the component
     "#]].assert_eq(&of("<component name=\"R${index}\"><implementation.java class=\"example.Robot\"/>\n<property name=\"ID\">R${index}</property><property name=\"period\">1</property><property name=\"number\">${index}</property></component>"));
     expect![[r#"
         2:31-36 error S2045: the composite has no property `index`
-          help: `index` is what replicas are counted by: give the component a `saoms:count`
+          help: give the component a `saoms:count`: `index` is the number of a replica
     "#]]
     .assert_eq(&of(
         "<component name=\"G\" saoms:if=\"index &lt; 3\"><implementation.java class=\"example.Gps\"/></component>",
@@ -116,25 +118,25 @@ fn a_count_that_is_none_is_an_error() {
     };
     expect![[r#"
         1:127-138 error S1013: unknown namespace `urn:saoms:0`: did you mean `urn:saoms:1`?
-          help: `s:count` in it says how many replicas there are, and they cannot be made without
+          help: its attribute `s:count` gives the number of replicas, which are missing without it
           fix: replace it with `urn:saoms:1` [1:127-138 "urn:saoms:1"]
     "#]]
     .assert_eq(&robots("xmlns:s='urn:saoms:0'", "s:count='3'", ""));
     expect![[r#"
-        2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
-          help: add `saoms:count="..."`
+        2:18-27 error S2046: `G${index}` is a name for replicas, but the number of replicas is missing
+          help: add `saoms:count="..."` to the component to the component
     "#]]
     .assert_eq(&robots("xmlns:s='urn:other'", "s:count='3'", ""));
     expect![[r#"
         2:29-34 error S1007: `component` has no attribute `count`
-          help: it is an attribute of SAOMS, of the namespace `urn:saoms:1`
+          help: write it with a prefix of the namespace `urn:saoms:1`: it is an attribute of SAOMS
           fix: replace `count` with `saoms:count` [1:11-11 " xmlns:saoms=\"urn:saoms:1\""] [2:29-34 "saoms:count"]
     "#]]
     .assert_eq(&robots("", "count='3'", ""));
     let allowed = "<s:severity xmlns:s='urn:saoms:1' code='S1007' level='allow' reason='tools put their own there'/>";
     expect![[r#"
-        2:18-27 error S2046: `G${index}` is a name of replicas, and nothing says how many there are
-          help: add `saoms:count="..."`
+        2:18-27 error S2046: `G${index}` is a name for replicas, but the number of replicas is missing
+          help: add `saoms:count="..."` to the component to the component
     "#]]
     .assert_eq(&robots("", "count='3'", allowed));
 }
@@ -200,11 +202,11 @@ fn a_value_beside_a_source_counts_for_nothing() {
     };
     expect![[r#"
         4:44-45 warning S3012: the property `number` is given a value beside its `source`
-          4:33-35 this counts
-          help: this value is ignored: keep one of them
+          4:33-35 this `source` is used
+          help: keep one of the two: the value is ignored
         5:36-37 warning S3012: the property `delay` is given a value beside its `source`
-          5:32-34 this counts
-          help: this value is ignored: keep one of them
+          5:32-34 this `source` is used
+          help: keep one of the two: the value is ignored
         R (example.Robot) ID=Text("R") number=Integer(5) awake=Boolean(true) gps->
     "#]]
     .assert_eq(&of(&inside("5")));
@@ -221,13 +223,13 @@ fn a_table_between_other_separators_is_told_once() {
 <property name=\"ID\">R${index}</property><property name=\"period\">1</property><property name=\"number\">${index}</property></component>";
     let with = |table: &str| checked(inside, &[("r.csv", table.as_bytes())], 1 << 20).1;
     expect![[r#"
-        r.csv:1:6-7 error S2047: the values of this table stand between `;`, and have to stand between commas
-          help: save it as comma-separated values; a value that contains a comma is written between two `"`
+        r.csv:1:6-7 error S2047: the values of this table are separated by `;`, expected commas
+          help: save it as comma-separated values; write a value that contains a comma between two `"`
     "#]]
     .assert_eq(&with("index;delay;awake\n1;60;\n2;;true\n"));
     expect![[r#"
-        r.csv:1:7-8 error S2047: the values of this table stand between tabs, and have to stand between commas
-          help: save it as comma-separated values; a value that contains a comma is written between two `"`
+        r.csv:1:7-8 error S2047: the values of this table are separated by tabs, expected commas
+          help: save it as comma-separated values; write a value that contains a comma between two `"`
     "#]]
     .assert_eq(&with("\u{feff}\"name\"\tdelay\nR1\t60\n"));
     assert_eq!(with("index\n1\n"), "");
@@ -239,12 +241,12 @@ fn quotes_of_word_processors_are_told() {
         faults_of(&[&fleet(&format!("{component}<implementation.java class=\"example.Gps\"/></component>"))], &[])
     };
     expect![[r#"
-        2:17-20 error S0105: `“` is not a quote of XML: values are written between two `"`
+        2:17-20 error S0105: `“` is not a quote of XML: write values between two `"`
           fix: replace it with `"G"` [2:17-20 "\"G\""]
     "#]]
     .assert_eq(&with("<component name=“G”>"));
     expect![[r#"
-        2:17-20 error S0105: `„` is not a quote of XML: values are written between two `"`
+        2:17-20 error S0105: `„` is not a quote of XML: write values between two `"`
           fix: replace it with `"G"` [2:17-20 "\"G\""]
     "#]]
     .assert_eq(&with("<component name=„G“>"));
@@ -255,7 +257,7 @@ fn quotes_of_word_processors_are_told() {
     "#]]
     .assert_eq(&with("<component name=\"G”>"));
     expect![[r#"
-        2:17-20 error S0105: `“` is not a quote of XML: values are written between two `"`
+        2:17-20 error S0105: `“` is not a quote of XML: write values between two `"`
           fix: replace it with `"G"` [2:17-20 "\"G\""]
     "#]]
     .assert_eq(&with("<component name=“G\" autowire=\"true\">"));
@@ -304,7 +306,7 @@ fn loops_are_taken_as_given_with_the_classes() {
     };
     expect![[r#"
         3:29-40 error S3001: there is no loop class `other.Saver`
-          help: looked among the 12 loops of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 12 loops of this program and its plugins; `--plugin PATH` adds the loops of a plugin
           fix: replace `other.Saver` with `example.BatterySaver` [3:29-40 "example.BatterySaver"]
         3:127-133 error S4501: component `C` has no loop `PathMs`
           fix: replace `PathMs` with `PathMS` [3:127-133 "PathMS"]
@@ -332,7 +334,7 @@ fn words_of_other_languages_are_told_once() {
     .assert_eq(&with(class, "<implementation class=\"example.Robot\"/>"));
     expect![[r#"
         3:42-55 error S1012: unexpected text in `implementation.java`: it contains elements only
-          help: the class is named by the attribute `class`
+          help: name the class with the attribute `class`
     "#]]
     .assert_eq(&with(class, "<implementation.java>example.Robot</implementation.java>"));
     expect![[r#"
@@ -346,13 +348,13 @@ fn words_of_other_languages_are_told_once() {
     "#]]
     .assert_eq(&with("<property name=\"period\">1</property>", "<param name=\"period\">1</param>"));
     expect![[r#"
-        4:52-55 error S2005: `gps` of class `example.Robot` is a reference, and no service
+        4:52-55 error S2005: `gps` of class `example.Robot` is a reference, not a service
           fix: replace `service` with `reference` [4:38-45 "reference"]
     "#]]
     .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<service name=\"gps\" target=\"G\"/>"));
     expect![[r#"
         4:59-60 error S1012: unexpected text in `reference`: it contains elements only
-          help: the component that it calls is named by the attribute `target`
+          help: name the component that it calls with the attribute `target`
     "#]]
     .assert_eq(&with("<reference name=\"gps\" target=\"G\"/>", "<reference name=\"gps\">G</reference>"));
     expect![[r#"
@@ -363,7 +365,7 @@ fn words_of_other_languages_are_told_once() {
     .assert_eq(&with("target=\"G\"", "target=\"G/whereabouts\""));
     expect![[r#"
         4:92-96 error S1007: `include` has no attribute `file`
-          help: a composite is named by its `name`, with the prefix of its `targetNamespace`, and not by its file
+          help: write the composite's `name` with the prefix of its `targetNamespace`, not the name of its file
     "#]]
     .assert_eq(&with("</component>", "</component><include file=\"part.composite\"/>"));
     expect![[r#"
@@ -385,7 +387,7 @@ fn folders_stand_before_slashes() {
     let found = checked(&inside, &[("sub/n.txt", b"1")], 1 << 20).1;
     expect![[r#"
         3:31-40 error S0001: there is no such file
-          help: folders stand before `/`: write `sub/n.txt`
+          help: separate folders with `/`: write `sub/n.txt`
     "#]]
     .assert_eq(&found);
 }

@@ -121,64 +121,64 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
     expect![[r#"
         3:26-30 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:26-30 "index"]
-        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is not wired to a service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_value);
     let by_source = halls("", "<property name=\"count\" source=\"$n${indx}\"/>");
     expect![[r#"
         3:36-40 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:36-40 "index"]
-        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is not wired to a service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_source);
     let by_name = halls("", "<property name=\"coun${indx}\">1</property>");
     expect![[r#"
         3:23-27 error S2045: the composite has no property `indx` (in `Hall1`, index 1, and in 1 more)
           fix: replace `indx` with `index` [3:23-27 "index"]
-        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is not wired to a service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_name);
     let by_table = halls("saoms:overrides=\"none.csv\"", "");
     expect![[r#"
         2:65-73 error S0003: the file was not read
-        hall:3:18-27 error S2018: reference `gps` of component `C1` is wired to no service (in `Hall1/C1`, index 1)
+        hall:3:18-27 error S2018: reference `gps` of component `C1` is not wired to a service (in `Hall1/C1`, index 1)
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_table);
 }
 
@@ -196,24 +196,24 @@ fn board(properties: &str) -> String {
 fn a_wrong_value_hides_nothing_that_the_constructor_finds_in_others() {
     expect![[r#"
         3:31-36 error S3014: component `B`: property `marks`: `300,1` is beside the board
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:51-55 error S3014: component `B`: property `marks`: `1,20` is beside the board
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:70-71 error S3014: component `B`: property `marks`: `x` is no mark
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:113-117 error S3014: component `B`: property `label`: it is too dark
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         4:25-29 error S3007: property `period`: `10Hz` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
           fix: replace `10Hz` with `100ms` [4:25-29 "100ms"]
     "#]].assert_eq(&board("<property name=\"period\">10Hz</property>"));
     expect![[r#"
         3:31-36 error S3014: component `B`: property `marks`: `300,1` is beside the board
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:70-71 error S3014: component `B`: property `marks`: `x` is no mark
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:113-117 error S3014: component `B`: property `label`: it is too dark
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         4:53-59 error S3004: class `example.Board` has no property `heigth`
           fix: replace `heigth` with `height` [4:53-59 "height"]
         4:90-96 error S3004: class `example.Board` has no property `heigth`
@@ -223,13 +223,13 @@ fn a_wrong_value_hides_nothing_that_the_constructor_finds_in_others() {
     ));
     expect![[r#"
         3:31-36 error S3014: component `B`: property `marks`: `300,1` is beside the board
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:51-55 error S3014: component `B`: property `marks`: `1,20` is beside the board
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:70-71 error S3014: component `B`: property `marks`: `x` is no mark
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         3:113-117 error S3014: component `B`: property `label`: it is too dark
-          help: `saoms components example.Board` says what its properties mean
+          help: `saoms components example.Board` describes its properties
         4:60-62 error S3007: property `width`: `3O` is not a whole number: expected a whole number from 1 to 100
           help: the default is `8`
     "#]]
@@ -237,7 +237,7 @@ fn a_wrong_value_hides_nothing_that_the_constructor_finds_in_others() {
     // A label may say anything.
     expect![[r#"
         4:53-58 error S3005: the property `label` is given twice
-          3:106-111 first here
+          3:106-111 first given here
           help: keep one of them
     "#]]
     .assert_eq(&board("<property name=\"period\">1</property><property name=\"label\" value=\"bright\"/>"));
@@ -250,7 +250,7 @@ fn a_file_that_is_given_twice_is_told_once() {
     );
     expect![[r#"
         3:49-63 error S3001: there is no class `example.Robott`
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [3:49-63 "example.Robot"]
         more.composite:1:99-104 error S2001: there are two composites `fleet` in one namespace
           1:99-104 the first
@@ -260,7 +260,7 @@ fn a_file_that_is_given_twice_is_told_once() {
     let other = text.replace("\"G\"", "\"H\"");
     expect![[r#"
         3:49-63 error S3001: there is no class `example.Robott`
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [3:49-63 "example.Robot"]
         more.composite:1:99-104 error S2001: there are two composites `fleet` in one namespace
           1:99-104 the first
@@ -269,7 +269,7 @@ fn a_file_that_is_given_twice_is_told_once() {
           3:18-19 the first
           fix: remove the second: both are the same, word for word [more.composite:3:1-78 ""]
         more.composite:3:49-63 error S3001: there is no class `example.Robott`
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [more.composite:3:49-63 "example.Robot"]
     "#]].assert_eq(&faults_of(&[&text, &other], &[]));
 }
@@ -320,8 +320,8 @@ fn a_list_of_topics_that_components_share_is_told_what_nobody_uses() {
     let own = inside("<property name=\"topicRename\">TRACKS,a::ORDERS,b</property>")
         .replace("TRACKS,a::ORDERS,b::ORDRS,c", "x");
     expect![[r#"
-        2:17-23 warning S2026: the property `topics` of the composite is used by no component
-          help: a component takes its value with `source="$topics"`
+        2:17-23 warning S2026: no component uses the property `topics` of the composite
+          help: remove it, or use its value in a component with `source="$topics"`
         3:174-180 warning S4003: class `example.Tracker` uses no topic `ORDERS`: nothing is renamed
           help: remove the pair: all topics there have new names already
         4:167-173 warning S4003: class `example.Dispatcher` uses no topic `TRACKS`: nothing is renamed
@@ -350,49 +350,49 @@ fn slips_that_many_make_have_hints() {
         ["10Hz", "3hz", "2 sec", "5 minutes", "$tick", "$(arg tick)", "${100 + index}", "0.5.1 sec", "0Hz", "$ x"];
     let all: Vec<String> = all.iter().map(|period| format!("{period} => {}", found(period, "1"))).collect();
     expect![[r#"
-        10Hz => help: a component takes its value with `source="$tick"`
+        10Hz => help: remove it, or use its value in a component with `source="$tick"`
         fix: replace `10Hz` with `100ms` [2:155-159 "100ms"]
 
-        3hz => help: a component takes its value with `source="$tick"`
+        3hz => help: remove it, or use its value in a component with `source="$tick"`
         fix: replace `3hz` with `333333us` [2:155-158 "333333us"]
 
-        2 sec => help: a component takes its value with `source="$tick"`
+        2 sec => help: remove it, or use its value in a component with `source="$tick"`
         fix: replace `2 sec` with `2s` [2:155-160 "2s"]
 
-        5 minutes => help: a component takes its value with `source="$tick"`
+        5 minutes => help: remove it, or use its value in a component with `source="$tick"`
         fix: replace `5 minutes` with `5min` [2:155-164 "5min"]
 
-        $tick => help: a component takes its value with `source="$tick"`
+        $tick => help: remove it, or use its value in a component with `source="$tick"`
         help: write `source="$tick"` for the value of the property `tick` of the composite
 
-        $(arg tick) => help: a component takes its value with `source="$tick"`
+        $(arg tick) => help: remove it, or use its value in a component with `source="$tick"`
         help: write `source="$tick"` for the value of the property `tick` of the composite
 
-        ${100 + index} => help: `${...}` stands for a number in components with a `saoms:count` alone
+        ${100 + index} => help: `${...}` is evaluated only in components with a `saoms:count`
 
-        0.5.1 sec => help: a component takes its value with `source="$tick"`
+        0.5.1 sec => help: remove it, or use its value in a component with `source="$tick"`
 
-        0Hz => help: a component takes its value with `source="$tick"`
+        0Hz => help: remove it, or use its value in a component with `source="$tick"`
 
-        $ x => help: a component takes its value with `source="$tick"`
+        $ x => help: remove it, or use its value in a component with `source="$tick"`
         help: write `source="$x"` for the value of the property `x` of the composite
     "#]]
     .assert_eq(&all.join("\n"));
     expect![[r#"
-        4:15-25 error S2016: this wire goes backwards: `A/position` offers a service, and `N/wheels` is a reference
+        4:15-25 error S2016: this wire is reversed: `A/position` offers a service, and `N/wheels` is a reference
           fix: swap `source` and `target` [4:15-25 "N/wheels"] [4:35-43 "A/position"]
         4:17-25 error S2015: service `position` of component `A` has the interface `example.Positions`, and the reference needs `example.Wheels`
           help: it offers `position` (example.Positions)
         5:42-46 error S2045: write the expression here without `${` and `}`
           fix: replace `${3}` with `3` [5:42-46 "3"]
         6:22-43 error S1004: SCA 1.1 has no element `implementation.python`
-          help: an extension is written in the namespace of the one who defined it
+          help: if it is an extension, write it with a prefix of its own namespace
           help: `component` can contain `implementation.*`, `property`, `service`, `reference`, `requires`, `policySetAttachment`, `documentation`, `extensions`
         7:22-40 error S1004: SCA 1.1 has no element `implementation.jva`
           fix: replace `implementation.jva` with `implementation.java` [7:22-40 "implementation.java"]
         8:53-65 error S2031: there is no composite `in.composite` in the namespace `urn:t`
-          help: it is the `name` in a composite that is meant, with the prefix of its `targetNamespace`, and not its file
-          help: give the file of that composite, too, beside this one
+          help: write the composite's `name` with the prefix of its `targetNamespace`, not the name of its file
+          help: name the file of that composite in the command as well
     "#]].assert_eq(&of(
         "<component name=\"A\"><implementation.java class=\"example.Gps\"/></component>
 <component name=\"N\"><implementation.java class=\"example.Navigator\"/></component>

@@ -60,7 +60,7 @@ fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
     expect![[r#"
         3:85-86 warning S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&warning.told);
     let error = of(&clocks("", &severity("S4001", "error")), &[]);
@@ -69,7 +69,7 @@ fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
         3:85-86 error S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
           4:23-28 set to `error`: because
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&error.told);
     let allowed = of(&clocks(&severity("S4001", "allow"), &severity("S4001", "error")), &["S4001=error"]);
@@ -80,7 +80,7 @@ fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
     expect![[r#"
         3:85-86 error S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&denied.told);
     assert_eq!(of(&clocks("", ""), &["S4001=allow"]).told, "");
@@ -94,14 +94,14 @@ fn a_severity_is_set_once_at_a_place() {
     assert!(!within.runs && !options.runs && !of(&clocks("", &both), &[]).runs);
     expect![[r#"
         4:23-28 error S2048: the severity of S4001 is set to `allow` and to `error`
-          3:155-160 first here
+          3:155-160 first set here
           help: keep one of them
         --severity:1:1-6 error S2048: the severity of S4001 is set to `note` and to `error`
-          --severity:1:1-6 first here
+          --severity:1:1-6 first set here
           help: keep one of them
         3:85-86 note S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&(within.told + &options.told));
     // What is inside another element may say something else.
@@ -142,7 +142,7 @@ fn options_have_reasons_too() {
         3:85-86 note S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
           --severity:1:1-6 set to `note`: two faces
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&of(&clocks("", ""), &["S4001=note:two faces"]).told);
 }
@@ -157,7 +157,7 @@ fn an_option_that_a_composite_overrules_says_so() {
         3:85-86 error S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
           4:23-28 set to `error`: because
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&of(&error, &["S4001=allow"]).told);
     assert!(!of(&error, &["S4001=error"]).told.contains("S2049"));
@@ -202,7 +202,7 @@ fn errors_that_make_a_fleet_impossible_stay() {
     expect![[r#"
         2:110-121 error S3001: there is no class `example.Gsp`
           2:146-151 not set to `warning`
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           help: its severity cannot be lowered: nothing can run with it
           fix: replace `example.Gsp` with `example.Gps` [2:110-121 "example.Gps"]
     "#]]
@@ -219,7 +219,7 @@ fn errors_that_make_a_fleet_impossible_stay() {
         3:88-89 warning S3013: components `A` and `B` have the same `ID` `R`
           2:88-89 the first
           4:23-28 set to `warning`: because
-          help: every robot needs its own
+          help: give every robot its own `ID`
     "#]]
     .assert_eq(&found.told);
 }
@@ -334,11 +334,11 @@ fn an_element_of_saoms_that_stands_elsewhere_says_where_it_can() {
     let looping = "<saoms:loop name=\"x\"/><saoms:interface.rust interface=\"y\"/>";
     expect![[r#"
         2:21-35 error S1005: `saoms:severity` is not allowed in `property`
-          help: it can stand in `composite`, `component`, `service`, `reference`, `wire` and `include`
+          help: it is allowed in `composite`, `component`, `service`, `reference`, `wire` and `include`
         2:93-103 error S1005: `saoms:loop` is not allowed in `composite`
-          help: it can stand in `component`
+          help: it is allowed in `component`
         2:115-135 error S1005: `saoms:interface.rust` is not allowed in `composite`
-          help: it can stand in `service` and `reference`
+          help: it is allowed in `service` and `reference`
     "#]]
     .assert_eq(&of(&format!("<property name=\"p\">{inside}</property>{looping}"), &[]).told);
 }

@@ -36,22 +36,22 @@ fn conditions_take_away_what_is_checked_all_the_same() {
     "#]]
     .assert_eq(&of(inside, &["site=south"]));
     expect![[r#"
-        3:18-19 error S3006: component `A` lacks the property `period`
+        3:18-19 error S3006: component `A` needs the property `period`
           help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
         3:148-151 error S3008: property `number`: `100` is out of range: expected a whole number from 1 to 99
           help: `number`: The number of the robot
         3:178-182 error S3004: class `example.Robot` has no property `sped`
           fix: replace `sped` with `speed` [3:178-182 "speed"]
         4:31-35 error S2045: found the text `north`, expected a condition
-          2:23-28 `site` is this
+          2:23-28 the value of `site`
           help: compare it with something, as in `robots > 10`
         5:31-40 error S2045: the text `north` cannot be compared with the number 3
-          2:23-28 `site` is this
-          help: texts are written between two `'`, numbers, `true` and `false` without
+          2:23-28 the value of `site`
+          help: write texts between two `'`; numbers, `true` and `false` have no quotes
         6:35-36 error S2045: there is no `=`
           fix: replace `=` with `==` [6:35-36 "=="]
         7:31-36 error S2045: the composite has no property `index`
-          help: `index` is what replicas are counted by: give the component a `saoms:count`
+          help: give the component a `saoms:count`: `index` is the number of a replica
         8:21-32 error S1011: the attribute `saoms:if` is empty
     "#]].assert_eq(&of(
         r#"<property name="site">north</property>
@@ -64,9 +64,9 @@ fn conditions_take_away_what_is_checked_all_the_same() {
         &[],
     ));
     expect![[r#"
-        4:95-96 error S2011: the component `A` is not there
-          3:31-46 this is false
-          help: give what names it the same condition
+        4:95-96 error S2011: the component `A` is excluded by its condition
+          3:31-46 this condition is false
+          help: add the same condition to the element that names it
         6:15-26 error S2010: `B/other/x/y` has the wrong form
           help: write `component` or `component/name`
     "#]]
@@ -83,14 +83,14 @@ fn conditions_take_away_what_is_checked_all_the_same() {
 #[test]
 fn a_text_without_quotes_is_told_as_one() {
     expect![[r#"
-        --set:1:7-10 error S2042: the property `night` is of the type `xsd:boolean`: found `off`, expected `true` or `false`
+        --set:1:7-10 error S2042: the property `night` has the type `xsd:boolean`: found `off`, expected `true` or `false`
           2:68-79 the type
           fix: replace `off` with `false` [--set:1:7-10 "false"]
-        2:126-131 error S2042: the property `night` is of the type `xsd:boolean`: found `flase`, expected `true` or `false`
+        2:126-131 error S2042: the property `night` has the type `xsd:boolean`: found `flase`, expected `true` or `false`
           2:68-79 the type
           fix: replace `flase` with `false` [2:126-131 "false"]
         3:39-44 error S2045: the composite has no property `south`
-          help: a text is written between two `'`, as `'south'`; its properties are `night` and `site`
+          help: write a text between two `'`, as `'south'`; its properties are `night` and `site`
         4:39-44 error S2045: the composite has no property `sight`
           fix: replace `sight` with `night` [4:39-44 "night"]
     "#]].assert_eq(&of(
@@ -120,7 +120,7 @@ fn includes_and_composites_can_be_absent() {
     .assert_eq(&outcome(&[&fleet(inside), &more], &[]));
     expect![[r#"
         more:3:85-86 error S3013: components `N` and `In/N` have the same `ID` `N`
-          help: every robot needs its own
+          help: give every robot its own `ID`
           help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
     "#]]
     .assert_eq(&outcome(
@@ -224,9 +224,9 @@ fn what_is_promoted_and_absent_is_told_with_what_can_be_done() {
 <component name="A" saoms:if="site == 'south'"><implementation.java class="example.Gps"/></component>"#,
     );
     expect![[r#"
-        2:67-68 error S2011: the component `A` is not there
-          3:31-46 this is false
-          help: what a composite promotes has no condition: put both into a composite that is included with this one
+        2:67-68 error S2011: the component `A` is excluded by its condition
+          3:31-46 this condition is false
+          help: put the component and the promotion into another composite, and include that with the same condition: a promotion cannot have a condition
     "#]]
     .assert_eq(&outcome(&[&fleet], &[]));
 }

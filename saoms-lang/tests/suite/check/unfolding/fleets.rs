@@ -71,7 +71,7 @@ fn a_star_names_all_replicas() {
         &[],
     ));
     expect![[r#"
-        2:119-121 error S2020: components call each other in a circle: `G1` -> `G2` -> `G1`
+        2:119-121 error S2020: components call each other in a cycle: `G1` -> `G2` -> `G1`
           2:119-121 `G1` calls `G2` through `other`
           help: a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic
         3:99-101 error S2011: there is no component `H*`
@@ -86,10 +86,10 @@ fn a_star_names_all_replicas() {
 #[test]
 fn the_index_of_replicas_and_all_of_them_are_not_for_every_place() {
     expect![[r#"
-        2:28-30 error S2011: `G*` names all replicas, and one component is expected
+        2:28-30 error S2011: `G*` names all replicas, expected one component
           help: name one of them, such as `G1`
         4:99-108 error S2011: there is no component `G${index}`
-          help: outside of replicas there is no index; `*` names all replicas
+          help: `${index}` works only inside replicas; use `*` to name all replicas
           fix: replace `G${index}` with `G*` [4:99-108 "G*"]
     "#]].assert_eq(&of(
         r#"<service name="s" promote="G*"/>
@@ -142,49 +142,49 @@ fn long_replicas_count_as_several() {
         ),
         &[],
     );
-    let told = "error S2046: 1000 replicas are more than a fleet can have of one that is so long";
+    let told = "error S2046: 1000 replicas of this length are more than a fleet can have";
     assert_eq!(found.matches(told).count(), 1, "{}", found.len());
 }
 
 #[test]
 fn what_is_wrong_with_replicas_is_found_at_its_place() {
     expect![[r#"
-        3:18-19 error S2046: all replicas would be called `A`
+        3:18-19 error S2046: all replicas would have the name `A`
           fix: replace `A` with `A${index}` [3:18-19 "A${index}"]
-        4:41-42 error S2046: `from` is about replicas, and nothing says how many there are
-          help: add `saoms:count="..."`
+        4:41-42 error S2046: `from` is for replicas, but the number of replicas is missing
+          help: add `saoms:count="..."` to the component to the component
         5:42-48 error S2046: there cannot be -1 replicas
-          2:63-65 `robots` is this
-          help: the number of replicas is 0 or more
+          2:63-65 the value of `robots`
+          help: write a number of 0 or more
         6:42-46 error S2046: 200000 replicas are more than a fleet can have
-          2:98-104 `many` is this
-          help: a fleet has at most 100000 replicas
+          2:98-104 the value of `many`
+          help: use fewer: a fleet has at most 100000 replicas
         7:42-46 error S2045: found the text `north`, expected a whole number
-          2:23-28 `site` is this
-          help: `docs/fleets.md` says what expressions are
+          2:23-28 the value of `site`
+          help: `docs/fleets.md` describes expressions
         8:21-26 error S2045: the composite has no property `inedx` (in `F${inedx}`, index 1, and in 1 more)
           fix: replace `inedx` with `index` [8:21-26 "index"]
-        9:18-27 error S3006: component `G-1` lacks the property `number` (index -1)
+        9:18-27 error S3006: component `G-1` needs the property `number` (index -1)
           help: add `<property name="number">...</property>`: a whole number from 1 to 99
         9:131-136 error S2045: division by zero: `index` is 0 (in `G0`, index 0)
-          help: `docs/fleets.md` says what expressions are
+          help: `docs/fleets.md` describes expressions
         10:18-31 error S2002: there are two components `H1` (index 3)
           help: give each its own name
-        11:19-26 error S2045: `${` is never closed (in `I${index`, index 1)
+        11:19-26 error S2045: `${` has no closing `}` (in `I${index`, index 1)
           help: write `${...}`, or `$${` for `${` itself
-        12:27-28 error S2045: after `:` the number of digits is expected, with a `0` before it (in `J${index:3}`, index 1)
-          help: as in `${index:03}`, which makes 007 of 7
+        12:27-28 error S2045: expected the number of digits after `:`, with a `0` before it (in `J${index:3}`, index 1)
+          help: write it as in `${index:03}`, which turns 7 into 007
           fix: replace `3` with `03` [12:27-28 "03"]
         12:44-49 error S2045: the composite has no property `robts`
           fix: replace `robts` with `robots` [12:44-49 "robots"]
         13:29-40 error S1007: `component` has no attribute `saoms:cuont`
           fix: replace `saoms:cuont` with `saoms:count` [13:29-40 "saoms:count"]
         14:45-50 error S1007: `component` has no attribute `count`
-          help: it is an attribute of SAOMS, of the namespace `urn:saoms:1`
+          help: write it with a prefix of the namespace `urn:saoms:1`: it is an attribute of SAOMS
           fix: replace `count` with `saoms:count` [14:45-50 "saoms:count"]
-        15:42-43 error S2046: the indices go beyond 64 bits
+        15:42-43 error S2046: the largest index does not fit into 64 bits
           help: choose a smaller `saoms:from`
-        16:18-27 error S3006: component `N1` lacks the property `ID` (index 1)
+        16:18-27 error S3006: component `N1` needs the property `ID` (index 1)
           help: add `<property name="ID">...</property>`: a text that is not empty
         16:128-131 error S2045: the composite has no property `nix`
           help: its properties are `many`, `robots` and `site`
@@ -208,13 +208,13 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
     ));
     expect![[r#"
         3:49-55 error S2046: 4000000 replicas are more than a fleet can have
-          --set:1:8-15 `robots` is this
-          help: a fleet has at most 100000 replicas
+          --set:1:8-15 the value of `robots`
+          help: use fewer: a fleet has at most 100000 replicas
         5:66-75 error S3008: property `charger.y`: `4000000` is out of range: expected a whole number from 0 to 10 (in `Robot001`, index 1)
           help: the default is `0`
         7:44-50 error S2046: 4000000 replicas are more than a fleet can have
-          --set:1:8-15 `robots` is this
-          help: a fleet has at most 100000 replicas
+          --set:1:8-15 the value of `robots`
+          help: use fewer: a fleet has at most 100000 replicas
     "#]]
     .assert_eq(&of(ROBOTS, &["robots=4000000"]));
 }
@@ -222,10 +222,10 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
 #[test]
 fn what_is_said_of_many_replicas_is_told_once() {
     expect![[r#"
-        2:18-30 error S3006: component `R01` lacks the property `period` (index 1, and in 11 more)
+        2:18-30 error S3006: component `R01` needs the property `period` (index 1, and in 11 more)
           help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
         3:21-22 error S3013: components `R01` and `R02` have the same `ID` `R` (index 2, and in 10 more)
-          help: every robot needs its own
+          help: give every robot its own `ID`
           fix: replace `R` with `R${index}` [3:21-22 "R${index}"]
         3:57-70 error S3008: property `number`: `100` is out of range: expected a whole number from 1 to 99 (in `R10`, index 10, and in 2 more)
           help: `number`: The number of the robot
@@ -237,7 +237,7 @@ fn what_is_said_of_many_replicas_is_told_once() {
           help: the components are `R02`, `R03`, `R04`, `R05`, `R06`, `R07`, `R08`, `R09`, `R10`, `R11`, `R12`, `X01`, `X02`, `X03`, `R*` and `X*`
           help: add a component of the class `example.Gps`
         5:76-90 error S3001: there is no class `example.Robott` (in `X01`, index 1, and in 2 more)
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [5:76-90 "example.Robot"]
     "#]].assert_eq(&of(
         r#"<component name="R${index:02}" saoms:count="12"><implementation.java class="example.Robot"/>
@@ -249,7 +249,7 @@ fn what_is_said_of_many_replicas_is_told_once() {
     // An expression that is not different enough is not mended by another one behind what it came to.
     expect![[r#"
         3:21-34 error S3013: components `R2` and `R3` have the same `ID` `R1` (index 3)
-          help: every robot needs its own
+          help: give every robot its own `ID`
           help: this value is the same for several replicas: `${index}` is different for each
     "#]].assert_eq(&of(
         r#"<component name="R${index}" saoms:count="3"><implementation.java class="example.Robot"/>
@@ -287,28 +287,28 @@ fn tables_say_what_differs() {
     .assert_eq(&found("name,number\r\nR03,30\r\n\r\n"));
     // Empty rows, as spreadsheets leave them, say nothing; one with a value has to say about whom.
     expect![[r#"
-        robots.csv:4:1-1 error S2047: this row does not say which replica it is about
-          help: the indices go from 1 to 4
+        robots.csv:4:1-1 error S2047: this row does not name its replica
+          help: use an index from 1 to 4
     "#]]
     .assert_eq(&found("index,colour\n\n,\n,red\n,\n"));
     expect![[r#"
-        robots.csv:3:1-2 error S2047: a line with 2 values, and there are 3 columns
-          help: a column that says nothing about a replica is an empty value: end the line with its comma
+        robots.csv:3:1-2 error S2047: this line has 2 values, but the table has 3 columns
+          help: write an empty value, with its comma, for each property that the replica does not change
     "#]]
     .assert_eq(&found("index,colour,period\n2,red,\n3,blue\n"));
     expect![[r#"
         robots.csv:1:1-1 error S2047: the table is empty
-          help: its first line names the columns: `index` or `name`, and properties
+          help: write a first line that names the columns: `index` or `name`, then properties
     "#]]
     .assert_eq(&found(""));
     expect![[r#"
         robots.csv:1:1-6 error S2047: the first column is `robot`, expected `index` or `name`
-          help: it says which replica a line is about, the other columns are properties
+          help: the first column names the replica of a row; the other columns are properties
         robots.csv:1:14-20 error S2047: there are two columns `colour`
           robots.csv:1:7-13 the first
-          help: merge them into one
+          help: merge them
         robots.csv:1:21-21 error S2047: a column without a name
-          help: the first line names the property of each column
+          help: write a property name in the first line of each column
     "#]]
     .assert_eq(&found("robot,colour,colour,\n1,red,blue,x\n"));
     expect![[r#"
@@ -316,18 +316,18 @@ fn tables_say_what_differs() {
           help: the default is `blue`
           fix: replace `rde` with `red` [robots.csv:2:3-6 "red"]
         robots.csv:3:1-2 warning S2047: there is no replica `5`
-          help: the indices go from 1 to 4
-        robots.csv:4:1-2 error S2047: there are two lines about the replica `1`
+          help: use an index from 1 to 4
+        robots.csv:4:1-2 error S2047: two rows are about the replica `1`
           robots.csv:2:1-2 the first
-          help: merge them into one
-        robots.csv:4:9-10 error S2047: a line with 4 values, and there are 3 columns
-          help: a value that contains a comma is written between two `"`
+          help: merge them
+        robots.csv:4:9-10 error S2047: this line has 4 values, but the table has 3 columns
+          help: write a value that contains a comma between two `"`
         robots.csv:5:1-2 error S2047: there is no replica `x`
-          help: the indices go from 1 to 4
+          help: use an index from 1 to 4
         robots.csv:6:8-9 error S2047: `x` behind a closing `"`
-          help: a `"` in a value between two of them is written twice
-        robots.csv:6:10-11 error S2047: a `"` that is never closed
-          help: a `"` in a value between two of them is written twice
+          help: write a `"` inside a quoted value twice
+        robots.csv:6:10-11 error S2047: a `"` without a closing `"`
+          help: write a `"` inside a quoted value twice
     "#]]
     .assert_eq(&found("index,colour,sped\n1,rde,\n5,red,\n1,blue,,7\nx,blue,2\n2,\"red\"x,\"1\n"));
     expect![[r#"
@@ -341,20 +341,20 @@ fn tables_say_what_differs() {
           help: the default is `blue`
           fix: replace `rde` with `red` [robots.csv:2:4-7 "red"]
         robots.csv:3:9-10 error S2047: `x` behind a closing `"`
-          help: a `"` in a value between two of them is written twice
+          help: write a `"` inside a quoted value twice
         robots.csv:4:2-3 error S2047: there is no replica `x`
-          help: the indices go from 1 to 4
+          help: use an index from 1 to 4
     "#]].assert_eq(&found("index,colour\r1,\u{a0}rde\u{2003}\r\n2,\"red\" x\r\n\u{3000}x\u{3000},red\r\n"));
     // What the table has already is not meant again; `R05` comes with a larger count, the others never.
     expect![[r#"
         robots.csv:5:1-4 warning S2047: there is no replica `R05`
-          help: there would be one if `saoms:count` were larger
+          help: increase `saoms:count`, or remove the row
         robots.csv:6:1-3 error S2047: there is no replica `r1`
-          help: the table says nothing of `R04`
-          help: they are called `R${index:02}`
+          help: replicas without a row are `R04`
+          help: the replicas have the names `R${index:02}`
         robots.csv:7:1-2 error S2047: there is no replica `X`
-          help: the table says nothing of `R04`
-          help: they are called `R${index:02}`
+          help: replicas without a row are `R04`
+          help: the replicas have the names `R${index:02}`
     "#]]
     .assert_eq(&found("name,speed\nR01,1\nR02,1\nR03,1\nR05,1\nr1,1\nX,1\n"));
     expect![[r#"
@@ -369,7 +369,7 @@ fn tables_say_what_differs() {
     let (_, missing) = checked(inside, &[("robot.csv", b"")], 1_000_000);
     expect![[r#"
         2:91-101 error S0001: there is no such file
-          help: it is looked for as `robots.csv`
+          help: the full path is `robots.csv`
           help: there is `robot.csv`
     "#]]
     .assert_eq(&missing);
@@ -381,12 +381,12 @@ fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
 <component xmlns:saoms="urn:saoms:1" name="R${index}" saoms:count="robots + 1" saoms:if="day and index > 0"><implementation.java class="example.Robot"/>
 <property name="ID">R${index}</property><property name="period">100</property><property name="number">${robots}</property></component>"#;
     expect![[r#"
-        --set:1:8-12 error S2042: the property `robots` is of the type `xsd:int`: found `many`, expected a whole number of 32 bits
+        --set:1:8-12 error S2042: the property `robots` has the type `xsd:int`: found `many`, expected a whole number of 32 bits
           2:31-38 the type
           help: change the value, or the type
         2:31-38 warning S2050: the prefix `xsd` of this type is not declared
           fix: declare it in the root element: `xmlns:xsd="http://www.w3.org/2001/XMLSchema"` [1:11-11 " xmlns:xsd=\"http://www.w3.org/2001/XMLSchema\""]
-        2:92-99 error S2042: the property `day` is of the type `xsd:boolean`: found `perhaps`, expected `true` or `false`
+        2:92-99 error S2042: the property `day` has the type `xsd:boolean`: found `perhaps`, expected `true` or `false`
           2:79-90 the type
           help: change the value, or the type
     "#]].assert_eq(&faults_of(&[&crate::check::support::fleet(inside)], &["robots=many"]));
@@ -397,7 +397,7 @@ fn a_value_that_an_expression_needs_is_told_where_it_is_wrong_and_once() {
 fn groups_that_call_groups_have_a_limit() {
     let group = r#"<component name="Gps${index}" saoms:count="1100"><implementation.java class="example.Gps"/><reference name="other" target="Gps*"/></component>"#;
     let found = of(group, &[]);
-    let limit = "error S2035: groups of replicas make more than 1000000 ends of wires";
+    let limit = "error S2035: the groups of replicas have more than 1000000 ends of wires";
     assert_eq!(found.matches(limit).count(), 1, "{found}");
 }
 
@@ -443,7 +443,7 @@ fn a_number_that_no_replica_has_means_the_nearest_that_one_has() {
           help: it offers no services
         2:126-142 warning S2011: there is no component `R03` in these composites (in `R02`, index 2)
           help: the replicas are `R01` to `R02`
-          help: it is taken as given: another composite of the domain may have it
+          help: it is not checked: another composite of the domain may have it
     "#]]
     .assert_eq(&found);
 }

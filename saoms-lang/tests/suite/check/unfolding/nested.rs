@@ -28,8 +28,8 @@ fn what_is_included_stands_where_it_is_included() {
 <wire source="C/other" target="A/position" replace="true"/><property name="unused">2</property>"#,
     );
     expect![[r#"
-        more:2:17-23 warning S2026: the property `unused` of the composite is used by no component
-          help: a component takes its value with `source="$unused"`
+        more:2:17-23 warning S2026: no component uses the property `unused` of the composite
+          help: remove it, or use its value in a component with `source="$unused"`
         more:3:76-82 error S2003: the composite has two properties `unused`
           more:2:17-23 the first
           help: give each its own name
@@ -77,27 +77,27 @@ fn includes_that_cannot_be_say_so() {
     );
     expect![[r#"
         2:16-22 error S2034: the composite `more` is `local`, and the one that includes it is not
-          more:1:128-132 said here
+          more:1:128-132 `local` is set here
           help: give both composites the same `local`
         3:16-21 error S2030: there is no composite `mor` in the namespace `urn:t`
-          help: give the file of that composite, too, beside this one
+          help: name the file of that composite in the command as well
           fix: replace `t:mor` with `t:more` [3:16-21 "t:more"]
         4:16-22 error S2033: the composite `more` is included twice
           help: remove one of the includes: all of its components are there already
         5:16-19 error S2030: there is no composite `x`
           help: the prefix `u` is not declared
-          help: give the file of that composite, too, beside this one
-        6:16-23 error S2032: composites contain each other in a circle: `fleet` -> `fleet`
-          help: a composite cannot be a part of itself: remove one of these
+          help: name the file of that composite in the command as well
+        6:16-23 error S2032: composites contain each other in a cycle: `fleet` -> `fleet`
+          help: remove one of these: a composite cannot contain itself
         7:18-19 error S2002: there are two components `A`
           more:2:18-19 the first
           fix: remove the second: both are the same, word for word [7:1-75 ""]
-        more:2:90-95 warning S2030: `fleet` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
-          1:115-120 this one
+        more:2:90-95 warning S2030: `fleet` without a prefix is in the default namespace, which is that of SCA: the composite in `urn:t` is used
+          1:115-120 this composite is used
           fix: replace `fleet` with `t:fleet` [more:2:90-95 "t:fleet"]
-        more:2:90-95 error S2032: composites contain each other in a circle: `fleet` -> `more` -> `fleet`
-          2:16-22 through this
-          help: a composite cannot be a part of itself: remove one of these
+        more:2:90-95 error S2032: composites contain each other in a cycle: `fleet` -> `more` -> `fleet`
+          2:16-22 it is contained here
+          help: remove one of these: a composite cannot contain itself
     "#]]
     .assert_eq(&outcome(&[&fleet, &more], &[]));
 }
@@ -136,7 +136,7 @@ fn faults_of_an_inner_composite_are_told_once_and_those_of_its_users_where_they_
     let fleet = part("fleet", "", &format!("{}\n{}", user.replace("NAME", "one"), user.replace("NAME", "two")));
     let robot = part("robot", "", &ROBOT.replace("$period", "$perod").replace("Robot/move", "Robot/mov"));
     expect![[r#"
-        2:18-21 error S2025: component `one` has to give the property `id` of its composite a value
+        2:18-21 error S2025: component `one` must give a value to the property `id` of its composite
           robot:2:54-56 declared here, without a value
           help: add `<property name="id">...</property>`
         2:81-83 error S3004: composite `robot` has no property `nr`
@@ -147,7 +147,7 @@ fn faults_of_an_inner_composite_are_told_once_and_those_of_its_users_where_they_
           help: its references are `where`
         3:115-119 error S2008: the multiplicity `1..n` of `where` is wider than `0..1` in composite `robot`
           help: it can be `0..1` or `1..1`
-        4:18-21 error S2025: component `two` has to give the property `id` of its composite a value
+        4:18-21 error S2025: component `two` must give a value to the property `id` of its composite
           robot:2:54-56 declared here, without a value
           help: add `<property name="id">...</property>`
         4:81-83 error S3004: composite `robot` has no property `nr`
@@ -181,7 +181,7 @@ fn a_value_that_is_not_of_the_type_of_an_inner_property_is_told_there_alone() {
 <component name="R"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1s</property><property name="number" source="$rank"/></component>"#,
     );
     expect![[r#"
-        2:85-90 error S2042: the property `rank` is of the type `xs:int`: found `first`, expected a whole number of 32 bits
+        2:85-90 error S2042: the property `rank` has the type `xs:int`: found `first`, expected a whole number of 32 bits
           inner:2:29-35 the type
           help: change the value, or the type
     "#]].assert_eq(&outcome(&[&fleet, &inner], &[]));
@@ -226,9 +226,9 @@ fn references_are_wired_from_outside_through_every_level() {
         .replace(" target=\"hall/a hall/b\"", " target=\"hall\"")
         .replace("<reference name=\"gps\" target=\"gps\"/>", "");
     expect![[r#"
-        2:18-22 error S2018: reference `where` of component `hall` is wired to no service
+        2:18-22 error S2018: reference `where` of component `hall` is not wired to a service
           help: give it a target with the interface `example.Positions`: `<reference name="where" target="..."/>`
-        4:18-22 error S2018: reference `gps` of component `band` is wired to no service
+        4:18-22 error S2018: reference `gps` of component `band` is not wired to a service
           help: give it a target with the interface `example.Positions`: `<reference name="gps" target="..."/>`
         4:95-99 error S2014: component `hall` has several services with the interface `example.Wheels`
           help: name one of `a` and `b`: `hall/...`
@@ -291,7 +291,7 @@ fn a_target_of_a_composites_reference_is_a_service_around_the_composite() {
     expect![[r#"
         inner:2:65-66 error S2011: there is no component `H`
           help: the components are `G` and `I`
-          help: what the composite's reference targets stands around the composite; inside, its components are wired with `<wire>`
+          help: use `<wire>` to wire components inside the composite: the target of a composite's reference is outside of it
     "#]]
     .assert_eq(&outcome(&[&fleet(""), &inner("H")], &[]));
     // By itself, what is around it is the domain.
@@ -360,10 +360,10 @@ fn what_is_taken_as_given_has_no_fault_of_its_own() {
         2:90-91 error S2024: the composite has no property `x`
           help: declare it: `<property name="...">...</property>` in the composite
         3:53-59 warning S2031: there is no composite `else` in the namespace `urn:t`
-          help: give the file of that composite, too, beside this one
+          help: name the file of that composite in the command as well
         6:30-31 warning S2011: there is no component `D` in these composites
           help: the components are `A`, `C` and `N`
-          help: it is taken as given: another composite of the domain may have it
+          help: it is not checked: another composite of the domain may have it
     "#]]
     .assert_eq(&found);
 }
@@ -380,13 +380,13 @@ fn types_of_a_property_and_of_what_gives_its_value_fit() {
     };
     assert_eq!(fleet("x:short", "x:integer"), "");
     expect![[r#"
-        3:90-99 error S3007: the property `size` is of the type `x:boolean`, and of `x:int` where it is declared
+        3:90-99 error S3007: the property `size` has the type `x:boolean` here, but `x:int` where it is declared
           hall:2:29-34 where it is declared
-          help: leave `type` out: that of the declaration is used
-        3:109-113 error S3007: the property `size` is of the type `x:boolean`, and of `x:string` where its value comes from
+          help: remove `type`: the type of the declaration is used
+        3:109-113 error S3007: the property `size` has the type `x:boolean` here, but `x:string` where its value comes from
           3:90-99 its type
           2:28-36 where its value comes from
-          help: give both one type
+          help: give both the same type
     "#]].assert_eq(&fleet("x:boolean", "x:string"));
 }
 
@@ -394,7 +394,7 @@ fn types_of_a_property_and_of_what_gives_its_value_fit() {
 fn faults_only(found: &str) -> String {
     found
         .split_inclusive('\n')
-        .filter(|line| !line.contains("used by no") && !line.contains("takes its value with"))
+        .filter(|line| !line.contains("no component uses") && !line.contains("use its value in a component"))
         .collect()
 }
 
@@ -450,27 +450,27 @@ fn a_name_that_means_another_namespace_than_it_leads_to_says_so() {
     let yard = part("yard", "", &gps("Y")).replace("targetNamespace=\"urn:t\"", "");
     let dock = part("dock", "", &gps("D")).replace("\"urn:t\"", "\"urn:u\"");
     expect![[r#"
-        2:16-20 warning S2030: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
-          hall:1:115-119 this one
+        2:16-20 warning S2030: `hall` without a prefix is in the default namespace, which is that of SCA: the composite in `urn:t` is used
+          hall:1:115-119 this composite is used
           fix: replace `hall` with `t:hall` [2:16-20 "t:hall"]
-        3:16-20 warning S2030: `yard` without a prefix is in the default namespace, which is that of SCA: that in no namespace is taken
-          yard:1:92-96 this one
-          help: give it a `targetNamespace`, and name it with a prefix that is bound to that
-        4:53-57 warning S2031: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
-          hall:1:115-119 this one
+        3:16-20 warning S2030: `yard` without a prefix is in the default namespace, which is that of SCA: the composite in no namespace is used
+          yard:1:92-96 this composite is used
+          help: give it a `targetNamespace`, and name it with a prefix of that namespace
+        4:53-57 warning S2031: `hall` without a prefix is in the default namespace, which is that of SCA: the composite in `urn:t` is used
+          hall:1:115-119 this composite is used
           fix: replace `hall` with `t:hall` [4:53-57 "t:hall"]
-        5:53-59 warning S2031: the prefix `x` is not declared: that of `urn:t` is taken
-          hall:1:115-119 this one
+        5:53-59 warning S2031: the prefix `x` is not declared: the composite in `urn:t` is used
+          hall:1:115-119 this composite is used
           fix: replace `x:hall` with `t:hall` [5:53-59 "t:hall"]
         yard:1:2-11 error S1009: `composite` has no `targetNamespace`
-          help: other composites refer to this one by its namespace and name
+          help: add `targetNamespace="urn:..."`: add `targetNamespace="urn:..."`: other composites refer to this one by its namespace and name
     "#]].assert_eq(&outcome(&[&fleet, &hall, &yard, &dock], &[]));
     // Where no prefix is bound, one is declared; a default namespace of the author's own is what is meant.
     let no_prefix =
         fleet.replace("xmlns:t=\"urn:t\"", "").lines().take(2).collect::<Vec<_>>().join("\n") + "</composite>";
     expect![[r#"
-        2:16-20 warning S2030: `hall` without a prefix is in the default namespace, which is that of SCA: that of `urn:t` is taken
-          hall:1:115-119 this one
+        2:16-20 warning S2030: `hall` without a prefix is in the default namespace, which is that of SCA: the composite in `urn:t` is used
+          hall:1:115-119 this composite is used
           fix: insert `xmlns:tns="urn:t"` into `composite`, and replace `hall` with `tns:hall` [1:11-11 " xmlns:tns=\"urn:t\""] [2:16-20 "tns:hall"]
         H (example.Gps) other->
     "#]].assert_eq(&outcome(&[&no_prefix, &hall], &[]));

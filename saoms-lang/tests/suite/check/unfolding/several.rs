@@ -49,28 +49,28 @@ fn expressions_inside_of_composites_take_what_sources_lead_to() {
     "#]]
     .assert_eq(&both("$halls/hall[@id='b']/count", "$halls/hall[1]/open"));
     expect![[r#"
-        3:96-114 error S2023: `count($halls/hall)` is not a path from a property
-          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        3:96-114 error S2023: `count($halls/hall)` is not the path of a property
+          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
     "#]]
     .assert_eq(&both("count($halls/hall)", "$halls/hall[count=2]/open"));
     expect![[r#"
-        3:103-116 error S2023: no part here has `c` as its `id`: its values are `a` and `b`
+        3:103-116 error S2023: no part here has the attribute `id` with the value `c`: its values are `a` and `b`
         3:156-160 error S2024: the composite has no property `hals`
           fix: replace `hals` with `halls` [3:156-160 "halls"]
     "#]]
     .assert_eq(&both("$halls/hall[@id='c']/count", "$hals"));
     expect![[r#"
         hall:3:42-47 error S2045: the property `count` has no simple value
-          help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
+          help: give the property one simple value, or use a part of the value, as with `source="$name/part"`
         hall:3:59-63 error S2045: the property `open` has no simple value (in `G1`, index 1)
-          help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
+          help: give the property one simple value, or use a part of the value, as with `source="$name/part"`
     "#]]
     .assert_eq(&both("$halls", "$halls/hall/open"));
     expect![[r#"
-        2:17-22 warning S2026: the property `halls` of the composite is used by no component
-          help: a component takes its value with `source="$halls"`
+        2:17-22 warning S2026: no component uses the property `halls` of the composite
+          help: remove it, or use its value in a component with `source="$halls"`
         hall:3:42-47 error S2045: the property `count` has no simple value
-          help: an expression takes one text: give it one, or a part of the value, as with `source="$name/part"`
+          help: give the property one simple value, or use a part of the value, as with `source="$name/part"`
     "#]]
     .assert_eq(&outcome(
         &[&outer(r#"<property name="count"><a xmlns="">1</a></property><property name="open">true</property>"#), &hall],
@@ -109,9 +109,9 @@ fn lines_of_tables_are_about_a_replica_in_any_of_the_places_of_a_composite() {
     let with = |table: &str| found(&[("a.composite", &halls), ("hall.composite", &hall), ("table.csv", table)]);
     expect![[r#"
         table.csv:4:1-2 warning S2047: there is no replica `7`
-          help: the indices go from 1 to 2
+          help: use an index from 1 to 2
         table.csv:5:1-2 error S2047: there is no replica `x`
-          help: the indices go from 1 to 2
+          help: use an index from 1 to 2
     "#]]
     .assert_eq(&with("index,number\n1,5\n12,6\n7,7\nx,8\n"));
     expect![[r#"
@@ -156,6 +156,6 @@ fn a_setting_of_a_property_inside_is_told_with_who_gives_it() {
     let outer = fleet(r#"<component name="Hall"><implementation.composite name="t:hall"/></component>"#);
     expect![[r#"
         --set:1:1-6 error S2029: the outermost composite has no property `count`
-          help: the composite `hall` inside has one, and has its value from component `Hall`: let that take it from a property of the outermost composite, `<property name="count" source="$..."/>`, and set this one
+          help: the inner composite `hall` has this property, and component `Hall` gives it a value: take the value from a property of the outermost composite there, `<property name="count" source="$..."/>`, and set that property
     "#]].assert_eq(&outcome(&[&outer, &hall], &["count=3"]));
 }

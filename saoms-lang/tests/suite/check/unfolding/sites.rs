@@ -68,7 +68,7 @@ fn ids_have_to_differ_within_a_site() {
     expect![[r#"
         3:107-109 error S3013: components `A` and `B` have the same `ID` `R1`
           2:107-109 the first
-          help: every robot needs its own
+          help: give every robot its own `ID`
     "#]]
     .assert_eq(&outcome(&[&around("fleet", inside)], &[]));
 }
@@ -105,7 +105,7 @@ fn a_name_of_a_site_has_no_blanks_and_no_empty_parts() {
         let fleet =
             around("fleet", &site("N", "hall").replace("saoms:site=\"N\"", &format!("saoms:site=\"{written}\"")));
         let found = topics(&[&fleet, &hall("", "")]);
-        assert!(found.contains(&format!("error S1011: `{wrong}` is not a name of a site")), "{found}");
+        assert!(found.contains(&format!("error S1011: `{wrong}` is not a site name")), "{found}");
     }
     let fleet = around("fleet", &site("N", "hall").replace("saoms:site=\"N\"", "saoms:site=\"${nowhere}\""));
     expect![[r#"
@@ -121,7 +121,7 @@ fn a_name_of_a_topic_has_no_empty_parts() {
     for name in ["/", "//", "//all", "/all//positions", "all/", "a//b"] {
         let renamed = hall("", &format!("<property name=\"topicRename\">POSTOPIC,{name}</property>"));
         let found = topics(&[&fleet, &renamed]);
-        assert!(found.contains(&format!("S4002: bad `topicRename`: `{name}` is not a name of a topic")), "{found}");
+        assert!(found.contains(&format!("S4002: bad `topicRename`: `{name}` is not a topic name")), "{found}");
     }
 }
 

@@ -41,8 +41,8 @@ fn values_come_from_the_environment_unless_somebody_gives_one() {
     expect![[r#"
         None
         3:42-48 error S2045: found the text `many`, expected a whole number
-          environment:1:8-12 `robots` is this
-          help: `docs/fleets.md` says what expressions are
+          environment:1:8-12 the value of `robots`
+          help: `docs/fleets.md` describes expressions
         environment:1:7-8 error S3008: property `speed`: `9` is out of range: expected a number from 0.0 to 2.5 [m/s] (in `R1`, index 1)
           4:32-38 used here as `speed`
           help: `speed`: How fast it drives; the default is `1.0`

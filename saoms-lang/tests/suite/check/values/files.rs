@@ -87,17 +87,17 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
     let (_, found) = checked(&inside, &files, 50);
     expect![[r#"
         3:30-38 error S0001: there is no such file
-          help: it is looked for as `sped.txt`
+          help: the full path is `sped.txt`
           help: there is `speed.txt`
         4:30-35 error S0002: found a directory, expected a file
         5:31-37 error S0007: the byte 0xE9 is not valid UTF-8
-          help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`; until then nothing of the file is checked
+          help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`; the file cannot be checked before
           help: it is in line 1, column 2 of `colour`
         6:30-35 error S0006: the file is a program or library, not text
           help: the value of a property is a text in UTF-8
         7:30-35 error S3012: the property `grace` is given a value in two ways
-          7:37-41 the other one
-          help: write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
+          7:37-41 the other value
+          help: write it in one way: as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
         8:30-35 error S0004: the file has 60 bytes, and the limit is 50 bytes
           help: the limit is set with `--max-size`
     "#]]
@@ -129,13 +129,13 @@ fn files_are_named_by_uris() {
         3:30-48 error S0003: `file://other/y.txt` is a file of another machine
           help: keep the file beside the composite, and name it by its path from there
         3:30-50 error S0001: there is no such file
-          help: it is looked for as `/nowhere/yA`
-          help: there is no directory `/nowhere` either
+          help: the full path is `/nowhere/yA`
+          help: there is no directory `/nowhere`
         3:30-40 error S0001: there is no such file
-          help: it is looked for as `no/%zz.txt`
-          help: there is no directory `no` either
+          help: the full path is `no/%zz.txt`
+          help: there is no directory `no`
         3:30-33 error S0001: there is no such file
-          help: it is looked for as `%ff`
+          help: the full path is `%ff`
     "#]]
     .assert_eq(&wrong.map(one).concat());
 }

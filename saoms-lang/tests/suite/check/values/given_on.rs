@@ -61,14 +61,14 @@ fn expressions_take_what_is_in_an_element() {
 fn a_property_that_has_to_be_given_a_value_is_not_given_one_by_a_source_without() {
     let must = "<property name=\"n\" mustSupply=\"true\"/>";
     expect![[r#"
-        2:115-123 error S2025: component `H` has to give the property `n` of its composite a value: its source has none
+        2:115-123 error S2025: component `H` must give a value to the property `n` of its composite: its source has no value
           hall:2:17-18 declared here, without a value
           2:17-24 declared here, without a value
           help: write it in the file, or give `--set nothing=...`
     "#]]
     .assert_eq(&taken(must, "<property name=\"nothing\"/>", "<property name=\"n\" source=\"$nothing\"/>"));
     expect![[r#"
-        2:78-79 error S2025: component `H` has to give the property `n` of its composite a value
+        2:78-79 error S2025: component `H` must give a value to the property `n` of its composite
           hall:2:17-18 declared here, without a value
           help: write the value inside
     "#]]
@@ -82,11 +82,11 @@ fn a_property_that_has_to_be_given_a_value_is_not_given_one_by_a_source_without(
     let outer =
         fleet("<component name=\"H\"><implementation.composite name=\"t:hall\"/><property name=\"n\"/></component>");
     expect![[r#"
-        2:78-79 error S2025: component `H` has to give the property `n` of its composite a value
+        2:78-79 error S2025: component `H` must give a value to the property `n` of its composite
           hall:2:17-18 declared here, without a value
           help: write the value inside
-        hall:2:17-18 warning S2026: the property `n` of the composite is used by no component
-          help: a component takes its value with `source="$n"`
+        hall:2:17-18 warning S2026: no component uses the property `n` of the composite
+          help: remove it, or use its value in a component with `source="$n"`
     "#]]
     .assert_eq(&outcome(&[&outer, &unused], &[]));
 }
@@ -114,8 +114,8 @@ fn a_variable_counts_where_a_component_gives_nothing() {
     "#]]
     .assert_eq(&of("<property name=\"n\" source=\"$nothing\"/>", "2"));
     expect![[r#"
-        2:17-24 warning S2026: the property `nothing` of the composite is used by no component
-          help: a component takes its value with `source="$nothing"`
+        2:17-24 warning S2026: no component uses the property `nothing` of the composite
+          help: remove it, or use its value in a component with `source="$nothing"`
         H/G1 []
         H/G2 []
         H/G3 []
@@ -123,11 +123,11 @@ fn a_variable_counts_where_a_component_gives_nothing() {
     "#]]
     .assert_eq(&of("<property name=\"n\">3</property>", "2"));
     expect![[r#"
-        2:17-24 warning S2026: the property `nothing` of the composite is used by no component
-          help: a component takes its value with `source="$nothing"`
+        2:17-24 warning S2026: no component uses the property `nothing` of the composite
+          help: remove it, or use its value in a component with `source="$nothing"`
         hall:3:42-43 error S2045: found the text `x`, expected a whole number
-          environment:1:3-4 `n` is this
-          help: `docs/fleets.md` says what expressions are
+          environment:1:3-4 the value of `n`
+          help: `docs/fleets.md` describes expressions
         environment:1:3-4 error S3007: property `number`: `x` is not a whole number: expected a whole number from 1 to 99
           hall:4:165-167 used here as `number`
           help: `number`: The number of the robot
@@ -181,24 +181,25 @@ fn what_nobody_takes_is_held_to_its_type() {
         outcome(&[&part("outer", SCHEMA, &outer), &inner], &[])
     };
     expect![[r#"
-        2:17-18 warning S2026: the property `n` of the composite is used by no component
-          help: a component takes its value with `source="$n"`
-        2:131-134 error S2042: the property `p` is of the type `xsd:int`: found `abc`, expected a whole number of 32 bits
+        2:17-18 warning S2026: no component uses the property `n` of the composite
+          help: remove it, or use its value in a component with `source="$n"`
+        2:131-134 error S2042: the property `p` has the type `xsd:int`: found `abc`, expected a whole number of 32 bits
           inner:2:26-33 the type
           help: change the value, or the type
-        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
-          help: a component takes its value with `source="$p"`
-    "#]].assert_eq(&given(r#"<property name="p">abc</property>"#));
+        inner:2:17-18 warning S2026: no component uses the property `p` of the composite
+          help: remove it, or use its value in a component with `source="$p"`
+    "#]]
+    .assert_eq(&given(r#"<property name="p">abc</property>"#));
     expect![[r#"
         2:140-141 error S2024: the composite has no property `m`
           help: its properties are `n`
-        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
-          help: a component takes its value with `source="$p"`
+        inner:2:17-18 warning S2026: no component uses the property `p` of the composite
+          help: remove it, or use its value in a component with `source="$p"`
     "#]]
     .assert_eq(&given(r#"<property name="p" source="$m"/>"#));
     expect![[r#"
-        inner:2:17-18 warning S2026: the property `p` of the composite is used by no component
-          help: a component takes its value with `source="$p"`
+        inner:2:17-18 warning S2026: no component uses the property `p` of the composite
+          help: remove it, or use its value in a component with `source="$p"`
         K/G (example.Gps) other->
     "#]]
     .assert_eq(&given(r#"<property name="p" source="$n"/>"#));

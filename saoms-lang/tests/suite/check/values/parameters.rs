@@ -36,8 +36,8 @@ fn sources_lead_to_composite_properties() {
           help: give each its own name
         11:41-47 error S2023: there is no part `plaice`; the parts are `place`
           fix: replace `plaice` with `place` [11:41-47 "place"]
-        12:39-47 error S2023: no step of a path is written like this
-          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        12:39-47 error S2023: this is not a step of a path
+          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         13:33-37 error S2024: the composite has no property `sped`
           fix: replace `sped` with `speed` [13:33-37 "speed"]
         14:32-37 error S2023: `speed` does not name a property of the composite
@@ -46,7 +46,7 @@ fn sources_lead_to_composite_properties() {
         15:38-40 error S2023: the property has a simple value: there are no parts in it
         16:33-35 error S2023: `/x` does not name a property of the composite
           help: write `$name`, or `$name/part` for a part of a complex property
-        19:33-41 error S3006: the property `period` has no value: its source has none
+        19:33-41 error S3006: the property `period` has no value: its source has no value
           5:17-24 declared here, without a value
           help: write it in the file, or give `--set nothing=...`
     "#]].assert_eq(&faults(&format!(
@@ -87,14 +87,14 @@ fn settings_take_the_place_of_composite_properties() {
         --set:1:1-5 error S2029: no composite has a property `sped`
           fix: replace `sped` with `speed` [--set:1:1-5 "speed"]
         --set:1:1-6 error S2028: `speed` is set twice
-          --set:1:1-6 first here
+          --set:1:1-6 first set here
           help: keep one of them
         --set:1:1-6 error S2027: `speed` is not a setting: `=` is missing
           help: write `--set NAME=VALUE` with the name of a composite property
         --set:1:1-3 error S2027: there is no name before the `=`
           help: write `--set NAME=VALUE` with the name of a composite property
         --set:1:1-6 error S2028: `speed` is set twice
-          --set:1:1-6 first here
+          --set:1:1-6 first set here
           help: keep one of them
     "#]]
     .assert_eq(&faults_of(&[&text], &["speed= 3", "sped=1", "speed=1", "speed", "=1", "speed ="]));
@@ -142,18 +142,18 @@ fn values_are_the_elements_that_properties_are_typed_by() {
     "#]]
     .assert_eq(&faults(&wrong));
     expect![[r#"
-        2:17-18 warning S2026: the property `a` of the composite is used by no component
-          help: a component takes its value with `source="$a"`
-        3:17-18 warning S2026: the property `b` of the composite is used by no component
-          help: a component takes its value with `source="$b"`
-        4:17-18 warning S2026: the property `c` of the composite is used by no component
-          help: a component takes its value with `source="$c"`
-        5:17-18 warning S2026: the property `d` of the composite is used by no component
-          help: a component takes its value with `source="$d"`
-        6:17-18 warning S2026: the property `e` of the composite is used by no component
-          help: a component takes its value with `source="$e"`
-        7:17-18 warning S2026: the property `f` of the composite is used by no component
-          help: a component takes its value with `source="$f"`
+        2:17-18 warning S2026: no component uses the property `a` of the composite
+          help: remove it, or use its value in a component with `source="$a"`
+        3:17-18 warning S2026: no component uses the property `b` of the composite
+          help: remove it, or use its value in a component with `source="$b"`
+        4:17-18 warning S2026: no component uses the property `c` of the composite
+          help: remove it, or use its value in a component with `source="$c"`
+        5:17-18 warning S2026: no component uses the property `d` of the composite
+          help: remove it, or use its value in a component with `source="$d"`
+        6:17-18 warning S2026: no component uses the property `e` of the composite
+          help: remove it, or use its value in a component with `source="$e"`
+        7:17-18 warning S2026: no component uses the property `f` of the composite
+          help: remove it, or use its value in a component with `source="$f"`
         9:2-10 error S3006: the property `charger.x` is missing: expected a whole number from -2147483648 to 2147483647
     "#]]
     .assert_eq(&faults(&format!(
@@ -177,7 +177,7 @@ fn values_from_outside_are_of_the_type_of_the_property() {
     );
     expect![""].assert_eq(&faults_of(&[&fleet(&typed)], &["speed=2"]));
     expect![[r#"
-        --set:1:7-10 error S2042: the property `speed` is of the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
+        --set:1:7-10 error S2042: the property `speed` has the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
           2:30-37 the type
           help: change the value, or the type
     "#]]
@@ -189,14 +189,14 @@ fn values_from_outside_are_of_the_type_of_the_property() {
 <component name=\"B\"><implementation.composite name=\"t:inner\"/><property name=\"speed\" source=\"$slow\"/></component>",
     );
     expect![[r#"
-        2:23-26 error S2042: the property `speed` is of the type `xsd:int`: found `0.5`, expected a whole number of 32 bits
+        2:23-26 error S2042: the property `speed` has the type `xsd:int`: found `0.5`, expected a whole number of 32 bits
           inner:2:30-37 the type
           help: change the value, or the type
-        2:122-125 error S2042: the property `speed` is of the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
+        2:122-125 error S2042: the property `speed` has the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
           inner:2:30-37 the type
           help: change the value, or the type
         inner:3:88-89 error S3013: components `A/R` and `B/R` have the same `ID` `R`
-          help: every robot needs its own
+          help: give every robot its own `ID`
           help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
     "#]]
     .assert_eq(&outcome(&[&outer, &part("inner", "", &typed)], &[]));
@@ -239,7 +239,7 @@ fn a_value_that_a_component_has_to_give_is_awaited_of_one_that_is_not_seen() {
     expect![[r#"
         2:17-21 warning S2025: the property `pace` of the composite needs a value
           help: write it in the file, or give `--set pace=...`
-          help: as an implementation, it takes the value that its component gives it
+          help: where the composite implements a component, that component gives the value
     "#]]
     .assert_eq(&found(&[&inner], true));
     expect![[r#"
@@ -248,7 +248,7 @@ fn a_value_that_a_component_has_to_give_is_awaited_of_one_that_is_not_seen() {
     "#]]
     .assert_eq(&found(&[&inner], false));
     expect![[r#"
-        2:18-19 error S2025: component `A` has to give the property `pace` of its composite a value
+        2:18-19 error S2025: component `A` must give a value to the property `pace` of its composite
           inner:2:17-21 declared here, without a value
           help: add `<property name="pace">...</property>`
     "#]]
@@ -266,10 +266,9 @@ fn many_values_may_be_a_list_of_its_type() {
     };
     assert!(!of("1 2\t3").contains("S2042"));
     assert!(
-        of("<value>1</value><value/>")
-            .contains("error S2042: the property `p` is of the type `xsd:int`: found nothing")
+        of("<value>1</value><value/>").contains("error S2042: the property `p` has the type `xsd:int`: found nothing")
     );
-    assert!(of("1 2 x").contains("error S2042: the property `p` is of the type `xsd:int`: found `1 2 x`"));
+    assert!(of("1 2 x").contains("error S2042: the property `p` has the type `xsd:int`: found `1 2 x`"));
 }
 
 /// Each of many that takes all of many values would be the square of what the file has.
@@ -281,7 +280,7 @@ fn sources_of_many_values_have_a_limit() {
         "<value>1</value>".repeat(41_000)
     );
     let found = faults(&inside);
-    let limit = "error S2035: sources make more than 4000000 values";
+    let limit = "error S2035: the components take more than 4000000 values by `source`";
     assert_eq!(found.matches(limit).count(), 1, "{found}");
 }
 
@@ -294,6 +293,6 @@ fn sources_of_long_texts_have_a_limit() {
         "1".repeat(1_000_000)
     );
     let found = faults(&inside);
-    let limit = "error S2035: sources make more than 64 MB of text";
+    let limit = "error S2035: the components take more than 64 MB of text by `source`";
     assert_eq!(found.matches(limit).count(), 1, "{}", found.len());
 }

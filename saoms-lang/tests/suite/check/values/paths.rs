@@ -82,37 +82,37 @@ fn sources_are_paths() {
         $many[2]: Integer(2
         $many[last()]: Integer(2
         $b/bay[2]/y: S2023: there is no part `y`; the parts are `x`
-        $b/bay[4]: S2023: there are 3 parts `bay`, from `[1]` on
-        $b/bay[0]/x: S2023: there are 3 parts `bay`, from `[1]` on
+        $b/bay[4]: S2023: there are 3 parts `bay`, counted from `[1]`
+        $b/bay[0]/x: S2023: there are 3 parts `bay`, counted from `[1]`
         $b/bay/x: S3011: the property `number` allows one value, found 3
-        $b/bay[@id='c']/x: S2023: no part here has `c` as its `id`: its values are `a` and `b/c`
-        $b/bay[@name='c']/x: S2023: no part here has `c` as its `name`: none has it
+        $b/bay[@id='c']/x: S2023: no part here has the attribute `id` with the value `c`: its values are `a` and `b/c`
+        $b/bay[@name='c']/x: S2023: no part here has the attribute `name` with the value `c`: no part has this attribute
         $b/bay/@di: S2023: there is no attribute `di`; the attributes are `id`
         $b/bay[2]/@id/x: S2023: an attribute has no parts
         $b/bay[1]/text(): S2023: there is no text here
         $b/bay[x=3]/x: Integer(3
         $b//x: S3011: the property `number` allows one value, found 3
-        $b/bay/../x: S2023: no step of a path is written like this
-        $b/bay[1]x: S2023: no step of a path is written like this
+        $b/bay/../x: S2023: this is not a step of a path
+        $b/bay[1]x: S2023: this is not a step of a path
         $many[3]: S2023: the property has 2 values
-        $many[a]: S2023: no step of a path is written like this
+        $many[a]: S2023: this is not a step of a path
         $many/x: S2023: the property has a simple value: there are no parts in it
-        $many/value[2]: S2023: the property has a simple value: there are no parts in it; the values of a property are `$name` itself, the second is `$name[2]`
+        $many/value[2]: S2023: the property has a simple value: there are no parts in it; to get the second value of a property, write `$name[2]`
         $many/text(): S3011: the property `number` allows one value, found 2
         $many[2]/text(): Integer(2
-        $b/bay/x[2]: S2023: there are 3 parts `x` in 3 elements, at most 1 in each, and a place counts in each
-        ($b/bay/x)[2]: S2023: `($b/bay/x)[2]` is not a path from a property
-        count($b/bay): S2023: `count($b/bay)` is not a path from a property
-        concat($s, 'x'): S2023: `concat($s, 'x')` is not a path from a property
-        $b/bay[x &gt; 3]/x: S2023: no step of a path is written like this
-        $b/bay[not(@id)]/x: S2023: no step of a path is written like this
-        $b/bay[1]/following-sibling::bay/x: S2023: no step of a path is written like this
-        ${s}: S2023: names of properties stand without braces here
+        $b/bay/x[2]: S2023: there are 3 parts `x` in 3 elements, at most 1 per element, and `[...]` counts within each element
+        ($b/bay/x)[2]: S2023: `($b/bay/x)[2]` is not the path of a property
+        count($b/bay): S2023: `count($b/bay)` is not the path of a property
+        concat($s, 'x'): S2023: `concat($s, 'x')` is not the path of a property
+        $b/bay[x &gt; 3]/x: S2023: this is not a step of a path
+        $b/bay[not(@id)]/x: S2023: this is not a step of a path
+        $b/bay[1]/following-sibling::bay/x: S2023: this is not a step of a path
+        ${s}: S2023: write the property's name without braces here
         $sa: S2024: the composite has no property `sa`
         s: S2023: `s` does not name a property of the composite
         'text': S2023: `'text'` does not name a property of the composite
         $s/x: S2023: the property has a simple value: there are no parts in it
-        $b/: S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $b/: S2023: a step is missing: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
         $b[99999999999999999999999]: S2023: the property has one value
     "#]].assert_eq(&all);
     assert!(value("$b/bay[1]/@id", "colour").starts_with("S3009: property `colour`: `a` is not allowed"));
@@ -163,21 +163,21 @@ fn paths_lead_to_any_depth_and_to_what_a_part_says() {
         $c/a/b[w='20']/w[position()=2]: Many([Text("21")])
         $c//w[position()=last()]: Many([Text("10"), Text("21"), Text("30")])
         $c//b/@id: Many([Text("1"), Text("2"), Text("3")])
-        $c//b[w=11]/w: 3:101-108 error S2023: no part here has `11` as its part `w`
+        $c//b[w=11]/w: 3:101-108 error S2023: no part here contains a part `w` with the value `11`
         $c//v: 3:101-102 error S2023: there is no part `v`; the parts are `a`, `b` and `w`
-        $c//: 3:100-101 error S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
-        $c///w: 3:100-101 error S2023: a step is missing: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
-        $c/a/b[position()&lt;2]/w: 3:102-120 error S2023: no step of a path is written like this
-          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $c//: 3:100-101 error S2023: a step is missing: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $c///w: 3:100-101 error S2023: a step is missing: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+        $c/a/b[position()&lt;2]/w: 3:102-120 error S2023: this is not a step of a path
+          help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
     "#]].assert_eq(&all);
     // Another program may understand more.
     let all: String =
         ["count($c/a/b)", "$c/a/b[position()&gt;1]/w", "$c/x"].iter().map(|source| of(source, true)).collect();
     expect![[r#"
-        count($c/a/b): 3:97-110 warning S2023: `count($c/a/b)` is not a path from a property
-          help: another program may understand it: it is taken as given
-        $c/a/b[position()&gt;1]/w: 3:102-120 warning S2023: no step of a path is written like this
-          help: another program may understand it: it is taken as given
+        count($c/a/b): 3:97-110 warning S2023: `count($c/a/b)` is not the path of a property
+          help: it is not checked: another program may understand it
+        $c/a/b[position()&gt;1]/w: 3:102-120 warning S2023: this is not a step of a path
+          help: it is not checked: another program may understand it
         $c/x: 3:100-101 error S2023: there is no part `x`; the parts are `a`
     "#]]
     .assert_eq(&all);
@@ -217,13 +217,13 @@ fn a_source_that_is_no_path_says_what_paths_are() {
         match assumes {
             false => expect![[r#"
                 2:80-83 error S3001: there is no class `x.Y`
-                  help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
-                2:113-128 error S2023: `concat($s, 'x')` is not a path from a property
-                  help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: steps are `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
+                  help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+                2:113-128 error S2023: `concat($s, 'x')` is not the path of a property
+                  help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
             "#]].assert_eq(&all),
             true => expect![[r#"
-                2:113-128 warning S2023: `concat($s, 'x')` is not a path from a property
-                  help: another program may understand it: it is taken as given
+                2:113-128 warning S2023: `concat($s, 'x')` is not the path of a property
+                  help: it is not checked: another program may understand it
             "#]].assert_eq(&all),
         }
     }

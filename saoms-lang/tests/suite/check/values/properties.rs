@@ -40,20 +40,20 @@ fn a_wrong_source_is_one_fault() {
 #[test]
 fn a_component_without_a_name_is_not_called_by_an_empty_one() {
     let found = faults(r#"<component><implementation.java class="example.Robot001"/></component>"#);
-    assert!(found.contains("the component lacks the property `period`"), "{found}");
+    assert!(found.contains("the component needs the property `period`"), "{found}");
 }
 
 #[test]
 fn unknown_classes_are_offered_the_nearest() {
     expect![[r#"
         2:49-64 error S3001: there is no class `example.Robt001`
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robt001` with `example.Robot001` [2:49-64 "example.Robot001"]
         3:49-70 error S3001: there is no class `org.example.navigator`
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `org.example.navigator` with `example.Navigator` [3:49-70 "example.Navigator"]
         4:49-66 error S3001: there is no class `com.example.Wheel`
-          help: looked among the 21 classes of this program and its plugins, which `saoms components` lists; `--plugin PATH` adds those of a plugin
+          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]]
     .assert_eq(&faults(
         r#"<component name="A"><implementation.java class="example.Robt001"/></component>
@@ -66,15 +66,16 @@ fn unknown_classes_are_offered_the_nearest() {
 fn what_cannot_run_says_so() {
     expect![[r#"
         2:53-58 error S2031: there is no composite `inner` in the namespace `urn:t`
-          help: give the file of that composite, too, beside this one
-        3:22-41 error S3002: `implementation.bpel` cannot run here
-          help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
+          help: name the file of that composite in the command as well
+        3:22-41 error S3002: this program cannot run `implementation.bpel`
+          help: name the class of the component: `implementation.java class="..."` or `implementation.rust class="..."`
         4:71-80 error S3015: the library `libgps.so` was not looked for
         5:16-21 error S2030: there is no composite `other` in the namespace `urn:t`
-          help: give the file of that composite, too, beside this one
-        6:22-45 error S3002: `implementation.script` cannot run here
-          help: components are implemented by a class: `implementation.java class="..."` or `implementation.rust class="..."`
-    "#]].assert_eq(&faults(
+          help: name the file of that composite in the command as well
+        6:22-45 error S3002: this program cannot run `implementation.script`
+          help: name the class of the component: `implementation.java class="..."` or `implementation.rust class="..."`
+    "#]]
+    .assert_eq(&faults(
         r#"<component name="A"><implementation.composite name="inner"/></component>
 <component name="B"><implementation.bpel process="p"/></component>
 <component name="C"><implementation.rust class="example.Gps" library="libgps.so"/></component>
@@ -100,7 +101,7 @@ fn unknown_and_repeated_properties() {
         3:17-21 error S3004: class `example.Robot001` has no property `sped`
           help: `speed` is given already: remove one of the two
         5:17-22 error S3005: the property `speed` is given twice
-          4:17-22 first here
+          4:17-22 first given here
           help: keep one of them
         6:17-23 error S3004: class `example.Robot001` has no property `weight`
           help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
@@ -132,11 +133,11 @@ fn unknown_and_repeated_properties() {
 #[test]
 fn missing_properties_stand_at_the_name_of_the_component() {
     expect![[r#"
-        2:18-19 error S3006: component `R` lacks the property `ID`
+        2:18-19 error S3006: component `R` needs the property `ID`
           help: add `<property name="ID">...</property>`: a text that is not empty
-        2:18-19 error S3006: component `R` lacks the property `number`
+        2:18-19 error S3006: component `R` needs the property `number`
           help: add `<property name="number">...</property>`: a whole number from 1 to 99
-        2:18-19 error S3006: component `R` lacks the property `period`
+        2:18-19 error S3006: component `R` needs the property `period`
           help: add `<property name="period">...</property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
         4:17-19 error S3004: class `example.Robot` has no property `Id`
           fix: replace `Id` with `ID` [4:17-19 "ID"]
@@ -148,7 +149,7 @@ fn missing_properties_stand_at_the_name_of_the_component() {
 <property name="Id">S</property><property name="peroid">100</property><property name="number">5</property></component>"#,
     ));
     expect![[r#"
-        2:20-21 error S3006: component `C` lacks the property `period`
+        2:20-21 error S3006: component `C` needs the property `period`
           help: add `<s:property name="period">...</s:property>`: a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
     "#]].assert_eq(&faults_of(
         &[r#"<s:composite xmlns:s="http://www.osoa.org/xmlns/sca/1.0" targetNamespace="urn:t" name="fleet">
@@ -175,7 +176,7 @@ fn values_of_the_wrong_type() {
         7:24-28 error S3007: property `grace`: `soon` is not a duration: expected a duration (in ms, or with a unit: ns, us, ms, s, min, h)
           help: the default is `10ms`
         8:26-27 error S3007: property `charger`: found `5`, expected the properties x, y
-          help: write each as an element inside
+          help: write each of them as an element inside
           help: `charger`: Where it charges
         9:47-48 error S3011: the property `delay` allows one value, found 2
           9:31-32 the first
@@ -308,11 +309,11 @@ fn empty_values() {
 fn values_in_two_ways_and_complex_ones() {
     expect![[r#"
         3:34-35 error S3012: the property `speed` is given a value in two ways
-          3:31-32 the other one
-          help: write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
+          3:31-32 the other value
+          help: write it in one way: as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
         4:42-43 error S3012: the property `number` is given a value in two ways
-          4:26-31 the other one
-          help: write it as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
+          4:26-31 the other value
+          help: write it in one way: as text inside, as the attribute `value`, as `<value>` elements, or in a `file`
         5:25-26 error S3007: the property `grace` has elements inside: expected a duration (in ms, or with a unit: ns, us, ms, s, min, h)
           help: the default is `10ms`
         6:38-39 error S3007: property `charger.x`: `a` is not a whole number: expected a whole number from -2147483648 to 2147483647
@@ -341,13 +342,13 @@ fn unique_values_and_shared_ids() {
     expect![[r#"
         3:85-86 error S3013: components `A` and `B` have the same `ID` `R`
           2:88-89 the first
-          help: every robot needs its own
+          help: give every robot its own `ID`
         5:85-89 warning S4001: components `C` and `D` share the ID `MEMS`
           4:85-89 the first
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
         6:85-86 warning S4001: components `A` and `E` share the ID `R`
           2:88-89 the first
-          help: messages and reports name tasks by their ID
+          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
     "#]].assert_eq(&faults(
         r#"<component name="A"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
 <component name="B"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1</property><property name="number">2</property></component>
@@ -378,9 +379,9 @@ fn constructors_have_the_last_word() {
     let (_, after) = place.split_once(": ").unwrap();
     expect![[r#"
         2:18-19 error S3014: component `R`: a red robot drives at most 2 m/s
-          help: `saoms components example.Robot001` says what its properties mean
+          help: `saoms components example.Robot001` describes its properties
         5:18-19 error S3014: component `F`: panicked at saoms-lang/tests/suite/check/classes.rs: do not touch
-          help: `saoms components example.Fragile` says what its properties mean
+          help: `saoms components example.Fragile` describes its properties
     "#]]
     .assert_eq(&format!("{before}classes.rs: {after}"));
 }

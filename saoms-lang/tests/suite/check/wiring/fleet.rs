@@ -64,7 +64,7 @@ fn names_that_are_nearly_the_same_are_told_together() {
     expect![[r#"
         2:18-19 warning S4012: component `D` publishes topic `ORDERS`, which no component reads: there is `orders`
           3:173-179 reads `orders`
-          help: `topicRename` gives topics other names
+          help: connect the two topics with `topicRename`
     "#]]
     .assert_eq(&found(&fleet(&[("D", "Dispatcher", ""), ("P", "Picker", &rename("ORDERS,orders"))])));
     expect![[r#"
@@ -91,7 +91,7 @@ fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
     expect![[r#"
         2:210-219 warning S4012: component `A` hears only itself on topic `postopics`: others use `POSTOPIC`
           3:18-19 uses `POSTOPIC`
-          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+          help: correct `topicRename`: remove a pair, or change its new name
     "#]]
     .assert_eq(&found("postopics"));
     expect![""].assert_eq(&found("elsewhere"));
@@ -114,7 +114,7 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
     expect![[r#"
         2:212-219 warning S4012: component `R0` hears only itself on topic `POSTOPC`: others use `POSTOPIC`
           3:18-20 uses `POSTOPIC`
-          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+          help: correct `topicRename`: remove a pair, or change its new name
     "#]]
     .assert_eq(&found(&["POSTOPC", ""]));
     expect![""].assert_eq(&found(&["HALL_1", "HALL_1", "HALL_2"]));
@@ -122,12 +122,12 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
     expect![[r#"
         2:212-219 warning S4012: component `R0` and another one hear only each other on topic `POSTOPC`: others use `POSTOPIC`
           4:18-20 uses `POSTOPIC`
-          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+          help: correct `topicRename`: remove a pair, or change its new name
     "#]].assert_eq(&found(&["POSTOPC", "POSTOPC", "", ""]));
     expect![[r#"
         2:212-220 warning S4012: component `R0` and another one hear only each other on topic `postopic`: others use `POSTOPIC`
           4:18-20 uses `POSTOPIC`
-          help: `topicRename` gives topics other names: remove a pair from it, or correct its new name
+          help: correct `topicRename`: remove a pair, or change its new name
     "#]].assert_eq(&found(&["postopic", "postopic", "", ""]));
     // Halls of one file, kept apart.
     expect![""].assert_eq(&found(&["POSTOPIC2", "POSTOPIC2", "", ""]));
@@ -142,7 +142,7 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
     expect![""].assert_eq(&both(&slow("11")));
     expect![[r#"
         3:161-163 note S4013: up to 11 messages of topic `ORDERS` can arrive between two executions of component `P`, and the queue holds 10
-          help: component `D` publishes it: there are so many if each sends one per execution, usually there are fewer
+          help: component `D` publishes it: this is the case if each sends one message per execution; usually there are fewer
           help: if a run reports lost messages, give the readers a `queue` of 11, or a shorter `period`
     "#]].assert_eq(&both(&slow("10")));
     expect![""].assert_eq(&both(&format!("{}<property name=\"loss\">accept</property>", slow("10"))));
@@ -152,15 +152,15 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
     all.extend(pickers.iter().map(|(name, properties)| (*name, "Picker", properties.as_str())));
     expect![[r#"
         3:161-162 note S4013: up to 11 messages of topic `ORDERS` can arrive between two executions of component `P` and another one, and the queue holds 1
-          help: component `D` publishes it: there are so many if each sends one per execution, usually there are fewer
+          help: component `D` publishes it: this is the case if each sends one message per execution; usually there are fewer
           help: if a run reports lost messages, give the readers a `queue` of 11, or a shorter `period`
         6:161-162 note S4013: up to 11 messages of topic `ORDERS` can arrive between two executions of component `S`, and the queue holds 2
-          help: component `D` publishes it: there are so many if each sends one per execution, usually there are fewer
+          help: component `D` publishes it: this is the case if each sends one message per execution; usually there are fewer
           help: if a run reports lost messages, give the readers a `queue` of 11, or a shorter `period`
     "#]].assert_eq(&found(&fleet(&all)));
     expect![[r#"
         3:18-27 note S4013: up to 1200 messages of topic `ORDERS` can arrive between two executions of component `P1` and 399 others, and the queue holds 1024
-          help: component `D1` and 399 others publish it: there are so many if each sends one per execution, usually there are fewer
+          help: component `D1` and 399 others publish it: this is the case if each sends one message per execution; usually there are fewer
           help: if a run reports lost messages, give the readers a `queue` of 1200, or a shorter `period`
     "#]].assert_eq(&found(&fleet(&[
         ("D${index}", "Dispatcher", ""),
@@ -172,9 +172,9 @@ fn queues_have_room_for_what_can_come_between_two_executions() {
 fn readers_in_a_hurry_are_told_once_for_each_period() {
     expect![[r#"
         3:18-19 note S4014: component `P` and another one read topic `ORDERS` every 50ms, but no component publishes it more often than every 100ms
-          help: some of its executions find nothing new
+          help: some of its executions receive nothing new
         5:18-19 note S4014: component `R` reads topic `ORDERS` every 20ms, but no component publishes it more often than every 100ms
-          help: some of its executions find nothing new
+          help: some of its executions receive nothing new
     "#]].assert_eq(&found(&fleet(&[
         ("D", "Dispatcher", ""),
         ("P", "Picker", &period("50")),

@@ -49,19 +49,19 @@ fn what_is_wrong_with_several_that_are_promoted_together_is_told_once() {
     };
     let (one, many) = ("multiplicity='1..1'", "multiplicity='1..n'");
     expect![[r#"
-        4:35-39 error S2036: `w` promotes 2 references that `0..n` does not narrow: `A/r` takes `1..1` and `B/r` takes `1..n`
+        4:35-39 error S2036: `w` promotes 2 references whose multiplicity is narrower than `0..n`: `A/r` takes `1..1` and `B/r` takes `1..n`
           help: it can be `1..1`
     "#]].assert_eq(&promoted(&[one, many], "0..n"));
     expect![[r#"
-        6:35-39 error S2036: `w` promotes 4 references that `0..n` does not narrow: `A/r` takes `1..1`, `B/r` takes `1..n`, `C/r` takes `1..1` and 1 more
+        6:35-39 error S2036: `w` promotes 4 references whose multiplicity is narrower than `0..n`: `A/r` takes `1..1`, `B/r` takes `1..n`, `C/r` takes `1..1` and 1 more
           help: it can be `1..1`
     "#]].assert_eq(&promoted(&[one, many, one, one], "0..n"));
     let fixed = "multiplicity='1..1' nonOverridable='true' target='A'";
     expect![[r#"
         4:18-19 error S2037: the references `A/r` and `B/r` must not be overridden
-          2:111-115 said here
-          3:111-115 said here
-          help: do not promote them, or leave `nonOverridable` out
+          2:111-115 `nonOverridable` is set here
+          3:111-115 `nonOverridable` is set here
+          help: do not promote them, or remove `nonOverridable`
     "#]]
     .assert_eq(&promoted(&[fixed, fixed], "1..1"));
 }
@@ -90,11 +90,11 @@ fn interfaces_of_composites_are_those_of_the_classes() {
           fix: replace `example.Position` with `example.Wheels` [5:63-79 "example.Wheels"]
         7:83-99 error S2007: the interface of `w` is `example.Wheels`, not `example.Position`
           fix: replace `example.Position` with `example.Wheels` [7:83-99 "example.Wheels"]
-        8:18-19 warning S2022: reference `v` of the composite is wired to no service: calls through it fail
-          help: the composite runs by itself, and nothing around it can wire its references
+        8:18-19 warning S2022: reference `v` of the composite is not wired to a service: calls through it fail
+          help: wire the component's reference inside the composite: a composite that runs by itself has nothing around it
         8:36-42 error S2007: reference `v` of the composite promotes references with the interfaces `example.Positions` and `unibg.robotics.tca.TaskInterface`
           8:30-35 the first
-          help: promote each by a reference of its own: no service has both interfaces
+          help: promote each with its own reference: no service has both interfaces
     "#]].assert_eq(&faults(wrong));
 }
 
@@ -118,7 +118,7 @@ fn interfaces_that_differ_inside_are_told_inside_alone() {
     expect![[r#"
         hall:4:36-42 error S2007: reference `v` of the composite promotes references with the interfaces `example.Positions` and `unibg.robotics.tca.TaskInterface`
           hall:4:30-35 the first
-          help: promote each by a reference of its own: no service has both interfaces
+          help: promote each with its own reference: no service has both interfaces
     "#]].assert_eq(&all);
 }
 
@@ -138,8 +138,8 @@ fn a_promoted_reference_is_wired_where_it_has_an_address_or_nobody_knows_what_ta
         )
     };
     expect![[r#"
-        2:18-19 warning S2022: reference `R` of the composite is wired to no service: calls through it fail
-          help: the composite runs by itself, and nothing around it can wire its references
+        2:18-19 warning S2022: reference `R` of the composite is not wired to a service: calls through it fail
+          help: wire the component's reference inside the composite: a composite that runs by itself has nothing around it
     "#]]
     .assert_eq(&told(&class("example.Robot001"), ""));
     let address = "<reference name='r'><binding.ws uri='http://x'/></reference>";

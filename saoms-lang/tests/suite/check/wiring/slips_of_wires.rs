@@ -10,13 +10,13 @@ fn a_target_of_nothing_is_told() {
     let inside = robot("R", "<property name=\"number\">1</property>\n<reference name=\"gps\" target=\" \"/>");
     expect![[r#"
         4:23-33 warning S1011: `target` names nothing
-          help: name a component, or leave `target` out
+          help: name a component, or remove `target`
         R (example.Robot) ID=Text("R") number=Integer(1) gps->
     "#]]
     .assert_eq(&of(&inside));
     let needed = "<component name=\"N\"><implementation.java class=\"example.Navigator\"/>\n<reference name=\"wheels\" target=\"\"/></component>";
     expect![[r#"
-        3:18-24 error S2018: reference `wheels` of component `N` is wired to no service
+        3:18-24 error S2018: reference `wheels` of component `N` is not wired to a service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&of(needed));
@@ -35,19 +35,19 @@ fn targets_are_written_as_sca_writes_them() {
     };
     expect![[r#"
         4:99-102 error S2011: there is no component `G,H`
-          help: several stand between blanks
+          help: separate several names with blanks
           fix: replace `G,H` with `G H` [4:99-102 "G H"]
     "#]]
     .assert_eq(&conductor("G,H"));
     expect![[r#"
         4:99-101 error S2011: there is no component `G,`
-          help: several stand between blanks
+          help: separate several names with blanks
           fix: replace `G,` with `G` [4:99-101 "G"]
     "#]]
     .assert_eq(&conductor("G, H"));
     expect![[r#"
         4:99-101 error S2011: there is no component `G;`
-          help: several stand between blanks
+          help: separate several names with blanks
           fix: replace `G;` with `G` [4:99-101 "G"]
         4:102-103 error S2011: there is no component `X`
           help: the components are `G` and `H`
@@ -55,16 +55,16 @@ fn targets_are_written_as_sca_writes_them() {
     .assert_eq(&conductor("G; X"));
     expect![[r#"
         4:99-109 error S2011: there is no component `G#position`
-          help: the name of a service stands behind `/`
+          help: write the name of a service after `/`
           fix: replace `G#position` with `G/position` [4:99-109 "G/position"]
     "#]]
     .assert_eq(&conductor("G#position"));
     expect![[r#"
         4:99-109 error S2011: there is no component `G.position`
-          help: the name of a service stands behind `/`
+          help: write the name of a service after `/`
           fix: replace `G.position` with `G/position` [4:99-109 "G/position"]
         4:110-121 error S2011: there is no component `H::position`
-          help: the name of a service stands behind `/`
+          help: write the name of a service after `/`
           fix: replace `H::position` with `H/position` [4:110-121 "H/position"]
     "#]]
     .assert_eq(&conductor("G.position H::position"));
@@ -87,14 +87,14 @@ fn a_wire_the_wrong_way_round_is_told_once() {
     let robot = robot("R", "<property name=\"number\">1</property>");
     let twins = "<component name=\"C\"><implementation.java class=\"example.Twins\"/></component>";
     expect![[r#"
-        5:15-16 error S2016: this wire goes backwards: `C` offers a service, and `R/gps` is a reference
+        5:15-16 error S2016: this wire is reversed: `C` offers a service, and `R/gps` is a reference
           fix: swap `source` and `target` [5:15-16 "R/gps"] [5:26-31 "C"]
         5:15-16 error S2015: component `C` offers no service with the interface `example.Positions`
           help: it offers `left` (example.Wheels), `right` (example.Wheels)
     "#]]
     .assert_eq(&of(&format!("{twins}\n{robot}\n<wire source=\"C\" target=\"R/gps\"/>")));
     expect![[r#"
-        5:15-25 error S2016: this wire goes backwards: `G/position` offers a service, and `R/gps` is a reference
+        5:15-25 error S2016: this wire is reversed: `G/position` offers a service, and `R/gps` is a reference
           fix: swap `source` and `target` [5:15-25 "R/gps"] [5:35-40 "G/position"]
     "#]]
     .assert_eq(&of(&format!("{GPS}\n{robot}\n<wire source=\"G/position\" target=\"R/gps\"/>")));
@@ -112,8 +112,8 @@ fn a_reference_of_a_composite_is_promoted_by_it() {
     );
     expect![[r#"
         3:80-83 error S2006: composite `inner` has no reference `gps`
-          inner:1:115-120 this one
-          help: it has those of its components that it promotes: write `<reference name="gps" promote="COMPONENT/reference"/>` in it
+          inner:1:115-120 the composite
+          help: a composite has only the references that it promotes: write `<reference name="gps" promote="COMPONENT/reference"/>` in it
     "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
 }
 
@@ -125,7 +125,7 @@ fn beside_an_include_that_leads_nowhere_no_reference_lacks_a_target() {
     let wires = part("c", "", &format!("<wire source=\"N/wheels\" target=\"R\"/>{}", robot("R", "")));
     expect![[r#"
         2:16-19 error S2030: there is no composite `C` in the namespace `urn:t`
-          help: give the file of that composite, too, beside this one
+          help: name the file of that composite in the command as well
           fix: replace `t:C` with `t:c` [2:16-19 "t:c"]
     "#]]
     .assert_eq(&outcome(&[&fleet, &wires], &[]));
@@ -159,13 +159,13 @@ fn what_is_inside_is_named_by_what_is_promoted() {
     let said = ["U/G/position", "U.G/position", "U.G", "U/N"].map(target).concat();
     expect![[r#"
         5:33-34 error S2012: component `U` has no service `G`
-          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
+          help: `G` is inside `U`: use what the composite of `U` promotes
           fix: replace `U/G/position` with `U/where` [5:31-43 "U/where"]
         5:31-34 error S2011: there is no component `U.G`
-          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
+          help: `G` is inside `U`: use what the composite of `U` promotes
           fix: replace `U.G/position` with `U/where` [5:31-43 "U/where"]
         5:31-34 error S2011: there is no component `U.G`
-          help: `G` is inside of `U`, and reached by what the composite of `U` promotes
+          help: `G` is inside `U`: use what the composite of `U` promotes
           fix: replace `U.G` with `U/where` [5:31-34 "U/where"]
         5:33-34 error S2012: component `U` has no service `N`
           help: its services are `where`
@@ -180,7 +180,7 @@ fn what_is_inside_is_named_by_what_is_promoted() {
     .assert_eq(&with_unit(&format!("{GPS}\n{own}")));
     expect![[r#"
         3:15-27 error S2010: `U/G/position` has the wrong form
-          help: `G` is inside of `U`, and reached by what the composite of `U` promotes: of `G` it promotes no reference
+          help: `G` is inside `U`: use what the composite of `U` promotes; it promotes no reference of `G`
     "#]]
     .assert_eq(&with_unit("<wire source=\"U/G/position\" target=\"U\"/>"));
 }
@@ -198,27 +198,27 @@ fn one_of_replicas_is_taken_where_all_are_named() {
     let by_target = "<reference name=\"wheels\" target=\"R*/move\"/></component>";
     expect![[r#"
         4:34-41 error S2017: reference `wheels` of component `N` allows one target, found 2
-          help: `R*` stands for all replicas, and one is taken
+          help: `R*` names all replicas, but the reference takes one target
           fix: replace `R*/move` with `R1/move` [4:34-41 "R1/move"]
           fix: replace `R*/move` with `R2/move` [4:34-41 "R2/move"]
     "#]]
     .assert_eq(&navigators("N\"", by_target));
     expect![[r#"
         4:34-41 error S2017: reference `wheels` of component `N1` allows one target, found 2 (index 1, and in 1 more)
-          help: `R*` stands for all replicas, and one is taken
+          help: `R*` names all replicas, but the reference takes one target
           fix: replace `R*/move` with `R${index}/move` [4:34-41 "R${index}/move"]
     "#]]
     .assert_eq(&navigators("N${index}\" saoms:count=\"2\"", by_target));
     expect![[r#"
         4:34-41 error S2017: reference `wheels` of component `N2` allows one target, found 2 (index 2, and in 1 more)
-          help: `R*` stands for all replicas, and one is taken
+          help: `R*` names all replicas, but the reference takes one target
           fix: replace `R*/move` with `R${index}/move` [4:34-41 "R${index}/move"]
     "#]]
     .assert_eq(&navigators("N${index}\" saoms:from=\"2\" saoms:count=\"2\"", by_target));
     let by_wire = "</component>\n<wire source=\"N/wheels\" target=\"R*\"/>";
     expect![[r#"
         5:33-35 error S2017: reference `wheels` of component `N` allows one target, found 2
-          help: `R*` stands for all replicas, and one is taken
+          help: `R*` names all replicas, but the reference takes one target
           fix: replace `R*` with `R1` [5:33-35 "R1"]
           fix: replace `R*` with `R2` [5:33-35 "R2"]
     "#]]

@@ -112,7 +112,7 @@ fn bindings_of_targets() {
         3:46-49 error S2012: component `R` has no service `mve`
           fix: replace `mve` with `move` [3:46-49 "move"]
         5:27-37 warning S2009: `binding.ws` is not supported: calls through it fail
-          help: remove it; other machines are reached through topics and the `url` of a message broker
+          help: remove it; to reach other machines, use topics and the `url` of a message broker
     "#]]
     .assert_eq(&faults(&by_binding));
 }
@@ -164,19 +164,19 @@ fn a_reference_without_a_target() {
 <component name="L"><implementation.java class="example.Navigator"/>
 <reference name="wheels" wiredByImpl="true"/></component>"#;
     expect![[r#"
-        2:18-19 error S2018: reference `wheels` of component `N` is wired to no service
+        2:18-19 error S2018: reference `wheels` of component `N` is not wired to a service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
-        4:18-24 error S2018: reference `wheels` of component `M` is wired to no service
+        4:18-24 error S2018: reference `wheels` of component `M` is not wired to a service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&faults_of(&[&fleet(text)], &[]));
     expect![[r#"
-        2:18-19 warning S2018: reference `wheels` of component `N` is wired to no service
+        2:18-19 warning S2018: reference `wheels` of component `N` is not wired to a service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
-          help: calls through it fail
-        4:18-24 warning S2018: reference `wheels` of component `M` is wired to no service
+          help: without a target, calls through it fail
+        4:18-24 warning S2018: reference `wheels` of component `M` is not wired to a service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
-          help: calls through it fail
+          help: without a target, calls through it fail
     "#]]
     .assert_eq(&faults_of(&[&fleet_1_0(text)], &[]));
 }
@@ -184,7 +184,7 @@ fn a_reference_without_a_target() {
 #[test]
 fn circles_of_calls() {
     expect![[r#"
-        5:34-35 error S2020: components call each other in a circle: `R` -> `N` -> `R`
+        5:34-35 error S2020: components call each other in a cycle: `R` -> `N` -> `R`
           3:31-32 `R` calls `N` through `gps`
           help: a call waits for its answer, and a component that waits cannot answer: remove one of the wires, or use a topic
         6:95-96 error S2020: component `G` is wired to itself: it would call while it is busy
@@ -206,7 +206,7 @@ fn circles_of_calls() {
         (0..count).map(component).collect()
     };
     expect![[r#"
-        11:96-98 error S2020: components call each other in a circle: `G0` -> `G1` -> `G2` -> `G3` -> `G4` -> `G5` -> `G6` -> `G7` -> 2 more -> `G0`
+        11:96-98 error S2020: components call each other in a cycle: `G0` -> `G1` -> `G2` -> `G3` -> `G4` -> `G5` -> `G6` -> `G7` -> 2 more -> `G0`
           2:96-98 `G0` calls `G1` through `other`
           3:96-98 `G1` calls `G2` through `other`
           4:96-98 `G2` calls `G3` through `other`
@@ -232,7 +232,7 @@ fn autowire_finds_the_only_fitting_service() {
     let twins = r#"<component name="T"><implementation.java class="example.Twins"/></component>"#;
     assert_eq!(faults_of(&[&text("true", robot)], &[]), "");
     expect![[r#"
-        3:18-24 error S2018: reference `wheels` of component `N` is wired to no service
+        3:18-24 error S2018: reference `wheels` of component `N` is not wired to a service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
     "#]]
     .assert_eq(&faults_of(
@@ -245,7 +245,7 @@ fn autowire_finds_the_only_fitting_service() {
     "#]]
     .assert_eq(&faults_of(&[&text("true", &format!("{robot}{twins}"))], &[]));
     expect![[r#"
-        3:18-24 error S2018: reference `wheels` of component `N` is wired to no service
+        3:18-24 error S2018: reference `wheels` of component `N` is not wired to a service
           help: give it a target with the interface `example.Wheels`: `<reference name="wheels" target="..."/>`
           help: autowire finds no service with this interface
     "#]]
