@@ -136,6 +136,10 @@ impl Provider for Part {
         self.plugin.code()?.classes.get(self.place).ok_or("the library has no such class")?.construct(values)
     }
 
+    fn load(&self) -> Result<(), Failure> {
+        self.plugin.code().map(drop)
+    }
+
     fn origin(&self) -> Option<&Path> {
         Some(self.plugin.path())
     }
@@ -149,6 +153,10 @@ impl LoopProvider for Part {
     fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         // The loader checked that each of the metadata has its table.
         self.plugin.code()?.loops.get(self.place).ok_or("the library has no such loop")?.construct(values)
+    }
+
+    fn load(&self) -> Result<(), Failure> {
+        self.plugin.code().map(drop)
     }
 
     fn origin(&self) -> Option<&Path> {

@@ -71,6 +71,14 @@ impl RegisteredClass {
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         self.provider.construct(values)
     }
+
+    /// Loads its code, if that is not there yet.
+    ///
+    /// # Errors
+    /// Its library cannot be loaded.
+    pub fn load(&self) -> Result<(), Failure> {
+        self.provider.load()
+    }
 }
 
 /// The source of the code of a class.
@@ -80,6 +88,14 @@ pub trait Provider: fmt::Debug + Send + Sync {
     /// # Errors
     /// As there.
     fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure>;
+
+    /// As [`RegisteredClass::load`].
+    ///
+    /// # Errors
+    /// As there.
+    fn load(&self) -> Result<(), Failure> {
+        Ok(())
+    }
 
     /// As [`RegisteredClass::origin`].
     fn origin(&self) -> Option<&Path>;

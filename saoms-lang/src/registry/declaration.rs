@@ -249,6 +249,52 @@ impl From<InterfaceFields> for InterfaceDeclaration {
     }
 }
 
+impl InterfaceDeclaration {
+    /// In words, how an interface of this name whose operations differ from those of this one does so.
+    pub fn difference(&self, other: &InterfaceDeclaration) -> String {
+        let of = |one: &InterfaceDeclaration| one.operations.as_array().cloned().unwrap_or_default();
+        let (own, others) = (of(self), of(other));
+        let Some(place) = (0..own.len().max(others.len())).find(|place| own.get(*place) != others.get(*place)) else {
+            return "its operations differ".to_owned();
+        };
+        match (own.get(place), others.get(place)) {
+            (Some(own), None) => format!("it has no operation `{}`", signature(own)),
+            (None, Some(other)) => format!("it has an operation `{}` more", signature(other)),
+            (Some(own), Some(other)) if signature(own) != signature(other) => {
+                format!("its operation is `{}`, expected `{}`", signature(other), signature(own))
+            }
+            (Some(own), _) => format!("a type in its operation `{}` has other fields", signature(own)),
+            (None, None) => String::new(),
+        }
+    }
+}
+
+/// An operation as authors write it.
+fn signature(operation: &Value) -> String {
+    let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let arguments = operation["arguments"].as_array().into_iter().flatten();
+    let arguments: Vec<String> =
+        arguments.map(|one| format!("{}: {}", word(&one["name"]), type_name(&one["type"]))).collect();
+    let reply = match type_name(&operation["reply"]) {
+        none if none.is_empty() => none,
+        reply => format!(" -> {reply}"),
+    };
+    format!("{}({}){reply}", word(&operation["name"]), arguments.join(", "))
+}
+
+/// The short form of a type of schemas: `int32`, `sequence of Block`.
+pub fn type_name(value: &Value) -> String {
+    let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let Value::Object(object) = value else { return word(value) };
+    match (object.get("optional"), object.get("sequence"), object.get("name"), object.get("enumeration")) {
+        (Some(of), ..) => format!("{}, or none", type_name(of)),
+        (_, Some(of), ..) => format!("sequence of {}", type_name(of)),
+        (_, _, Some(name), _) => word(name),
+        (.., Some(of)) => format!("one of a {} enumeration", word(of)),
+        _ => String::new(),
+    }
+}
+
 impl PartialEq for InterfaceDeclaration {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name && self.text == other.text

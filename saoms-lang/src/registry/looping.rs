@@ -164,6 +164,14 @@ impl RegisteredLoop {
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         self.provider.construct(values)
     }
+
+    /// Loads its code, if that is not there yet.
+    ///
+    /// # Errors
+    /// Its library cannot be loaded.
+    pub fn load(&self) -> Result<(), Failure> {
+        self.provider.load()
+    }
 }
 
 /// The source of the code of a loop.
@@ -173,6 +181,14 @@ pub trait LoopProvider: fmt::Debug + Send + Sync {
     /// # Errors
     /// As there.
     fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure>;
+
+    /// As [`RegisteredLoop::load`].
+    ///
+    /// # Errors
+    /// As there.
+    fn load(&self) -> Result<(), Failure> {
+        Ok(())
+    }
 
     /// As [`RegisteredLoop::origin`].
     fn origin(&self) -> Option<&Path>;

@@ -24,6 +24,7 @@ use saoms_api::host::{LoopRegistration, Registration};
 use saoms_api::rule::{Code, FleetRule};
 
 pub use class::{Provider, RegisteredClass};
+pub use declaration::type_name;
 pub use declaration::{
     Alias, ClassDeclaration, ClassKind, ClassTopic, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
     ServiceDeclaration,

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use saoms_lang::registry::{ClassDeclaration, DeclaredEntry, RegisteredLoop};
+use saoms_lang::registry::{ClassDeclaration, DeclaredEntry, RegisteredLoop, type_name};
 
-use super::{first_sentence, interface_lines, property_lines, section, topic_line, type_name, wrapped};
+use super::{first_sentence, interface_lines, library_line, property_lines, section, topic_line, types, wrapped};
 
 /// A line per loop.
 pub(super) fn listed(loops: &[&RegisteredLoop]) -> String {
@@ -19,6 +19,7 @@ pub(super) fn listed(loops: &[&RegisteredLoop]) -> String {
 pub(super) fn described(one: &RegisteredLoop) -> String {
     let declaration = one.declaration();
     let mut text = format!("{} (loop)\n", one.name());
+    text.push_str(&library_line(one.origin()));
     for line in wrapped(&declaration.doc, 100) {
         let _ = writeln!(text, "  {line}");
     }
@@ -37,6 +38,11 @@ pub(super) fn described(one: &RegisteredLoop) -> String {
     let references = declaration.references.iter();
     let references = references.map(|reference| interface_lines(&reference.name, "", &reference.interface));
     section(&mut text, "References", references.collect());
+    types::section_of(
+        &mut text,
+        declaration.publishes.iter().chain(&declaration.subscribes).collect(),
+        declaration.references.iter().map(|reference| &reference.interface).collect(),
+    );
     text
 }
 

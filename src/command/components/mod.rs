@@ -2,8 +2,10 @@
 
 mod loops;
 mod rules;
+mod types;
 
 use std::fmt::Write;
+use std::path::Path;
 
 use clap::Args;
 use saoms_api::Properties;
@@ -133,6 +135,7 @@ fn described(class: &RegisteredClass) -> String {
     if !declaration.extends.is_empty() {
         let _ = writeln!(text, "  extends {}", declaration.extends.join(", which extends "));
     }
+    text.push_str(&library_line(class.origin()));
     for line in wrapped(&declaration.doc, 100) {
         let _ = writeln!(text, "  {line}");
     }
@@ -161,6 +164,15 @@ fn described(class: &RegisteredClass) -> String {
         )
     });
     section(&mut text, "References", references.collect());
+    types::section_of(
+        &mut text,
+        declaration.publishes.iter().chain(&declaration.subscribes).collect(),
+        declaration
+            .offers()
+            .map(|service| &service.interface)
+            .chain(declaration.references.iter().map(|reference| &reference.interface))
+            .collect(),
+    );
     loops::of_class(declaration, &mut text);
     if !class.is_alias() {
         let names = declaration.also.iter().map(|alias| {
@@ -208,6 +220,11 @@ fn property_lines((property, preset): (&PropertyDeclaration, Option<&str>)) -> S
     text
 }
 
+/// The library that a class or loop comes from.
+fn library_line(origin: Option<&Path>) -> String {
+    origin.map_or_else(String::new, |path| format!("  from the library {}\n", path.display()))
+}
+
 fn topic_line(topic: &ClassTopic) -> String {
     format!("  {} ({} topic of {})\n", topic.name, topic.kind.name(), topic.message)
 }
@@ -219,9 +236,9 @@ fn interface_lines(name: &str, more: &str, interface: &InterfaceDeclaration) -> 
             .as_array()
             .into_iter()
             .flatten()
-            .map(|argument| format!("{}: {}", plain(&argument["name"]), type_name(&argument["type"])))
+            .map(|argument| format!("{}: {}", plain(&argument["name"]), types::described(&argument["type"])))
             .collect();
-        let reply = match type_name(&operation["reply"]) {
+        let reply = match types::described(&operation["reply"]) {
             reply if reply.is_empty() => reply,
             reply => format!(" -> {reply}"),
         };
@@ -232,24 +249,6 @@ fn interface_lines(name: &str, more: &str, interface: &InterfaceDeclaration) -> 
 
 fn plain(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
-}
-
-/// Short form of a field type of the contract: `int32`, `sequence of Block`.
-fn type_name(value: &Value) -> String {
-    match value {
-        Value::Object(object) => {
-            if let Some(of) = object.get("optional") {
-                return format!("{}, or none", type_name(of));
-            }
-            match (object.get("sequence"), object.get("name"), object.get("enumeration")) {
-                (Some(of), _, _) => format!("sequence of {}", type_name(of)),
-                (_, Some(name), _) => plain(name).to_owned(),
-                (_, _, Some(of)) => format!("one of a {} enumeration", plain(of)),
-                _ => String::new(),
-            }
-        }
-        other => plain(other).to_owned(),
-    }
 }
 
 /// The class's declaration; that of a periodic class includes the task properties.

@@ -15,7 +15,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn of(package: &str) -> Result<Names, String> {
+    pub(super) fn of(package: &str, kind: PluginKind) -> Result<Names, String> {
         let starts = package.starts_with(|first: char| first.is_ascii_lowercase());
         let fits =
             package.chars().all(|sign| sign.is_ascii_lowercase() || sign.is_ascii_digit() || "-_".contains(sign));
@@ -46,9 +46,11 @@ impl Names {
             ));
         }
         let taken = if WORDS.contains(&package) {
-            "a name of Rust itself"
+            "a name of Rust itself".to_owned()
         } else if CRATES.contains(&package.replace('_', "-").as_str()) {
-            "a crate of SAOMS itself"
+            "a crate of SAOMS itself".to_owned()
+        } else if let Some(name) = Template::of(kind).clash(&class) {
+            format!("the name of its type, and `{name}` is used by the code that is made")
         } else {
             return Ok(Names { package: package.to_owned(), library: package.replace('-', "_"), class });
         };
@@ -104,31 +106,55 @@ impl Source {
     }
 }
 
+/// What a plugin of a kind is made from.
+struct Template {
+    library: &'static str,
+    fleet: &'static str,
+    composite: &'static str,
+    about: &'static str,
+    /// True if it needs the components that ship.
+    components: bool,
+}
+
+impl Template {
+    fn of(kind: PluginKind) -> Template {
+        match kind {
+            PluginKind::Component => Template {
+                library: include_str!("templates/component/lib.rs"),
+                fleet: include_str!("templates/component/fleet.rs"),
+                composite: include_str!("templates/component/fleet.composite"),
+                about: "counts, and publishes the count on its own topic",
+                components: false,
+            },
+            PluginKind::Robot => Template {
+                library: include_str!("templates/robot/lib.rs"),
+                fleet: include_str!("templates/robot/fleet.rs"),
+                composite: include_str!("templates/robot/fleet.composite"),
+                about: "drives a robot: its wheels and its arm",
+                components: true,
+            },
+            PluginKind::Loop => Template {
+                library: include_str!("templates/loop/lib.rs"),
+                fleet: include_str!("templates/loop/fleet.rs"),
+                composite: include_str!("templates/loop/fleet.composite"),
+                about: "lets a robot watch its battery",
+                components: true,
+            },
+        }
+    }
+
+    /// The name in its code that is also one that a plugin with this class would bring.
+    fn clash(&self, class: &str) -> Option<&'static str> {
+        let own = [class.to_owned(), format!("{class}Properties")];
+        let is_part = |sign: char| sign.is_ascii_alphanumeric() || sign == '_';
+        let mut words = [self.library, self.fleet].into_iter().flat_map(|text| text.split(move |sign| !is_part(sign)));
+        words.find(|word| own.iter().any(|own| own == word))
+    }
+}
+
 /// The files of a plugin, by their places in its folder.
 pub(super) fn plugin(names: &Names, kind: PluginKind, source: &Source) -> Vec<(PathBuf, String)> {
-    let (library, fleet, composite, about, components) = match kind {
-        PluginKind::Component => (
-            include_str!("templates/component/lib.rs"),
-            include_str!("templates/component/fleet.rs"),
-            include_str!("templates/component/fleet.composite"),
-            "counts, and publishes the count on its own topic",
-            false,
-        ),
-        PluginKind::Robot => (
-            include_str!("templates/robot/lib.rs"),
-            include_str!("templates/robot/fleet.rs"),
-            include_str!("templates/robot/fleet.composite"),
-            "drives a robot: its wheels and its arm",
-            true,
-        ),
-        PluginKind::Loop => (
-            include_str!("templates/loop/lib.rs"),
-            include_str!("templates/loop/fleet.rs"),
-            include_str!("templates/loop/fleet.composite"),
-            "lets a robot watch its battery",
-            true,
-        ),
-    };
+    let Template { library, fleet, composite, about, components } = Template::of(kind);
     let fill = |text: &str| {
         text.replace("my-plugin", &names.package)
             .replace("my_plugin", &names.library)
@@ -176,10 +202,13 @@ mod tests {
 
     #[test]
     fn names_follow_from_the_package() {
-        let names = Names::of("my-robot2").unwrap();
+        let names = Names::of("my-robot2", PluginKind::Component).unwrap();
         assert_eq!((names.library.as_str(), names.class.as_str()), ("my_robot2", "MyRobot2"));
         for wrong in ["", "MyRobot", "2robots", "mein-röbot", "a/b", "-a"] {
-            assert!(Names::of(wrong).err().unwrap().contains("expected one for a Rust package"), "{wrong}");
+            assert!(
+                Names::of(wrong, PluginKind::Component).err().unwrap().contains("expected one for a Rust package"),
+                "{wrong}"
+            );
         }
     }
 
@@ -190,7 +219,7 @@ mod tests {
             ("saoms-api", "a crate of SAOMS itself"),
             ("saoms_core", "a crate of SAOMS itself"),
         ] {
-            assert!(Names::of(name).err().unwrap().contains(taken), "{name}");
+            assert!(Names::of(name, PluginKind::Component).err().unwrap().contains(taken), "{name}");
         }
     }
 }

@@ -84,7 +84,7 @@ pub(crate) fn new(arguments: &NewArguments) -> Exit {
 }
 
 fn plugin(path: &Path, kind: PluginKind, api: Option<&str>) -> Result<String, String> {
-    let names = Names::of(&file_name(path)?)?;
+    let names = Names::of(&file_name(path)?, kind)?;
     let source = files::source(api)?;
     write_all(path, files::plugin(&names, kind, &source))?;
     let path = path.display();

@@ -6,7 +6,9 @@ use super::run::{Run, component, property, second};
 /// A second of virtual time with an actor of a library that was built with these definitions.
 fn run(definitions: &[&str], inside: &str) -> Run {
     let folder = tempfile::tempdir().unwrap();
-    second(&component("Bad", "c.Actor", inside), &[c_library(folder.path(), definitions)])
+    // Another one of the same library is no reason to say it twice.
+    let components = component("Bad", "c.Actor", inside) + &component("Good", "c.Actor", "");
+    second(&components, &[c_library(folder.path(), definitions)])
 }
 
 /// Nothing starts, with one message that names the library and says this.
@@ -14,6 +16,7 @@ fn assert_refused(run: &Run, expected: &[&str]) {
     assert_eq!(run.code, Some(2), "{}", run.text);
     let errors: Vec<&str> = run.text.lines().filter(|line| line.starts_with("error")).collect();
     assert_eq!(errors.len(), 1, "{}", run.text);
+    assert!(!run.text.contains("what its properties mean"), "{}", run.text);
     for expected in ["libactor.so` (actor) cannot be loaded: "].iter().chain(expected) {
         assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
     }

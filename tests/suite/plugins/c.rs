@@ -63,7 +63,11 @@ const FLEET: &str = "plugins/robot-in-c/fleet.composite";
 fn it_is_listed_as_any_class() {
     let listed = saoms(&["components", "patrol.Robot"]);
     for expected in [
-        "patrol.Robot (periodic)",
+        "patrol.Robot (periodic)\n  from the library ",
+        "libpatrol.so\n",
+        "Types\n  Position\n      robot: uint32\n      block: Block\n",
+        "  Block\n      x: int32\n      y: int32\n",
+        "stage: one of a uint8 enumeration (REQUEST = 0, ",
         "number: a whole number from 1 to 4294967295, required",
         "POSTOPIC (state topic of Position)",
         "world: saoms.Hardware, optional",

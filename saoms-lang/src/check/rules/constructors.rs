@@ -1,6 +1,7 @@
 //! Constructors: each judges whether the values of its component fit together. It is called once, and what it makes is
 //! dropped: constructors do no work.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::check::component::{ComponentCheck, ComponentState};
@@ -128,6 +129,17 @@ pub(crate) fn check_all(
     report: &mut Report<'_>,
 ) {
     saoms_api::host::contain::install_hook();
+    let mut unloadable = BTreeSet::new();
+    // A library that cannot be loaded is told once, and has nothing to do with values.
+    let mut loads =
+        |origin: Option<&Path>, loaded: Result<(), Failure>, subject: Subject<'_>, report: &mut Report<'_>| {
+            let Err(failure) = loaded else { return true };
+            if unloadable.insert(origin.map(Path::to_owned)) {
+                let message = format!("{} {}: {failure}", subject.what, quoted(subject.name));
+                report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message));
+            }
+            false
+        };
     let is_asked =
         |origin: Option<&Path>, is_only_read: bool| !is_only_read && (!options.without_plugin_code || origin.is_none());
     let all = || {
@@ -140,11 +152,11 @@ pub(crate) fn check_all(
     for (member, check, of) in all().filter(|(_, check, _)| check.is_sound()) {
         report.about(member);
         let (subject, class) = (check.subject(member), of.class);
-        if is_asked(class.origin(), class.is_only_read()) {
+        if is_asked(class.origin(), class.is_only_read()) && loads(class.origin(), class.load(), subject, report) {
             judge(|| dropped(class.construct(subject.values)), subject, class.name(), repeated, report);
         }
         for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {
-            if is_asked(class.origin(), class.is_only_read()) {
+            if is_asked(class.origin(), class.is_only_read()) && loads(class.origin(), class.load(), subject, report) {
                 judge(|| dropped(class.construct(subject.values)), subject, class.name(), repeated, report);
             }
         }

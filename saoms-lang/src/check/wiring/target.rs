@@ -189,7 +189,10 @@ fn offered(member: usize, interface: &InterfaceDeclaration, fleet: &Fleet<'_>) -
         let Offer::Service(provider) = offer else { continue };
         let Some(found) = fleet.interface_of(provider) else { continue };
         if found.name == interface.name {
-            return "it offers the interface with other operations: build both components from one version".to_owned();
+            let difference = interface.difference(found);
+            return format!(
+                "it offers the interface with other operations: {difference}; build both components from one version"
+            );
         }
         all.push(format!("{} ({})", quoted(name), found.name));
     }

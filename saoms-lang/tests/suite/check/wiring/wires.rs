@@ -95,11 +95,11 @@ fn bindings_of_targets() {
     .assert_eq(&faults(&other("G/position/c")));
     expect![[r#"
         3:35-43 error S2015: service `position` of component `O` has the interface `example.Positions`, and the reference needs `example.Positions`
-          help: it offers the interface with other operations: build both components from one version
+          help: it offers the interface with other operations: its operation is `position() -> float64`, expected `position() -> int32`; build both components from one version
     "#]].assert_eq(&faults(&other("O/position")));
     expect![[r#"
         3:33-34 error S2015: component `O` offers no service with the interface `example.Positions`
-          help: it offers the interface with other operations: build both components from one version
+          help: it offers the interface with other operations: its operation is `position() -> float64`, expected `position() -> int32`; build both components from one version
     "#]]
     .assert_eq(&faults(&other("O")));
     let by_binding = with(
