@@ -55,7 +55,8 @@ typedef uint32_t SaomsStatus;
 #define SaomsStatus_PANICKED 2
 // The reference is not wired; the text is its name.
 #define SaomsStatus_NOT_WIRED 3
-// The provider is in the middle of something; the text is its name.
+// The provider is in the middle of something; the text is its name. A component may answer with it, too: its
+// execution is skipped, its initialization and shutdown are tried again.
 #define SaomsStatus_BUSY 4
 // The provider is not running; the text is its name.
 #define SaomsStatus_NOT_RUNNING 5
