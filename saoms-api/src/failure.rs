@@ -11,6 +11,12 @@ use crate::Finding;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure {
     message: String,
+    /// Rarely needed fields, boxed: results are moved about on the path of each execution.
+    details: Option<Box<FailureDetails>>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct FailureDetails {
     findings: Vec<Finding>,
     busy: Option<String>,
 }
@@ -18,13 +24,13 @@ pub struct Failure {
 impl Failure {
     /// A failure with this message.
     pub fn new(message: impl Into<String>) -> Failure {
-        Failure { message: message.into(), findings: Vec::new(), busy: None }
+        Failure { message: message.into(), details: None }
     }
 
     /// For hosts: a failure with findings.
     #[doc(hidden)]
     pub fn with_findings(message: String, findings: Vec<Finding>) -> Failure {
-        Failure { message, findings, busy: None }
+        Failure { message, details: Some(Box::new(FailureDetails { findings, busy: None })) }
     }
 
     /// The message.
@@ -52,12 +58,12 @@ impl Failure {
     /// An execution that ends so is skipped and counted in the report as `busy`. What it sent before is sent; the
     /// messages that it received come again with the next execution.
     pub fn busy_provider(&self) -> Option<&str> {
-        self.busy.as_deref()
+        self.details.as_ref()?.busy.as_deref()
     }
 
     /// Findings of a constructor about values that do not fit together; see [`Finding`].
     pub fn findings(&self) -> &[Finding] {
-        &self.findings
+        self.details.as_ref().map_or(&[], |details| &details.findings)
     }
 }
 
@@ -86,10 +92,11 @@ impl From<CallError> for Failure {
         let message = error.to_string();
         let busy = match error {
             CallError::Busy { provider } => Some(provider),
-            CallError::Failed { failure, .. } => failure.busy,
+            CallError::Failed { failure, .. } => failure.details.and_then(|details| details.busy),
             _ => None,
         };
-        Failure { message, findings: Vec::new(), busy }
+        let details = busy.map(|busy| Box::new(FailureDetails { findings: Vec::new(), busy: Some(busy) }));
+        Failure { message, details }
     }
 }
 
@@ -151,8 +158,8 @@ impl std::error::Error for CallError {}
 impl From<Failure> for CallError {
     fn from(failure: Failure) -> CallError {
         // What a busy component could not do, its caller cannot do now either.
-        if let Some(provider) = failure.busy {
-            return CallError::Busy { provider };
+        if let Some(provider) = failure.busy_provider() {
+            return CallError::Busy { provider: provider.to_owned() };
         }
         CallError::Failed { provider: String::new(), failure }
     }

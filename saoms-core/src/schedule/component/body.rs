@@ -125,10 +125,8 @@ impl Body {
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };
         if let Err(failure) = &result
-            && self.part.busy_provider(failure).is_some()
-            && (job == Job::Execute || job == Job::Shutdown && self.part.retries_shutdown)
+            && self.part.keeps_instance(job, failure)
         {
-            // The instance tries again, with the same messages.
             return result;
         }
         for inbox in &mut self.inboxes {
@@ -215,8 +213,16 @@ fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
 }
 
 impl Part {
+    /// True if the instance tries again, with the same messages.
+    #[cold]
+    fn keeps_instance(&self, job: Job, failure: &Failure) -> bool {
+        let tries_again = job == Job::Execute || job == Job::Shutdown && self.retries_shutdown;
+        tries_again && self.busy_provider(failure).is_some()
+    }
+
     /// The other component whose code was running when this one called it, if that is why it failed. A component that
     /// finds itself busy is part of a cycle of calls, and never becomes free.
+    #[cold]
     pub(crate) fn busy_provider<'a>(&self, failure: &'a Failure) -> Option<&'a str> {
         failure.busy_provider().filter(|provider| **provider != *self.name)
     }

@@ -13,6 +13,7 @@ use crate::schedule::settings::nanos;
 
 impl Engine {
     /// True if the job failed because a component that it called was busy, and is tried again.
+    #[cold]
     pub(crate) fn tries_again(&self, index: u32, job: Job, failure: &Failure, part: &Part) -> bool {
         let slot = &self.slots[index as usize];
         part.busy_provider(failure).is_some()

@@ -28,11 +28,6 @@ impl Engine {
                 self.enqueue(index, when);
                 None
             }
-            SlotState::Active if now < slot.busy_until => {
-                let when = slot.busy_until;
-                self.enqueue(index, when);
-                None
-            }
             SlotState::Active => match slot.decide(now, self.limit) {
                 Decision::Stop { missed } => {
                     self.stop_for_overrun(index, missed, now);
@@ -192,17 +187,20 @@ impl Engine {
     /// Notes that a body has returned. At the end of a run the timer may wait for it.
     pub(crate) fn note_return(&mut self) {
         self.out -= 1;
-        self.ending.extend(self.ending_later.drain(..));
+        if !self.ending_later.is_empty() {
+            self.ending.extend(self.ending_later.drain(..));
+        }
         self.has_returned |= self.awaited > 0;
         self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
     }
 
+    #[inline]
     pub(super) fn executed(&mut self, index: u32, now: u64) {
         let slot = &mut self.slots[index as usize];
         slot.waiting = false;
         slot.skipping = false;
         if self.phase == RunPhase::Running && slot.pending == PendingRequest::None {
-            let when = slot.due.min(slot.until).max(now);
+            let when = slot.due.min(slot.until).max(now).max(slot.busy_until);
             self.enqueue(index, when);
         } else {
             self.resume(index, now);

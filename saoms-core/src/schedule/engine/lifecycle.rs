@@ -50,7 +50,7 @@ impl Engine {
                 // A running component continues; only its end may change.
                 slot.until = until;
                 if slot.entry != NEVER {
-                    let when = slot.due.min(until).max(now);
+                    let when = slot.due.min(until).max(now).max(slot.busy_until);
                     self.enqueue(index, when);
                 }
             }
