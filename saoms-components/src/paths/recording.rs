@@ -1,4 +1,4 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::path::{Path, Pieces, Robot};
@@ -25,8 +25,10 @@ pub(super) struct Recording {
     pub(super) collected: BTreeMap<Block, Pieces>,
     pub(super) delivered: BTreeMap<Block, Pieces>,
     pub(super) collisions: BTreeMap<Block, u32>,
-    /// Breakdowns by the block of the robot.
+    /// Number of robots that broke down, by their block.
     pub(super) breakdowns: BTreeMap<Block, u32>,
+    /// These robots: one that breaks down again where it is counts once.
+    broken: BTreeSet<(u32, Block)>,
     pub(super) visits: BTreeMap<Block, Visits>,
     legs: usize,
 }
@@ -92,7 +94,7 @@ impl Recording {
 
     /// Takes in another recording, of other robots.
     pub(super) fn absorb(&mut self, other: Recording) {
-        let Recording { robots, map, open, collected, delivered, collisions, breakdowns, visits, legs } = other;
+        let Recording { robots, map, open, collected, delivered, collisions, breakdowns, visits, legs, .. } = other;
         self.robots.extend(robots);
         self.map = self.map.take().or(map);
         self.open.extend(open);
@@ -173,7 +175,9 @@ impl Recording {
 
     fn record_fault(&mut self, message: &SharedMessage) {
         let Some(fault) = message.get::<Fault>() else { return };
-        if let Some(path) = self.robots.get(&fault.robot).and_then(|robot| robot.path.as_ref()) {
+        if let Some(path) = self.robots.get(&fault.robot).and_then(|robot| robot.path.as_ref())
+            && self.broken.insert((fault.robot, path.now))
+        {
             *self.breakdowns.entry(path.now).or_default() += 1;
         }
     }

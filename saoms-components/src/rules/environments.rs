@@ -13,8 +13,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5011",
         name: "luggage-number",
-        meaning: "Two environments have luggage, and both number it from 1: of two pieces with the same number, only \
-            the first is delivered.",
+        meaning: "Two environments, of one site or of several that share a topic, have luggage, and both number it from \
+            1: of two pieces with the same number, only the first is delivered.",
         severity: Severity::Error,
         rule: None,
     },
@@ -47,9 +47,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             components[other.index].path, components[line.index].path
         );
         findings.push(
-            Finding::new(line.whole(), message)
-                .label(other.whole(), "luggage of the other environment")
-                .help("move all luggage to one environment: its `scenario` can have several values"),
+            Finding::new(line.whole(), message).label(other.whole(), "luggage of the other environment").help(
+                "move all luggage to one environment: its `scenario` can have several values; or make each a site with \
+                its own master",
+            ),
         );
     }
     findings

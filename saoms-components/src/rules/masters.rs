@@ -12,8 +12,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5010",
         name: "second-master",
-        meaning: "Two masters of the environment forward the same events, so all luggage is requested and counted \
-            twice.",
+        meaning: "Two masters of the environment, of one site or of several that share the topic, forward the same \
+            events, so all luggage is requested and counted twice.",
         severity: Severity::Error,
         rule: None,
     },
@@ -40,7 +40,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         findings.push(
             Finding::new(Place::component(index), message)
                 .label(Place::component(other), "the first master")
-                .help("remove one of the two masters"),
+                .help("remove one of the two masters, or make each a site with its own environment"),
         );
     }
     findings

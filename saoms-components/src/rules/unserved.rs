@@ -19,7 +19,8 @@ pub(super) static RULE: FleetRule = FleetRule {
         id: "S5008",
         name: "unserved",
         meaning: "A scenario has no effect: no component forwards its events, no robot or world receives them, or \
-            all robots are classic robots that sleep, and nothing wakes them.",
+            all robots are classic robots that sleep, and nothing wakes them. Components of other sites receive them \
+            only on topics outside of sites.",
         severity: Severity::Warning,
         rule: None,
     },

@@ -15,7 +15,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         id: "S5009",
         name: "unused-world",
         meaning: "A fleet has a world, but some or all robots are not wired to it: the world does not check what \
-            they do.",
+            they do. Of robots in other sites, those count that the world hears of.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -74,17 +74,31 @@ fn without_robots(fleet: &FleetView<'_>, area: &WorldMap, robots: &[FleetRobot])
     let is_beside = |robot: &FleetRobot| composite(fleet.components()[robot.index].path) == around;
     let help = match robots.iter().filter(|robot| robot.world.is_none()).find(|robot| !is_beside(robot)) {
         // A target leads to what is in the same composite.
-        Some(robot) if !robots.iter().any(is_beside) => {
-            let robot = fleet.components()[robot.index].path;
-            format!("wire the reference `world` of `{robot}` to `{path}`, {BETWEEN}")
-        }
+        Some(robot) if !robots.iter().any(is_beside) => between(fleet.components()[robot.index].path, path),
         _ => format!("add `<reference name=\"world\" target=\"{}\"/>` to each robot", &path[around.len()..]),
     };
     Finding::new(Place::component(area.index), message).help(help)
 }
 
-/// How a wire leads from one composite into another.
-const BETWEEN: &str = "and promote the reference or the service in each composite between them";
+/// How a wire leads from a robot to a world in another composite: the outermost components that differ are wired, and
+/// those around the two promote.
+fn between(robot: &str, world: &str) -> String {
+    let both = robot.split('/').zip(world.split('/')).take_while(|(robot, world)| robot == world);
+    let shared: usize = both.map(|(name, _)| name.len() + 1).sum();
+    let ends = |path: &str| {
+        let (outer, inner) = path[shared..].split_once('/').unwrap_or((&path[shared..], ""));
+        (path[..shared].to_owned() + outer, inner.to_owned())
+    };
+    let ((robot, of_robot), (world, of_world)) = (ends(robot), ends(world));
+    let promotes = |outer: &str, inner: &str, what: &str| match inner {
+        "" => None,
+        inner => Some(format!("`{outer}` promotes the {what} of `{inner}`")),
+    };
+    let promotes =
+        [promotes(&robot, &of_robot, "reference `world`"), promotes(&world, &of_world, "service `hardware`")];
+    let promotes: Vec<String> = promotes.into_iter().flatten().collect();
+    format!("wire `{robot}` to `{world}`; for that, {}", promotes.join(", and "))
+}
 
 /// A finding for a robot without a world if other robots in its composite have one; the innermost composite counts.
 fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &Around<'_>) -> Option<Finding> {
@@ -99,6 +113,6 @@ fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &Around<'_>) -> Opt
         .label(Place::component(other.index), "this robot is wired");
     Some(finding.help(match composite(path) == own {
         true => format!("add `<reference name=\"world\" target=\"{}\"/>` to this robot", &path[own.len()..]),
-        false => format!("wire its reference `world` to `{path}`, {BETWEEN}"),
+        false => between(component.path, path),
     }))
 }

@@ -14,8 +14,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5016",
         name: "worlds-mixed",
-        meaning: "Two worlds with robots share one environment: each world waits for all luggage, but robots deliver \
-            some of it in the other world.",
+        meaning: "Two worlds with robots, of one site or of several that share the topic, share one environment: each \
+            world waits for all luggage, but robots deliver some of it in the other world.",
         severity: Severity::Warning,
         rule: None,
     },

@@ -8,6 +8,8 @@ mod referee;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
+
 use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue, Subscription, Work};
 
 use crate::hardware::Hardware;
@@ -49,6 +51,8 @@ pub struct World {
     vote: Option<Work>,
     /// Number of collisions.
     collided: usize,
+    /// The robots that broke down.
+    broken: BTreeSet<u32>,
 }
 
 impl Component for World {
@@ -67,6 +71,7 @@ impl Component for World {
             collisions: Publisher::default(),
             vote: None,
             collided: 0,
+            broken: BTreeSet::new(),
         })
     }
 
@@ -165,7 +170,10 @@ impl World {
 
     fn break_down(&mut self, context: &mut Context<'_>, fault: &Fault) {
         if self.referee.retire(fault.robot).is_ok() {
-            context.count("robots.broken", 1);
+            // One that is broken already, or was repaired, is one robot.
+            if self.broken.insert(fault.robot) {
+                context.count("robots.broken", 1);
+            }
             context.warn(format_args!("{fault}"));
         }
     }

@@ -62,14 +62,12 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
         // Which file an expression names is known when composites are unfolded: see `read_tables`.
         if let Some(file) = replicas.overrides.as_ref().filter(|file| !has_expression(file)) {
             replicas.table = read_table(file, file.location, max_size, sources, diagnostics).unwrap_or_else(|fault| {
-                let name = file.strip_prefix('$').unwrap_or(file);
-                let is_property = !name.is_empty() && properties.iter().any(|one| *one.name == *name);
-                diagnostics.push(match is_property {
-                    true => {
-                        Diagnostic { help: Vec::new(), ..*fault }.replace(file, file.location, &format!("${{{name}}}"))
-                    }
-                    false => *fault,
-                });
+                let (name, mut fault) = (file.strip_prefix('$').unwrap_or(file), *fault);
+                if properties.iter().any(|one| *one.name == *name && !name.is_empty()) {
+                    fault.help.clear();
+                    fault = fault.replace(file, file.location, &format!("${{{name}}}"));
+                }
+                diagnostics.push(fault);
                 None
             });
         }

@@ -1,6 +1,6 @@
 //! The collection of diagnostics.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::codes::{Nature, natures};
 use super::{Code, Diagnostic, Severity, codes};
@@ -24,6 +24,8 @@ pub struct Diagnostics {
     damaged: BTreeMap<(FileId, u32), u32>,
     /// What faults of their texts hide in files.
     hidden: HashMap<FileId, HiddenNames>,
+    /// The properties that elements of other namespaces would take in files, if they were of SCA, as is reported.
+    meant: HashSet<(FileId, String)>,
 }
 
 /// The kinds of names that faults of texts may hide: one of them that is found nowhere may be there.
@@ -62,6 +64,16 @@ impl Diagnostics {
         all.composites |= hidden.composites;
         all.components |= hidden.components;
         all.others |= hidden.others;
+    }
+
+    /// Notes that an element that is ignored, which is reported, would take a property.
+    pub(crate) fn add_meant(&mut self, file: FileId, property: &str) {
+        self.meant.insert((file, property.to_owned()));
+    }
+
+    /// True if such an element would take this property.
+    pub(crate) fn is_meant(&self, file: FileId, property: &str) -> bool {
+        self.meant.contains(&(file, property.to_owned()))
     }
 
     /// The kinds of names that faults of its text may hide in a file.

@@ -112,6 +112,11 @@ impl Loader<'_> {
         };
         let message = format!("{} is ignored: its namespace {} is not that of SCA", quoted(name), quoted(namespace));
         self.report(Diagnostic::new(&codes::FOREIGN_ELEMENT, element.name_location(), message).help(help));
+        if let Some(source) = element.attribute("source").filter(|_| local == "property") {
+            let (value, file) = (source.value(), element.document().file());
+            let name = value.trim().strip_prefix('$').and_then(|rest| rest.split(['/', '[', ' ']).next());
+            name.into_iter().for_each(|name| self.diagnostics.add_meant(file, name));
+        }
     }
 
     /// Reports an element of SCA, or of SAOMS, that cannot be where it is. Gives the name that is meant where it is

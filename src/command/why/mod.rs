@@ -22,7 +22,7 @@ Exit codes:
   0  answered, also when the answer is that the robot did nothing
   1  standard output could not be written
   2  the input is wrong: no such robot, a time after the end of the run, a file without journal or not whole; or the records that the whole
-     answer needs were overwritten";
+     answer needs were overwritten, or left out by --short-report";
 
 /// Tell why a robot did what it did, from the report or the journal of a run
 #[derive(Debug, Args)]
@@ -77,6 +77,14 @@ struct Answer {
 fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
     let path = arguments.report.as_path();
     let document = document(path)?;
+    let journal = &document.journal;
+    if document.is_report && journal.entries().is_empty() && journal.records > journal.overwritten {
+        return Err(format!(
+            "{} is a report without the records of the journal, as `--short-report` writes it: run again without that \
+             option, or with `--journal FILE`, and ask that file",
+            named(path)
+        ));
+    }
     let component = find(&document.components, &arguments.component)?;
     let at = arguments.at.map(|at| Time::START + at);
     if let (Some(asked), Some(at), Some(end)) = (arguments.at, at, document.end)
@@ -109,16 +117,21 @@ fn advice(document: &JournalDocument) -> String {
     }
 }
 
+/// A file as messages name it.
+fn named(path: &Path) -> String {
+    if path == Path::new("-") { "standard input".to_owned() } else { format!("`{}`", path.display()) }
+}
+
 /// The journal in a file, or in standard input for `-`.
 pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
-    let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
+    let name = named(path);
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
     } else {
         std::fs::read(path)
     };
-    let bytes = bytes.map_err(|error| format!("`{name}` cannot be read: {error}"))?;
+    let bytes = bytes.map_err(|error| format!("{name} cannot be read: {error}"))?;
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,
         // A run that goes on, or was killed, may have written a part of its last character.
@@ -126,15 +139,15 @@ pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
             String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]).into_owned()
         }
         Err(error) => {
-            return Err(format!("`{name}` is not text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1));
+            return Err(format!("{name} is not text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1));
         }
     };
     read(&text).map_err(|error| match error {
         JournalReadError::NoJournal => {
-            format!("`{name}` contains no journal: write the report again with `saoms run --report FILE`")
+            format!("{name} contains no journal: write the report again with `saoms run --report FILE`")
         }
-        JournalReadError::Other => format!("`{name}` cannot be read: {error}"),
-        JournalReadError::Malformed { .. } => format!("`{name}`, {error}"),
+        JournalReadError::Other => format!("{name} cannot be read: {error}"),
+        JournalReadError::Malformed { .. } => format!("{name}, {error}"),
     })
 }
 

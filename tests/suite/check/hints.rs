@@ -121,8 +121,16 @@ fn a_robot_in_another_composite_than_the_world_is_not_given_a_target() {
     let robot = robot.replace(r#"<reference name="world" target="World"/>"#, "");
     let told = |test, [inner, outer]: [(&str, String); 2]| told(test, &[(inner.0, &inner.1), (outer.0, &outer.1)]);
     for (test, files, help) in [
-        ("inner world", nested(&others, &robot), "wire the reference `world` of `Robot7` to `A/World`, and promote"),
-        ("inner robot", nested(&robot, &others), "wire the reference `world` of `A/Robot7` to `World`, and promote"),
+        (
+            "inner world",
+            nested(&others, &robot),
+            "wire `Robot7` to `A`; for that, `A` promotes the service `hardware` of `World`",
+        ),
+        (
+            "inner robot",
+            nested(&robot, &others),
+            "wire `A` to `World`; for that, `A` promotes the reference `world` of `Robot7`",
+        ),
         ("both", nested(&format!("{others}{robot}"), ""), "<reference name=\"world\" target=\"World\"/>"),
     ] {
         assert_hint(test, &told(test, files), "S5009", help);
@@ -130,6 +138,10 @@ fn a_robot_in_another_composite_than_the_world_is_not_given_a_target() {
     let again = r#"<component name="B"><implementation.composite name="t:inner"/></component>"#;
     let all = told("twice", nested(&others, again));
     assert!(all.iter().any(|line| line.contains("both come from here")), "{all:#?}");
+    // Of two composites, both uses are where to act.
+    let [(_, inner), (outer_name, outer)] = nested(&robot, &robot);
+    let all = told("other", [("inner.composite", inner), (outer_name, outer)]);
+    assert!(all.iter().any(|line| line.contains("or make `A` a site of its own with `saoms:site`")), "{all:#?}");
 }
 
 #[test]

@@ -181,3 +181,13 @@ fn a_safe_robot_knows_that_it_goes_to_its_charger_and_is_in_charge() {
         assert!(changes >= 2, "{change} {changes}:\n{journal}");
     }
 }
+
+#[test]
+fn a_report_without_records_says_so() {
+    let folder = folder("short");
+    let run = ["run", "composites/hall.composite", "--virtual", "--quiet", "--report", "short.json", "--short-report"];
+    assert_eq!(saoms_in(&folder, &run).status.code(), Some(0));
+    let told = refused(&folder, &["Robot7", "--report", "short.json"]);
+    assert!(told.contains("`short.json` is a report without the records of the journal"), "{told}");
+    assert!(told.contains("`--short-report`") && !told.contains("overwritten"), "{told}");
+}

@@ -108,6 +108,13 @@ fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends_incomplete() {
 }
 
 #[test]
+fn a_robot_that_breaks_down_twice_is_one_broken_robot() {
+    let scenario = "at 1s breakdown 1; at 2s breakdown 1; at 3s breakdown 2; at 4s end";
+    let report = Fleet::of_text(with_scenario(scenario)).run(1, HOUR);
+    assert_eq!(section(&report, "robots")["broken"], json!(2));
+}
+
+#[test]
 fn a_scenario_is_drawn_from_the_seed_within_the_map() {
     let fleet = Fleet::of_text(with_scenario("from 1s every 1s..4s 20 times luggage random to (3,0)..(4,3)"));
     let report = fleet.run(5, HOUR);

@@ -131,19 +131,38 @@ fn shared(
             let meant = if declaration.is_number() { "${index}".to_owned() } else { with_index(value) };
             one.replace(value, user.place, &meant)
         }
-        _ => one.other(first.place, "the first"),
+        _ => in_uses(one.other(first.place, "the first"), [first, user], fleet),
     });
+}
+
+/// The same with the uses of composites that these two are in, which may be files of others: there people can act, too.
+fn in_uses(mut one: Diagnostic, users: [User; 2], fleet: &Fleet<'_>) -> Diagnostic {
+    let [first, other] = users.map(|user| {
+        let owner = |member: &usize| fleet.scopes[fleet.members[*member].scope].owner;
+        std::iter::successors(Some(user.member), owner).collect::<Vec<usize>>()
+    });
+    let apart = first.into_iter().rev().zip(other.into_iter().rev()).find(|(first, other)| first != other);
+    let uses = apart.into_iter().flat_map(<[usize; 2]>::from).filter(|member| fleet.inner(*member).is_some());
+    let mut names: Vec<String> = Vec::new();
+    for component in uses.map(|member| fleet.members[member].component) {
+        if one.labels.iter().all(|label| label.location != component.name.location) {
+            one = one.label(component.name.location, "used here");
+        }
+        names.push(quoted(&component.name));
+    }
+    match users[0].place == users[1].place || names.is_empty() {
+        true => one,
+        false => one.help(format!("or make {} a site of its own with `saoms:site`", names.join(" or "))),
+    }
 }
 
 /// Tasks that share an ID run all the same, but people cannot tell them apart.
 fn task(value: &str, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let [earlier, later] = [first, user].map(|one| quoted(fleet.members[one.member].path()));
     let message = format!("components {earlier} and {later} share the ID {}", quoted(value));
-    report.push(
-        Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message)
-            .other(first.place, "the first")
-            .help("give each its own ID: give each its own ID: messages and reports name tasks by their ID"),
-    );
+    let one = Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message).other(first.place, "the first");
+    let help = "give each its own ID: messages and reports name tasks by their ID";
+    report.push(in_uses(one, [first, user], fleet).help(help));
 }
 
 /// The canonical form of a value: `07` and `7` are one number, and blanks around a text do not count.

@@ -47,6 +47,11 @@ impl<'a> Unfolding<'a, '_, '_> {
         }
         self.fleet.members.push(member);
         let name = component.name.as_str();
+        if name.contains(char::is_whitespace) && !has_expression(name) {
+            // It cannot be a name, which is reported: targets mean it without its blanks, or are read as several.
+            let words = name.split_whitespace().map(str::to_owned).chain([name.split_whitespace().collect()]);
+            words.for_each(|word| self.miss(unit, word));
+        }
         if is_seen {
             self.fleet.scopes[scope].members.push(index);
         }

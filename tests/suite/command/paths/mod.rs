@@ -205,6 +205,13 @@ fn a_master_that_gives_luggage_up_is_no_robot() {
 }
 
 #[test]
+fn a_robot_that_breaks_down_twice_is_marked_as_one() {
+    let once = alone("broken-once", "at 2s breakdown 1; at 5s end", 0);
+    let twice = alone("broken-twice", "at 2s breakdown 1; at 3s breakdown 1; at 5s end", 0);
+    assert_eq!(once.replace("broken-once", ""), twice.replace("broken-twice", ""));
+}
+
+#[test]
 fn what_does_not_fit_into_the_legend_is_said_in_fewer_words() {
     let text = alone("many", "from 1s every 100ms 5 times luggage (2,5) to (10,9)", 0);
     assert!(text.contains(">delivered 5 pieces \u{b7} ") && !text.contains('\u{2026}'));

@@ -315,3 +315,38 @@ fn an_expression_that_nobody_reads_is_told() {
     "#]]
     .assert_eq(&with("${other}"));
 }
+
+#[test]
+fn a_name_with_a_blank_is_told_once_wherever_it_is_used() {
+    let robot = |target: &str| {
+        let fleet = format!(
+            "{}\n{}",
+            GPS.replace("name=\"G\"", "name=\"G ps\""),
+            robot("R", &format!("<property name=\"number\">1</property><reference name=\"gps\" target=\"{target}\"/>"))
+        );
+        of(&fleet)
+    };
+    for target in ["G ps", "Gps", "G"] {
+        let found = robot(target);
+        assert_eq!(found.matches(" error ").count(), 1, "{target}: {found}");
+        assert!(found.contains("error S1011: `G ps` cannot be a name"), "{found}");
+    }
+    assert!(robot("Other").contains("S2011"), "another name is a mistake of its own");
+}
+
+#[test]
+fn a_property_that_an_element_of_another_namespace_would_take_is_used() {
+    let fleet = |taken: &str| {
+        let robot = "<implementation.java class=\"example.Robot001\"/><property name=\"ID\">R1</property><property name=\"period\">1s</property>";
+        let declared = "<property name=\"fast\">2</property><property name=\"slow\">1</property>";
+        let component = format!(
+            "{declared}<component name=\"R1\">{robot}<w:property name=\"speed\" source=\"{taken}\"/></component>"
+        );
+        outcome(&[&part("fleet", "xmlns:w=\"urn:w\"", &component)], &[])
+    };
+    for taken in ["$fast", "$fast/part", " $fast"] {
+        let found = fleet(taken);
+        assert!(found.contains("S1015") && found.contains("`slow`") && !found.contains("`fast`"), "{found}");
+    }
+    assert!(fleet("$faster").contains("`fast`"));
+}

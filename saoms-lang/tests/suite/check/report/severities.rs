@@ -60,7 +60,7 @@ fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
     expect![[r#"
         3:85-86 warning S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&warning.told);
     let error = of(&clocks("", &severity("S4001", "error")), &[]);
@@ -69,7 +69,7 @@ fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
         3:85-86 error S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
           4:23-28 set to `error`: because
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&error.told);
     let allowed = of(&clocks(&severity("S4001", "allow"), &severity("S4001", "error")), &["S4001=error"]);
@@ -80,7 +80,7 @@ fn the_element_counts_before_the_composite_and_that_before_the_command_line() {
     expect![[r#"
         3:85-86 error S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&denied.told);
     assert_eq!(of(&clocks("", ""), &["S4001=allow"]).told, "");
@@ -101,7 +101,7 @@ fn a_severity_is_set_once_at_a_place() {
           help: keep one of them
         3:85-86 note S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&(within.told + &options.told));
     // What is inside another element may say something else.
@@ -142,7 +142,7 @@ fn options_have_reasons_too() {
         3:85-86 note S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
           --severity:1:1-6 set to `note`: two faces
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&of(&clocks("", ""), &["S4001=note:two faces"]).told);
 }
@@ -157,7 +157,7 @@ fn an_option_that_a_composite_overrules_says_so() {
         3:85-86 error S4001: components `A` and `B` share the ID `C`
           2:85-86 the first
           4:23-28 set to `error`: because
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
     "#]]
     .assert_eq(&of(&error, &["S4001=allow"]).told);
     assert!(!of(&error, &["S4001=error"]).told.contains("S2049"));

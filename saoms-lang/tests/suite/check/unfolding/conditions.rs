@@ -120,6 +120,7 @@ fn includes_and_composites_can_be_absent() {
     .assert_eq(&outcome(&[&fleet(inside), &more], &[]));
     expect![[r#"
         more:3:85-86 error S3013: components `N` and `In/N` have the same `ID` `N`
+          3:18-20 used here
           help: give every robot its own `ID`
           help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
     "#]]

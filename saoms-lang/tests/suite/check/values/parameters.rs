@@ -196,6 +196,8 @@ fn values_from_outside_are_of_the_type_of_the_property() {
           inner:2:30-37 the type
           help: change the value, or the type
         inner:3:88-89 error S3013: components `A/R` and `B/R` have the same `ID` `R`
+          2:54-55 used here
+          3:18-19 used here
           help: give every robot its own `ID`
           help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
     "#]]

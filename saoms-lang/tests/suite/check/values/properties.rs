@@ -345,10 +345,10 @@ fn unique_values_and_shared_ids() {
           help: give every robot its own `ID`
         5:85-89 warning S4001: components `C` and `D` share the ID `MEMS`
           4:85-89 the first
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
         6:85-86 warning S4001: components `A` and `E` share the ID `R`
           2:88-89 the first
-          help: give each its own ID: give each its own ID: messages and reports name tasks by their ID
+          help: give each its own ID: messages and reports name tasks by their ID
     "#]].assert_eq(&faults(
         r#"<component name="A"><implementation.java class="example.Robot001"/><property name="ID">R</property><property name="period">1</property></component>
 <component name="B"><implementation.java class="example.Robot"/><property name="ID">R</property><property name="period">1</property><property name="number">2</property></component>
