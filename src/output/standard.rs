@@ -111,6 +111,14 @@ pub(crate) fn wait_for_no_reader() -> io::Result<()> {
     wait(&io::stdout(), 0, -1).map(drop)
 }
 
+/// Waits until there is something to read, or the end of it.
+///
+/// # Errors
+/// The system cannot tell.
+pub(crate) fn wait_for_input(descriptor: &impl AsRawFd) -> io::Result<()> {
+    wait(descriptor, libc::POLLIN, -1).map(drop)
+}
+
 /// Waits for one of these events, an error or the end of a descriptor, so many milliseconds at most.
 fn wait(descriptor: &impl AsRawFd, events: i16, milliseconds: i32) -> io::Result<bool> {
     loop {

@@ -1,15 +1,41 @@
 //! `saoms run --events`: events from outside, a line each, while the fleet runs.
 
-use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::convert::Infallible;
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
+use std::time::Duration;
 
 use saoms_api::extension::{EventLanguage, EventReader, LineFault};
 use saoms_api::host::is_invisible;
 use saoms_api::rule::nearest;
 use saoms_api::{Level, Time};
 use saoms_core::schedule::{Handle, Hold, InjectError, InjectedContent, Injection};
+
+use crate::output::wait_for_input;
+
+/// Time between two looks for a signal while lines are read before the start.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+
+/// A named pipe that is read without blocking. To read it blocking, it would have to be opened so, which waits for a
+/// writer.
+struct Pipe(File);
+
+impl Read for Pipe {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            // Nothing comes before there is a writer, and the end only after one.
+            wait_for_input(&self.0)?;
+            match self.0.read(buffer) {
+                Err(error) if error.kind() == ErrorKind::WouldBlock => {}
+                result => return result,
+            }
+        }
+    }
+}
 
 /// The most bytes of a line.
 const LONGEST: usize = 65_536;
@@ -23,10 +49,14 @@ pub(super) struct Events {
 }
 
 impl Events {
-    /// Opens a file, or standard input where the path is `-`.
+    /// Opens a file, or standard input where the path is `-`. A named pipe may have no writer yet: it is waited for
+    /// when lines are read, so that the fleet runs and can be ended.
     pub(super) fn open(path: &Path, seed: u64) -> io::Result<Events> {
         let lines: Box<dyn BufRead + Send> = if path == Path::new("-") {
             Box::new(BufReader::new(io::stdin()))
+        } else if fs::metadata(path)?.file_type().is_fifo() {
+            let pipe = File::options().read(true).custom_flags(libc::O_NONBLOCK).open(path)?;
+            Box::new(BufReader::new(Pipe(pipe)))
         } else {
             let file = File::open(path)?;
             if file.metadata()?.is_dir() {
@@ -39,18 +69,22 @@ impl Events {
     }
 
     /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same
-    /// lines give the same run; in real time they are read as they come, and the run lasts at least to their end.
-    pub(super) fn play(mut self, handle: Handle, is_virtual: bool) {
-        if is_virtual {
-            return self.read_all(&handle);
-        }
-        let (hold, fleet): (Hold, Handle) = (handle.hold(), handle.clone());
+    /// lines give the same run, unless a signal ends it before; in real time they are read as they come, and the run
+    /// lasts at least to their end.
+    pub(super) fn play(mut self, handle: Handle, is_virtual: bool, is_signalled: impl Fn() -> bool) {
+        let (hold, fleet): (Option<Hold>, Handle) = ((!is_virtual).then(|| handle.hold()), handle.clone());
+        let (reads, is_read) = mpsc::channel::<Infallible>();
         let read = move || {
             self.read_all(&fleet);
-            drop(hold);
+            drop((hold, reads));
         };
         if let Err(error) = thread::Builder::new().name("events".to_owned()).spawn(read) {
-            handle.note(Level::Error, format!("no events are read: {error}"));
+            return handle.note(Level::Error, format!("no events are read: {error}"));
+        }
+        while is_virtual && !is_signalled() {
+            if is_read.recv_timeout(BETWEEN_LOOKS) == Err(RecvTimeoutError::Disconnected) {
+                return;
+            }
         }
     }
 

@@ -196,7 +196,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     let reload = watched.map(|watched| Reload::start(files, &watched, fleet.handle()));
     if let Some(events) = events {
-        events.play(fleet.handle(), arguments.virtual_time);
+        events.play(fleet.handle(), arguments.virtual_time, || signals.has_come());
     }
     let outcome = fleet.run_to_end().outcome;
     drop(reload);

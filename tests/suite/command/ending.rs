@@ -5,6 +5,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
+use std::thread;
 
 use serde_json::Value;
 
@@ -39,6 +40,11 @@ fn running(child: &mut Child) -> BufReader<ChildStdout> {
     lines
 }
 
+/// A named pipe.
+fn pipe(folder: &Path, name: &str) {
+    assert!(Command::new("mkfifo").arg(folder.join(name)).status().unwrap().success());
+}
+
 fn send(child: &Child, signal: i32) {
     // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
     assert_eq!(unsafe { libc::kill(i32::try_from(child.id()).unwrap(), signal) }, 0);
@@ -55,6 +61,57 @@ fn assert_quiet_end(output: &Output) {
 fn status(report: &Path) -> Value {
     let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
     report["outcome"]["status"].clone()
+}
+
+#[test]
+fn a_run_ends_while_its_events_wait_for_a_writer() {
+    for clock in [&["--virtual"][..], &[]] {
+        let folder = empty_folder("events");
+        pipe(&folder, "events");
+        let files = ["--events", "events", "--report", "report.json", "--journal", "journal"];
+        let mut child = endless(&folder, &[clock, &files].concat()).spawn().unwrap();
+        if clock.is_empty() {
+            // The fleet runs before there is a writer.
+            let _lines = running(&mut child);
+        }
+        // In virtual time nothing happens before all lines are read; the journal is there from the start.
+        while !folder.join("journal").exists() {
+            thread::yield_now();
+        }
+        send(&child, libc::SIGTERM);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+        assert_eq!(status(&folder.join("report.json")), "interrupted");
+    }
+}
+
+#[test]
+fn events_come_from_writers_of_a_named_pipe() {
+    let folder = empty_folder("pipe");
+    pipe(&folder, "events");
+    let arguments = ["--virtual", "--events", "events", "--report", "report.json", "--for", "1s"];
+    let child = endless(&folder, &arguments).spawn().unwrap();
+    fs::write(folder.join("events"), "nothing\n").unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report: Value = serde_json::from_slice(&fs::read(folder.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["events"]["ignored"], 1);
+}
+
+#[test]
+fn a_report_whose_reader_is_gone_is_told() {
+    let folder = empty_folder("report-pipe");
+    pipe(&folder, "report");
+    let mut child = endless(&folder, &["--report", "report"]).spawn().unwrap();
+    drop(File::open(folder.join("report")).unwrap());
+    let mut lines = running(&mut child);
+    send(&child, libc::SIGTERM);
+    let mut rest = String::new();
+    lines.read_to_string(&mut rest).unwrap();
+    assert!(rest.contains("interrupted after"), "{rest}");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("error: the report could not be written to `report`: "), "{}", stderr(&output));
 }
 
 #[test]
