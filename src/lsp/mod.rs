@@ -23,7 +23,7 @@ use std::sync::atomic::AtomicU64;
 use std::sync::mpsc;
 use std::thread;
 
-use saoms_tools::editor::{CheckOptions, Checker, ClassCache};
+use saoms_tools::editor::{CheckOptions, Checker, ClassCache, Workspace};
 
 use check::check_all;
 use server::{Event, Server};
@@ -50,5 +50,5 @@ pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
         }
         let _ = events.send(Event::Closed);
     });
-    Server::new(io::stdout().lock(), classes, jobs, newest).run(&came)
+    Server::new(io::stdout().lock(), Workspace::new(allow_outside), classes, jobs, newest).run(&came)
 }

@@ -93,13 +93,19 @@ impl PublishedDiagnostics {
 }
 
 impl<W: Write> Server<W> {
-    pub(super) fn new(output: W, classes: Arc<ClassCache>, jobs: Sender<Job>, newest: Arc<AtomicU64>) -> Self {
+    pub(super) fn new(
+        output: W,
+        workspace: Workspace,
+        classes: Arc<ClassCache>,
+        jobs: Sender<Job>,
+        newest: Arc<AtomicU64>,
+    ) -> Self {
         Self {
             output,
             state: State::New,
             client: Client::default(),
             documents: Documents::default(),
-            workspace: Workspace::default(),
+            workspace,
             classes,
             jobs,
             newest,
@@ -211,6 +217,7 @@ impl<W: Write> Server<W> {
                     let gone: Vec<PathBuf> = one.event.removed.iter().filter_map(path).collect();
                     self.client.folders.retain(|folder| !gone.contains(folder));
                     self.client.folders.extend(one.event.added.iter().filter_map(path));
+                    self.workspace.set_folders(&self.client.folders);
                 }
             }
             // Others need not be understood.
@@ -226,6 +233,7 @@ impl<W: Write> Server<W> {
         }
         let open = self.documents.texts().clone();
         self.workspace.set_open(open.clone());
+        self.workspace.set_folders(&self.client.folders);
         let generation = self.newest.fetch_add(1, Ordering::Relaxed) + 1;
         // Where the thread is gone, the session is about to end.
         let _ = self.jobs.send(Job { generation, open, looks_anew });

@@ -8,7 +8,7 @@ use std::sync::mpsc;
 
 use lsp_server::{Message, Notification, Request};
 use saoms_lang::source::OpenTexts;
-use saoms_tools::editor::{CheckOptions, Checker, ClassCache};
+use saoms_tools::editor::{CheckOptions, Checker, ClassCache, Workspace};
 use serde_json::{Value, json};
 
 use crate::Exit;
@@ -71,7 +71,8 @@ fn session(events: Vec<Event>) -> (Vec<String>, Exit) {
     start.into_iter().chain(events).for_each(|event| sender.send(event).unwrap());
     drop(sender);
     let mut output = Vec::new();
-    let exit = Server::new(&mut output, classes(), jobs, Arc::new(AtomicU64::new(0))).run(&receiver);
+    let exit =
+        Server::new(&mut output, Workspace::default(), classes(), jobs, Arc::new(AtomicU64::new(0))).run(&receiver);
     let output = String::from_utf8(output).unwrap();
     let all = output.split("Content-Length: ").skip(2);
     let said = all.map(|one| {

@@ -23,6 +23,9 @@ pub(super) fn complete(scene: &Scene, value: &Range<usize>, at: usize, fits: fn(
     let inner = typed.rfind('/').map_or(0, |slash| slash + 1);
     let range = value.start + inner..value.end;
     let folder = file.path.parent().unwrap_or(Path::new("")).join(&typed[..inner]);
+    if !scene.bounds.hold(&folder) {
+        return Vec::new();
+    }
     let entries = fs::read_dir(folder).into_iter().flatten().take(MOST).flatten();
     entries
         .filter_map(|entry| {

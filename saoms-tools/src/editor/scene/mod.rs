@@ -29,7 +29,7 @@ use fleets::Fleets;
 use outline::{Component, End, Implementation, Named};
 use symbol::Symbol;
 use units::Units;
-use workspace::Surroundings;
+use workspace::{Bounds, Surroundings};
 
 pub use fleets::SceneFleet;
 
@@ -55,6 +55,8 @@ pub struct Scene {
     fleets: OnceLock<Fleets>,
     /// The files that hold values, by the paths that composites write.
     beside: HashMap<PathBuf, usize>,
+    /// What its files may name.
+    pub(crate) bounds: Bounds,
 }
 
 /// The files of the composites of one local name.
@@ -67,7 +69,7 @@ struct NamedComposites {
 
 impl Scene {
     /// The scene of a file with those around it, and the classes that they can name.
-    pub fn new(Surroundings { files, own, known, identities }: Surroundings, registry: Arc<Registry>) -> Self {
+    pub fn new(Surroundings { files, own, known, identities, bounds }: Surroundings, registry: Arc<Registry>) -> Self {
         let mut by_name: HashMap<String, NamedComposites> = HashMap::new();
         for (place, file) in files.iter().enumerate() {
             if let Some(name) = &file.outline.name {
@@ -79,7 +81,7 @@ impl Scene {
         let users = files.iter().map(|_| OnceLock::new()).collect();
         let beside = beside(&files, &identities);
         let (includes, units, fleets) = (Vec::new(), Units::default(), OnceLock::new());
-        let mut scene = Self { files, own, known, registry, by_name, includes, units, users, fleets, beside };
+        let mut scene = Self { files, own, known, registry, by_name, includes, units, users, fleets, beside, bounds };
         scene.includes = (0..scene.files.len()).map(|file| scene.included(file)).collect();
         scene.units = Units::new(&scene.includes);
         scene

@@ -32,6 +32,10 @@ pub struct Workspace {
     listings: HashMap<PathBuf, (Instant, Listing)>,
     /// The files that paths as composites write them lead to, and when the first of them was found.
     identities: Option<(Instant, HashMap<PathBuf, PathBuf>)>,
+    /// The folders that the editor has open.
+    folders: Vec<PathBuf>,
+    /// True if composites may name files that are in none of them, nor in their folder and contribution.
+    allow_outside: bool,
 }
 
 /// The composites around a folder, what describes their contribution, and what that imports.
@@ -53,6 +57,19 @@ pub struct Surroundings {
     pub(crate) known: usize,
     /// The files that paths as composites write them lead to.
     pub(crate) identities: HashMap<PathBuf, PathBuf>,
+    pub(crate) bounds: Bounds,
+}
+
+/// The folders whose files, and those below, may be read because composites name them; `None` where all may.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bounds(pub(crate) Option<Vec<PathBuf>>);
+
+impl Bounds {
+    /// True if a file or a folder may be read.
+    pub(crate) fn hold(&self, path: &Path) -> bool {
+        let Some(folders) = &self.0 else { return true };
+        identity(path).ancestors().any(|above| folders.iter().any(|folder| folder == above))
+    }
 }
 
 impl Surroundings {
@@ -100,6 +117,29 @@ impl Workspace {
     /// Takes other texts as those that are open.
     pub fn set_open(&mut self, open: OpenTexts) {
         self.open = open;
+    }
+
+    /// One in which composites may name files anywhere, or only in their folder, in their contribution, and in the
+    /// folders that the editor has open.
+    pub fn new(allow_outside: bool) -> Self {
+        Self { allow_outside, ..Self::default() }
+    }
+
+    /// Takes other folders as those that the editor has open.
+    pub fn set_folders(&mut self, folders: &[PathBuf]) {
+        self.folders = folders.iter().map(|folder| identity(folder)).collect();
+    }
+
+    /// What composites in a folder may name.
+    fn bounds(&mut self, folder: &Path) -> Bounds {
+        if self.allow_outside {
+            return Bounds(None);
+        }
+        let description = self.listing(folder).description;
+        let root = description.as_deref().and_then(Path::parent);
+        let root = root.and_then(|root| if root.ends_with("META-INF") { root.parent() } else { Some(root) });
+        let own = [Some(folder), root].into_iter().flatten().map(identity);
+        Bounds(Some(own.chain(self.folders.iter().cloned()).collect()))
     }
 
     /// Looks at the disk anew.
@@ -163,8 +203,9 @@ impl Workspace {
         identities.extend(self.identities_of(file.as_slice()));
         let mut all: Vec<Arc<File>> = file.into_iter().chain(others).collect();
         let mut known: HashSet<PathBuf> = all.iter().map(|file| file.path.clone()).collect();
+        let bounds = self.bounds(&folder);
         for path in identities.values().collect::<BTreeSet<_>>() {
-            if known.insert(path.clone()) {
+            if bounds.hold(path) && known.insert(path.clone()) {
                 all.extend(self.file(path, true));
             }
         }
@@ -177,7 +218,7 @@ impl Workspace {
         };
         let known = add(imported, &mut all);
         add(importing, &mut all);
-        Surroundings { files: all, own, known, identities }
+        Surroundings { files: all, own, known, identities, bounds }
     }
 
     /// What files that have the same others around them have in common: the description of their contribution, or else

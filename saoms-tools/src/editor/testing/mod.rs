@@ -15,7 +15,7 @@ use saoms_components as _;
 use saoms_lang::registry::Registry;
 
 use super::folding::folds;
-use super::scene::workspace::Surroundings;
+use super::scene::workspace::{Bounds, Surroundings, Workspace};
 use super::{
     File, Scene, complete, definition, document_symbols, hover, linked_tags, links, references, rename, selections,
 };
@@ -59,9 +59,20 @@ pub(crate) fn scene_at(path: &Path, text: &str) -> Scene {
 
 fn made(files: Vec<Arc<File>>) -> Scene {
     Scene::new(
-        Surroundings { own: files.len(), known: files.len(), files, identities: HashMap::new() },
+        Surroundings {
+            own: files.len(),
+            known: files.len(),
+            files,
+            identities: HashMap::new(),
+            bounds: Bounds::default(),
+        },
         Arc::clone(&REGISTRY),
     )
+}
+
+/// The scene of a file on disk with those around it that may be read.
+pub(crate) fn scene_around(path: &Path, workspace: &mut Workspace) -> Scene {
+    Scene::new(workspace.around(path), Arc::clone(&REGISTRY))
 }
 
 /// Asks everything at a byte of a text beside other files. What is answered is in the texts.

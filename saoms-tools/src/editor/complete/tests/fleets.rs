@@ -1,9 +1,11 @@
 //! Proposals from fleets in few lines and files beside them.
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use super::*;
-use crate::editor::testing::scene_at;
+use crate::editor::Workspace;
+use crate::editor::testing::{scene_around, scene_at};
 
 const REPLICATED: &str = "<property name=\"bots\">4</property><property name=\"my-name\"/><component name=\"R${|1}\" s:count=\"bots\" s:if=\"|2\" s:from=\"|3\">\
     <implementation.rust class=\"saoms.Robot\"/><property name=\"delay\">${10*|4}</property><property name=\"chargeX\" value=\"${|5\"/>\
@@ -104,6 +106,45 @@ fn files_beside_are_found_folder_by_folder() {
         labels("<component name=\"R\"><implementation.rust class=\"x.Y\" library=\"|\"/>"),
         ["libx.so", "more/"]
     );
+}
+
+#[test]
+fn only_files_that_a_composite_may_name_are_proposed_and_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir_all(path("site/halls")).unwrap();
+    fs::create_dir(path("open")).unwrap();
+    for name in ["secret.csv", "open/a.csv", "site/b.csv", "site/halls/c.csv"] {
+        fs::write(path(name), "index,period\n1,100ms\n").unwrap();
+    }
+    let hall = path("site/halls/f.composite");
+    let found = |typed: &str, workspace: &mut Workspace| {
+        let marked = composite(&format!("<component name=\"R${{index}}\" s:count=\"1\" s:overrides=\"{typed}|\"/>"));
+        fs::write(&hall, marked.replacen('|', "", 1)).unwrap();
+        let scene = scene_around(&hall, workspace);
+        let read = scene.files.iter().any(|file| file.path.extension().is_some_and(|ending| ending == "csv"));
+        let all = complete(&scene, marked.find('|').unwrap());
+        (all.into_iter().map(|one| one.label).collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>().join(" "), read)
+    };
+    let told = |typed: &str, workspace: &mut Workspace| found(typed, workspace).0;
+    let workspace = &mut Workspace::default();
+    assert_eq!(told("", workspace), "c.csv");
+    assert_eq!(told("../", workspace), "", "nothing says that it is of the contribution");
+    assert!(!found("../b.csv", workspace).1 && found("c.csv", workspace).1);
+    fs::write(
+        path("site/sca-contribution.xml"),
+        "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"/>",
+    )
+    .unwrap();
+    workspace.refresh();
+    assert_eq!(told("../", workspace), "b.csv halls/");
+    assert_eq!(told("../../", workspace), "");
+    assert_eq!(told(&format!("{}/", folder.path().display()), workspace), "");
+    assert!(found("../b.csv", workspace).1 && !found("../../secret.csv", workspace).1);
+    workspace.set_folders(&[path("open")]);
+    assert_eq!(told("../../open/", workspace), "a.csv");
+    assert_eq!(told("../../", workspace), "");
+    assert_eq!(told("../../", &mut Workspace::new(true)), "open/ secret.csv site/");
 }
 
 #[test]
