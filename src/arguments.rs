@@ -7,26 +7,25 @@ use clap::{Args, ValueEnum};
 /// Options that describe a fleet.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct FleetArguments {
-    /// Composite files, `-` for standard input; several form one fleet. A folder is a contribution: `check` looks at
-    /// all of it, others take what its `sca-contribution.xml` calls deployable, or the only composite that runs by
-    /// itself
+    /// Composite files, `-` for standard input; several files form one fleet. A folder is a contribution: `check`
+    /// checks all of it; the other commands use the composite that its `sca-contribution.xml` lists as deployable, or
+    /// the only one that no other composite uses
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
 
-    /// Give a composite property another value; may be repeated
+    /// Set the value of a composite property; may be repeated
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(crate) settings: Vec<String>,
 
-    /// Make diagnostics of a code `allow`ed, a `note`, a `warning` or an `error` where composites say nothing else; may
-    /// be repeated
+    /// Set the severity of a code to `allow`, `note`, `warning` or `error`, unless a composite sets it; may be repeated
     #[arg(long = "severity", value_name = "CODE=LEVEL[:REASON]")]
     pub(crate) severities: Vec<String>,
 
     #[command(flatten)]
     pub(crate) plugins: PluginArguments,
 
-    /// Read also what composites name outside their folders and contributions; without it, a composite of somebody else
-    /// cannot show your files
+    /// Also read files outside the folders and contributions of the composites; without it, a composite from another
+    /// person cannot read your files
     #[arg(long)]
     pub(crate) allow_outside: bool,
 

@@ -20,7 +20,7 @@ Exit codes:
   1  standard output could not be written
   2  the input is wrong: a composite, a value, the command line, a plugin; nothing was printed";
 
-/// Print the one composite that is left when includes, inner composites, property sources and wires are resolved
+/// Print the fleet as one composite, with includes, inner composites, replicas, property sources and wires resolved
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ExpandArguments {

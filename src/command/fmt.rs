@@ -24,7 +24,7 @@ Exit codes:
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct FmtArguments {
-    /// Files to format in place; a folder stands for all composites in it and below, `-` is from standard input to
+    /// Files to format in place; a folder means all composites in it and below, `-` means from standard input to
     /// standard output
     #[arg(required = true, value_name = "FILE")]
     pub(crate) files: Vec<PathBuf>,
@@ -37,7 +37,7 @@ pub(crate) struct FmtArguments {
     #[arg(long, value_name = "COLUMNS", default_value_t = saoms_tools::format::WIDTH)]
     pub(crate) width: usize,
 
-    /// Format also what links in a folder lead to outside of it
+    /// Also format files outside the folder that links in it lead to
     #[arg(long)]
     pub(crate) allow_outside: bool,
 

@@ -31,7 +31,7 @@ pub(crate) struct GraphArguments {
     #[arg(short, long, value_name = "PICTURE")]
     pub(crate) output: Option<PathBuf>,
 
-    /// The format where no ending says it; SVG by default
+    /// The format, if the file has no such ending; SVG by default
     #[arg(long, value_enum)]
     pub(crate) format: Option<PictureFormat>,
 }

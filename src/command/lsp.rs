@@ -16,11 +16,11 @@ pub(crate) struct LspArguments {
     #[command(flatten)]
     pub(crate) plugins: PluginArguments,
 
-    /// Take classes that this program does not know as given, as `saoms check --assume-classes` does
+    /// Accept unknown classes, as `saoms check --assume-classes` does
     #[arg(long)]
     pub(crate) assume_classes: bool,
 
-    /// Read also what composites name outside their folders and contributions, as `saoms check --allow-outside` does
+    /// Also read files outside the folders and contributions of the composites, as `saoms check --allow-outside` does
     #[arg(long)]
     pub(crate) allow_outside: bool,
 }

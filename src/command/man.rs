@@ -18,7 +18,7 @@ Exit codes:
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ManArguments {
-    /// The folder for the pages, such as `~/.local/share/man/man1`; made if it is not there
+    /// The folder for the pages, such as `~/.local/share/man/man1`; it is made if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: PathBuf,
 }

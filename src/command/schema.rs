@@ -20,13 +20,12 @@ Exit codes:
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct SchemaArguments {
-    /// The folder for the schemas, one for each namespace, and for `catalog.xml`, by which editors find them; made if
-    /// it is not there
+    /// The folder for the schemas, one for each namespace, and for `catalog.xml`, which helps editors to find them; it
+    /// is made if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: PathBuf,
 
-    /// The version of XML Schema: 1.0, which every editor reads, or 1.1, which also holds components to the properties
-    /// of their classes
+    /// The version of XML Schema: 1.0, which every editor reads, or 1.1, which also checks the properties of components
     #[arg(long, value_enum, value_name = "VERSION", default_value_t = XsdVersion::V1_0)]
     pub(crate) xsd: XsdVersion,
 

@@ -131,9 +131,7 @@ fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, ExpressionF
             let problem = ExpressionError::new("expected the number of digits after `:`, with a `0` before it");
             let plain = width.parse().is_ok_and(|digits: usize| (1..=NUMBER_DIGITS).contains(&digits));
             let problem = if plain { problem.instead(format!("0{width}")) } else { problem };
-            Err(problem
-                .help("write it as in `${index:03}`, which turns 7 into 007")
-                .at(end + 1..inside.end.max(end + 1)))
+            Err(problem.help("as in `${index:03}`, which turns 7 into 007").at(end + 1..inside.end.max(end + 1)))
         }
     }
 }

@@ -107,9 +107,7 @@ fn number(rest: &str, at: usize) -> Result<(Token, usize), ExpressionFault> {
     if let Some(digits) = behind.strip_prefix('.') {
         let all = length + 1 + digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
         let message = format!("{} is not a whole number", quoted(&rest[..all]));
-        return Err(ExpressionError::new(message)
-            .help("use whole numbers: expressions calculate only with those")
-            .at(at..at + all));
+        return Err(ExpressionError::new(message).help("use a whole number").at(at..at + all));
     }
     match rest[..length].parse() {
         Ok(number) => Ok((Token::Integer(number), length)),

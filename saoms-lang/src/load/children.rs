@@ -308,9 +308,7 @@ impl Loader<'_> {
                 let description = format!("replace {} with {}", quoted(name), quoted(&format!("{prefix}:{name}")));
                 one.suggest_edits(description, renaming(element, Some(prefix), name))
             }
-            None => one.help(
-                "write an element of SCA in the namespace of the composite, and an extension in its own namespace",
-            ),
+            None => one.help("write it in the namespace of the composite if it is of SCA, else in its own"),
         });
     }
 }

@@ -69,10 +69,8 @@ impl Loader<'_> {
         let misspelt = root.attributes().any(|one| one.name().eq_ignore_ascii_case("targetNamespace"));
         if found.is_none() && !root.has_damaged_tag() && (!misspelt || root.attribute("targetNamespace").is_some()) {
             let message = format!("{} has no `targetNamespace`", quoted(root.name()));
-            let one = Diagnostic::new(&codes::MISSING_TARGET_NAMESPACE, root.name_location(), message).help(
-                "add `targetNamespace=\"urn:...\"`: add `targetNamespace=\"urn:...\"`: other composites refer to \
-                this one by its namespace and name",
-            );
+            let one = Diagnostic::new(&codes::MISSING_TARGET_NAMESPACE, root.name_location(), message)
+                .help("add `targetNamespace=\"urn:...\"`: other composites refer to this one by it");
             // SCA 1.0 does not ask for it.
             let severity = if self.version.is_1_1() { Severity::Error } else { Severity::Warning };
             self.report(one.severity(severity));

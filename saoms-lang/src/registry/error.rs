@@ -84,12 +84,7 @@ impl fmt::Display for RegistryError {
                 match (&first.origin, &second.origin) {
                     (None, None) => out.write_str(&what),
                     _ => {
-                        write!(
-                            out,
-                            "{what}: {} and {}; use only one of them, or rename one",
-                            first.place(),
-                            second.place()
-                        )
+                        write!(out, "{what}: {} and {}; use one, or rename one", first.place(), second.place())
                     }
                 }
             }

@@ -34,13 +34,12 @@ pub(crate) struct CheckArguments {
     #[arg(long, value_enum, default_value_t = CheckFormat::Human)]
     pub(crate) format: CheckFormat,
 
-    /// Take classes that this program does not know as given, and implementations of other kinds: check all that can be
-    /// checked without them
+    /// Accept unknown classes and other kinds of implementations, and check everything that can be checked without them
     #[arg(long)]
     pub(crate) assume_classes: bool,
 
-    /// Report the wiring of the whole fleet: every topic with who publishes and reads it how often, and what is odd
-    /// about it
+    /// Report the wiring of the whole fleet: which components publish and read each topic, how often, and what is
+    /// unusual
     #[arg(long, conflicts_with = "assume_classes")]
     pub(crate) wiring: bool,
 }

@@ -18,7 +18,7 @@ Exit codes:
   1  made, but standard output could not be written
   2  one of the files is there already, the name cannot be used, or a file could not be written";
 
-/// Make a plugin, a site or a composite that works, to start from
+/// Make a working plugin, site or composite to start from
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct NewArguments {

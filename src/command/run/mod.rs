@@ -61,11 +61,11 @@ pub(crate) struct RunArguments {
     #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) limit: Option<Duration>,
 
-    /// Run in virtual time: the same fleet, deterministic, as fast as the machine goes
+    /// Run in virtual time: deterministic, and as fast as the machine allows
     #[arg(long = "virtual", conflicts_with_all = ["realtime", "timer_slack", "budget"])]
     pub(crate) virtual_time: bool,
 
-    /// Seed of all chance: in virtual time the same seed gives the same run
+    /// Seed of the random numbers: in virtual time, the same seed gives the same run
     #[arg(long, value_name = "N", default_value_t = 0, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
 
@@ -73,29 +73,29 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Leave the records of the journal out of the report, which a long run fills with megabytes; their counts stay
+    /// Write the report without the records of the journal, which take megabytes after a long run; their counts stay
     #[arg(long, requires = "report")]
     pub(crate) short_report: bool,
 
-    /// Draw the robots' paths into this SVG file, several worlds one below the other; `-` for standard output
+    /// Draw the paths of the robots to this SVG file, one world below the other; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) paths: Option<PathBuf>,
 
-    /// Write every record of the journal to this file, as lines of JSON; the report holds the newest ones of each
+    /// Write all records of the journal to this file, as lines of JSON; the report has only the newest records of each
     /// component
     #[arg(long, value_name = "FILE")]
     pub(crate) journal: Option<PathBuf>,
 
     /// Let events happen, one scenario line each, from this file or, for `-`, from standard input as they come: `at 3s
-    /// luggage (3,1) to (3,10)`, or without `at 3s` for now. A wrong line is told, and the run goes on
+    /// luggage (3,1) to (3,10)`, or without `at 3s` for now. A wrong line is reported, and the run goes on
     #[arg(long, value_name = "FILE")]
     pub(crate) events: Option<PathBuf>,
 
-    /// Watch the libraries of plugins: components of one that is built anew are replaced while the fleet runs
+    /// Watch the libraries of plugins: when a library is rebuilt, its components are replaced while the fleet runs
     #[arg(long, conflicts_with = "virtual_time")]
     pub(crate) reload: bool,
 
-    /// Show nothing but errors
+    /// Show only errors
     #[arg(long, conflicts_with = "console")]
     pub(crate) quiet: bool,
 
@@ -112,12 +112,12 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) timer_slack: Duration,
 
-    /// Time that an execution may hold up the others before a spare thread takes over, in real time
+    /// Time that an execution may delay the others before a spare thread takes over, in real time
     #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) budget: Duration,
 
-    /// Time that a component may take to end before it is abandoned, and that a reader of standard output may take
-    /// nothing after a signal
+    /// Time that a component may take to end before it is abandoned, and that a reader of standard output may block
+    /// after a signal
     #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) grace: Duration,
 }

@@ -24,16 +24,16 @@ Exit codes:
   2  the input is wrong: no such robot, a time after the end of the run, a file without journal or not whole; or the records that the whole
      answer needs were overwritten, or left out by --short-report";
 
-/// Tell why a robot did what it did, from the report or the journal of a run
+/// Explain why a robot did something, from the report or the journal of a run
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct WhyArguments {
-    /// The robot, or any other component: its path, an ending of its path that no other has, or its ID
+    /// The robot, or any other component: its path, a unique ending of its path, or its ID
     #[arg(value_name = "ROBOT")]
     pub(crate) component: String,
 
-    /// Ask what it did last up to this time of the run, and not up to its end (a bare number is milliseconds; units us,
-    /// ms, s, min, h)
+    /// Explain what it did last before this time of the run; by default, before its end (a bare number is milliseconds;
+    /// units us, ms, s, min, h)
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
     pub(crate) at: Option<Duration>,
 

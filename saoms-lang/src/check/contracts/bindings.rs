@@ -23,11 +23,7 @@ pub(crate) fn of_reference(reference: &ReferenceElement, version: Version, repor
     of_callback(reference.contract().callback.as_ref(), &reference.name, report);
     let mut uris = bindings.iter().filter_map(|one| one.uri.as_ref()).filter(|uri| !uri.is_empty());
     if let (true, Some(target), Some(uri)) = (version.is_1_1(), reference.targets.first(), uris.next()) {
-        let message = format!(
-            "reference {} has a target and also a binding that leads to {}",
-            quoted(&reference.name),
-            quoted(uri)
-        );
+        let message = format!("reference {} has a target, and a binding to {}", quoted(&reference.name), quoted(uri));
         let one = Diagnostic::new(&codes::TARGET_IN_TWO_WAYS, uri.location, message).rule("ASM50026");
         report.push(one.label(target.location, "the target").help("keep one of them"));
     }

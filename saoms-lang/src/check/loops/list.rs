@@ -157,8 +157,7 @@ fn unchanged(one: &LoopElement, report: &mut Report<'_>) {
     if says_something || !one.properties.is_empty() || one.is_misread {
         return;
     }
-    let message =
-        format!("this element has no effect: the component already has the loop {} from its class", quoted(&one.name));
+    let message = format!("this has no effect: the class of the component has the loop {}", quoted(&one.name));
     let one = Diagnostic::new(&codes::LOOP_UNCHANGED, one.tag(), message);
     report.push(one.help("remove it, or write what to change: `class`, `before`, `after`, `remove` or properties"));
 }

@@ -34,10 +34,7 @@ pub(super) fn check(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>], options: &
 }
 
 fn diagnostic(library: &Path, at: Location, is_to_start: bool) -> Diagnostic {
-    let message = format!(
-        "the code of the library {} does not run: no option names the library",
-        quoted(&library.display().to_string())
-    );
+    let message = format!("the code of {} does not run: no option names it", quoted(&library.display().to_string()));
     let one = Diagnostic::new(&codes::ONLY_READ, at, message);
     let name = format!("if you trust it, name it: `--plugin {}`", library.display());
     match is_to_start {

@@ -101,9 +101,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, written.location, message);
             self.report.push(match own.strip_prefix('$').filter(|name| is_local_name(name)) {
                 Some(name) => one.replace(&own, written.location, &format!("${{{name}}}")),
-                None => one.help(
-                    "write a name such as `North`, without blanks and `:`, or several names with `/` between them",
-                ),
+                None => one.help("write a name such as `North`, without blanks and `:`, or several with `/` between"),
             });
             return around;
         }

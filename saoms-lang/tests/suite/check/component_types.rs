@@ -113,7 +113,7 @@ fn what_a_file_cannot_say_is_told() {
         run.componentType:3:22-26 error S1012: unexpected text in `componentType`: it contains elements only
           help: remove it, or write a comment between `<!--` and `-->`
         run.componentType:3:27-34 error S1004: `service` is in no namespace
-          help: write an element of SCA in the namespace of the composite, and an extension in its own namespace
+          help: write it in the namespace of the composite if it is of SCA, else in its own
         run.componentType:4:2-11 error S1003: `o:service` is of SCA 1.0, but the componentType is of SCA 1.1
           run.componentType:1:2-15 the componentType
           help: use one namespace of SCA for a composite and everything in it

@@ -65,9 +65,9 @@ fn a_composite_adds_replaces_removes_moves_and_parametrises_loops() {
 fn a_loop_of_which_nothing_changes_is_told() {
     assert_eq!(
         faults("<saoms:loop name=\"BatteryMS\"/>\n<saoms:loop name=\"PathMS\" remove=\"false\"/>"),
-        "3:2-12 warning S4510: this element has no effect: the component already has the loop `BatteryMS` from its class
+        "3:2-12 warning S4510: this has no effect: the class of the component has the loop `BatteryMS`
   help: remove it, or write what to change: `class`, `before`, `after`, `remove` or properties
-4:2-12 warning S4510: this element has no effect: the component already has the loop `PathMS` from its class
+4:2-12 warning S4510: this has no effect: the class of the component has the loop `PathMS`
   help: remove it, or write what to change: `class`, `before`, `after`, `remove` or properties
 "
     );

@@ -20,7 +20,7 @@ fn a_target_and_an_address_exclude_each_other() {
 <reference name='f' multiplicity='0..1'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>
 <reference name='g' multiplicity='0..n'><binding.ws uri='http://a'/><binding.jms name='j' uri='jms:a'/></reference>";
     expect![[r#"
-        3:49-57 error S2054: reference `a` has a target and also a binding that leads to `http://a`
+        3:49-57 error S2054: reference `a` has a target, and a binding to `http://a`
           3:29-30 the target
           help: keep one of them
     "#]]

@@ -173,7 +173,7 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
         11:19-26 error S2045: `${` has no closing `}` (in `I${index`, index 1)
           help: write `${...}`, or `$${` for `${` itself
         12:27-28 error S2045: expected the number of digits after `:`, with a `0` before it (in `J${index:3}`, index 1)
-          help: write it as in `${index:03}`, which turns 7 into 007
+          help: as in `${index:03}`, which turns 7 into 007
           fix: replace `3` with `03` [12:27-28 "03"]
         12:44-49 error S2045: the composite has no property `robts`
           fix: replace `robts` with `robots` [12:44-49 "robots"]

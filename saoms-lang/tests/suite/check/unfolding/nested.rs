@@ -463,7 +463,7 @@ fn a_name_that_means_another_namespace_than_it_leads_to_says_so() {
           hall:1:115-119 this composite is used
           fix: replace `x:hall` with `t:hall` [5:53-59 "t:hall"]
         yard:1:2-11 error S1009: `composite` has no `targetNamespace`
-          help: add `targetNamespace="urn:..."`: add `targetNamespace="urn:..."`: other composites refer to this one by its namespace and name
+          help: add `targetNamespace="urn:..."`: other composites refer to this one by it
     "#]].assert_eq(&outcome(&[&fleet, &hall, &yard, &dock], &[]));
     // Where no prefix is bound, one is declared; a default namespace of the author's own is what is meant.
     let no_prefix =
