@@ -113,7 +113,7 @@ pub mod generated {
     pub use crate::message::Key;
     pub use crate::property::{
         PropertyShape, Values, all_names, are_distinct, complex, contains, continued, count, default_fits, equal, flat,
-        list, property, read, scalar,
+        list, property, read, refuse_reserved, scalar,
     };
     pub use crate::rule::LinkedRule;
     pub use crate::service::{no_operation, no_service};

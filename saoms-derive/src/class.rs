@@ -61,6 +61,10 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
             const _: () = ::core::assert!(::saoms_api::generated::contains(<#properties>::NAMES, #name), #message);
         }
     });
+    let reserved = declared.periodic.filter(|(periodic, _)| *periodic).map(|(_, span)| {
+        // Shown where the class says that it has a task.
+        quote_spanned!(span=> const _: () = ::saoms_api::generated::refuse_reserved(<#properties>::NAMES);)
+    });
     let no_such_service = match &declared.base {
         Some(Base { field, of }) => quote! {
             _ => <#of as ::saoms_api::Class>::serve(&mut self.#field, invocation, context),
@@ -100,6 +104,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
             }
 
             #(#presets)*
+            #reserved
 
             ::saoms_api::generated::inventory::submit! { ::saoms_api::host::Registration::of::<#ident>() }
         };

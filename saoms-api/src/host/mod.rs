@@ -17,7 +17,7 @@ pub use crate::adaptation::{
 pub use crate::component::DynComponent;
 pub use crate::field::Arguments;
 pub use crate::message::SharedMessage;
-pub use crate::property::{PropertyValue, WriteProperties};
+pub use crate::property::{PropertyValue, RESERVED, WriteProperties};
 pub use crate::registration::Registration;
 pub use crate::rule::nearest::{nearest_equal, nearest_few};
 pub use crate::service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};

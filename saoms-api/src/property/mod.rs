@@ -1,5 +1,6 @@
 mod flat;
 mod read;
+mod reserved;
 mod shape;
 #[cfg(test)]
 mod tests;
@@ -8,6 +9,7 @@ mod types;
 pub(crate) use flat::values_of;
 pub use flat::{all_names, are_distinct, continued, count, list};
 pub use read::{Values, complex, flat, property, read, scalar};
+pub use reserved::{RESERVED, refuse_reserved};
 pub use shape::{PropertyField, PropertyShape, contains, default_fits, equal};
 
 use std::fmt;

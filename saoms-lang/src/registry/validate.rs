@@ -2,6 +2,7 @@
 //!
 //! The derives exclude most of them; a declaration written by hand, as that of a plugin in C, can have all.
 
+use saoms_api::host::RESERVED;
 use std::collections::HashSet;
 
 use saoms_api::host::declaration::PropertyKind;
@@ -14,6 +15,12 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
         return Err("the class has no name".to_owned());
     }
     properties(&class.properties)?;
+    if let Some(taken) = class.properties.iter().find(|one| class.is_periodic() && RESERVED.contains(&&*one.name)) {
+        return Err(format!(
+            "property `{}` has a name that is kept for the task of a periodic component: give it another one",
+            taken.name
+        ));
+    }
     unique("service", class.services.iter().map(|service| service.name.as_str()))?;
     unique("reference", class.references.iter().map(|reference| reference.name.as_str()))?;
     unique("published topic", class.publishes.iter().map(|topic| topic.name.as_str()))?;

@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use expect_test::expect;
-use saoms_api::Failure;
 use saoms_api::host::{DynComponent, PropertyValue, Registration, SmolStr};
+use saoms_api::{Failure, Properties};
+use saoms_lang::assembly::TaskProperties;
 use saoms_lang::project::Project;
 use saoms_lang::registry::Provider;
 use saoms_tools::diagnostics::human_of;
@@ -162,11 +163,27 @@ impl Provider for Declared {
     }
 }
 
-/// Where it says a task property again, as another type, class and task each have it as their own declaration says.
+/// Where it reads the `ID` of its task, as another type, class and task each have it as their own declaration says.
+#[test]
+fn names_of_task_properties_are_kept() {
+    let refused = |name: &str| {
+        let properties = format!(r#"[{{"name": "{name}", "type": "string"}}]"#);
+        let class = |kind: &str| {
+            format!(r#"{{"contract": 1, "class": "lib.Timer", "kind": "{kind}", "properties": {properties}}}"#)
+        };
+        assert!(registry().add_provided(&class("passive"), Arc::new(Declared)).is_ok());
+        registry().add_provided(&class("periodic"), Arc::new(Declared)).err().map(|error| error.to_string())
+    };
+    for name in TaskProperties::NAMES.iter().filter(|name| **name != "ID").chain(&["trigger", "minimum", "node"]) {
+        let expected = format!("property `{name}` has a name that is kept for the task of a periodic component");
+        assert!(refused(name).is_some_and(|message| message.contains(&expected)), "{name}");
+    }
+    assert_eq!(refused("ID"), None);
+}
+
 #[test]
 fn values_have_the_types_that_a_library_declares() {
-    let properties = r#"[{"name": "ID", "type": "integer"}, {"name": "period", "type": "integer", "min": 1, "max": 5000},
-        {"name": "useJMS", "type": "string"}, {"name": "wait", "type": "duration", "max": "1s"},
+    let properties = r#"[{"name": "ID", "type": "integer"}, {"name": "wait", "type": "duration", "max": "1s"},
         {"name": "large", "type": "integer"}, {"name": "mode", "type": "enumeration", "allowed": ["slow", "fast"]}]"#;
     let class = format!(r#"{{"contract": 1, "class": "lib.Timer", "kind": "periodic", "properties": {properties}}}"#);
     let mut registry = registry();
@@ -186,7 +203,7 @@ fn values_have_the_types_that_a_library_declares() {
         assembly.components[0].values.iter().map(|(name, value)| format!("{name}={value:?}")).collect();
     assert_eq!(
         values.join(" "),
-        "ID=Integer(7) period=Integer(250) useJMS=Text(\"false\") wait=Duration(1s) large=Integer(123456789012345678901234567890) mode=Text(\"fast\")"
+        "ID=Integer(7) wait=Duration(1s) large=Integer(123456789012345678901234567890) mode=Text(\"fast\")"
     );
     let task = assembly.components[0].task.as_ref().unwrap();
     assert_eq!((task.id.as_str(), task.period.as_millis(), task.use_jms), ("007", 250, false));
