@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use saoms_api::host::contain::{contained, install_hook};
 use saoms_api::host::{DynComponent, Invocation, PropertyValue, Registration, ServiceCall, SharedMessage, SmolStr};
-use saoms_api::{CallError, Cause, Class, Context, Failure, Header, Message, ReportValue, Topic, Work};
+use saoms_api::{CallError, Cause, Class, Context, Failure, Header, Message, ReportValue, Time, Topic, Work};
 use saoms_core::plugin::Plugin;
 use saoms_lang::registry::{RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
@@ -209,7 +209,9 @@ impl Bench {
         contained(|| code(component, &mut context)).and_then(|result| result)
     }
 
-    pub(crate) fn serve(&mut self, service: &str, call: &mut dyn ServiceCall) -> Result<(), CallError> {
+    /// Serves a call at the time of its caller, as in a fleet.
+    pub(crate) fn serve(&mut self, service: &str, call: &mut dyn ServiceCall, now: Time) -> Result<(), CallError> {
+        self.stage.now = now;
         let mut invocation = Invocation { service, call };
         self.component.serve(&mut invocation, &mut Context::new(&mut self.stage, &[]))
     }

@@ -73,11 +73,6 @@ struct Testing;
 #[doc = include_str!("../../docs/plugins.md")]
 struct Plugins;
 
-/// The example of `docs/hardware.md`, compiled and run.
-#[cfg(doctest)]
-#[doc = include_str!("../../docs/hardware.md")]
-struct Hardware;
-
 /// The example of `docs/scheduling.md`, compiled.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/scheduling.md")]

@@ -273,7 +273,7 @@ impl Host for Stage {
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         match self.wires.get_mut(reference as usize) {
             Some(wire) if wire.is_busy => Err(CallError::Busy { provider: wire.reference.clone() }),
-            Some(wire) => wire.provider.serve(&wire.service, call),
+            Some(wire) => wire.provider.serve(&wire.service, call, self.now),
             None => Err(CallError::NotWired { reference: reference.to_string() }),
         }
     }

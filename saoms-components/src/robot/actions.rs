@@ -68,6 +68,13 @@ impl RobotKnowledge {
         Ok(true)
     }
 
+    /// Takes the hardware out of service at the end of the robot. Hardware that is busy is a failure, so that the
+    /// shutdown is tried again.
+    pub(crate) fn leave_hardware(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.block = self.hardware.leave(context, self.number)?.unwrap_or(self.block);
+        Ok(())
+    }
+
     fn take_in(&mut self, context: &mut Context<'_>, action: Action, progress: Progress) -> Result<Outcome, Failure> {
         match progress {
             Progress::Running => Ok(Outcome::Running),

@@ -111,17 +111,25 @@ impl HardwareClient {
 
     /// Takes the hardware out of service; the answer is the robot's position. `None` without hardware.
     pub(crate) fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Reply<Option<Block>>, Failure> {
-        if !self.wired || !self.entered {
-            return Ok(Reply::Answer(None));
+        reply(self.call_retire(context, robot))
+    }
+
+    /// The same at the end of the robot: hardware that is busy is a failure, and none is left to stop where it has
+    /// ended before.
+    pub(crate) fn leave(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Option<Block>, Failure> {
+        match self.call_retire(context, robot) {
+            Err(CallError::NotRunning { .. }) => Ok(None),
+            answer => Ok(answer?),
         }
-        let answer = reply(self.hardware.retire(context, robot))?;
-        Ok(match answer {
-            Reply::Answer(block) => {
-                self.running = None;
-                Reply::Answer(Some(block))
-            }
-            Reply::Later => Reply::Later,
-        })
+    }
+
+    fn call_retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Option<Block>, CallError> {
+        if !self.wired || !self.entered {
+            return Ok(None);
+        }
+        let block = self.hardware.retire(context, robot)?;
+        self.running = None;
+        Ok(Some(block))
     }
 }
 

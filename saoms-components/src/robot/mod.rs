@@ -142,8 +142,9 @@ impl Component for Robot {
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        // Hardware that is busy is asked again: it must not go on without its robot.
+        self.knowledge.leave_hardware(context)?;
         self.knowledge.report_row(context);
-        self.knowledge.retire(context)?;
         self.loops.shutdown(&mut *self.knowledge, context)
     }
 

@@ -3,5 +3,6 @@
 mod c;
 mod examples;
 mod reload;
+mod wheels;
 
 pub(crate) use examples::library;

@@ -9,7 +9,7 @@ use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 use saoms_tools::diagnostics::human_of;
 
-use crate::support::{root, saoms, stdout};
+use crate::support::{project, root, saoms, stdout};
 
 const NAMESPACE: &str = "http://docs.oasis-open.org/ns/opencsa/sca/200912";
 
@@ -143,4 +143,15 @@ fn the_wiring_report_is_real() {
     let (_, page) = pages().into_iter().find(|(path, _)| path.ends_with("wiring.md")).unwrap();
     let report = stdout(&saoms(&["check", "--wiring", "composites/hangar.composite"]));
     assert!(report.contains(blocks(&page, "text")[0]), "{report}");
+}
+
+#[test]
+fn the_driver_on_the_page_about_hardware_is_the_one_under_test() {
+    let page = fs::read_to_string(root().join("docs/hardware.md")).unwrap();
+    let shown = blocks(&page, "rust,ignore");
+    assert!(shown.len() >= 5);
+    let files = ["driver.rs", "lib.rs"].map(|file| project(&format!("plugins/wheels/src/{file}")));
+    for block in shown {
+        assert!(files.iter().any(|file| file.contains(block.trim_end())), "in no file of `plugins/wheels`:\n{block}");
+    }
 }

@@ -1,0 +1,175 @@
+//! Connection to the controller: orders go out at once, answers come in on a thread of their own.
+
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// Time in which a connection is made, and in which the controller takes an order.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Longest line that counts as an answer, in bytes.
+const LONGEST: u64 = 256;
+
+/// Progress of the newest order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum OrderState {
+    Running,
+    Done,
+    Failed,
+}
+
+/// Driver of one controller. It never waits, but in [`stop`](Driver::stop).
+#[derive(Debug)]
+pub(crate) struct Driver {
+    orders: Sender<(u64, String)>,
+    newest: Arc<Newest>,
+    number: u64,
+}
+
+impl Driver {
+    /// Starts the threads; the connection is made with the first order.
+    pub(crate) fn start(address: String) -> io::Result<Driver> {
+        let (orders, received) = channel();
+        let newest = Arc::new(Newest { order: Mutex::new((0, OrderState::Done)), answered: Condvar::new() });
+        let shared = Arc::clone(&newest);
+        thread::Builder::new().name("wheels".to_owned()).spawn(move || send_orders(&address, &received, &shared))?;
+        Ok(Driver { orders, newest, number: 0 })
+    }
+
+    /// Gives an order, whether or not the earlier one is answered: so `stop` overtakes a move.
+    pub(crate) fn order(&mut self, what: &str) {
+        self.number += 1;
+        self.newest.set(self.number, OrderState::Running);
+        if self.orders.send((self.number, format!("{} {what}\n", self.number))).is_err() {
+            self.newest.answer(self.number, OrderState::Failed);
+        }
+    }
+
+    /// State of the newest order.
+    pub(crate) fn state(&self) -> OrderState {
+        self.newest.lock().1
+    }
+
+    /// Orders a stop and waits until it is confirmed; false if it is not. Without an order before there is nothing to
+    /// stop.
+    pub(crate) fn stop(&mut self, patience: Duration) -> bool {
+        if self.number == 0 {
+            return true;
+        }
+        self.order("stop");
+        let is_running = |order: &mut (u64, OrderState)| order.1 == OrderState::Running;
+        let waited = self.newest.answered.wait_timeout_while(self.newest.lock(), patience, is_running);
+        waited.unwrap_or_else(PoisonError::into_inner).0.1 == OrderState::Done
+    }
+}
+
+/// The number of the newest order, and its state: answers to earlier orders do not count any more.
+#[derive(Debug)]
+struct Newest {
+    order: Mutex<(u64, OrderState)>,
+    answered: Condvar,
+}
+
+impl Newest {
+    fn lock(&self) -> std::sync::MutexGuard<'_, (u64, OrderState)> {
+        self.order.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn set(&self, number: u64, state: OrderState) {
+        *self.lock() = (number, state);
+    }
+
+    /// Takes in an answer, if it is about the newest order, and the first one.
+    fn answer(&self, number: u64, state: OrderState) {
+        let mut order = self.lock();
+        if *order == (number, OrderState::Running) {
+            order.1 = state;
+            self.answered.notify_all();
+        }
+    }
+}
+
+/// Sends orders until the driver is dropped. A connection that ended is made anew for the next order. No order is sent
+/// twice: one that may have reached the controller has failed, and the robot decides what comes next.
+fn send_orders(address: &str, orders: &Receiver<(u64, String)>, newest: &Arc<Newest>) {
+    let mut connection: Option<Connection> = None;
+    for (number, line) in orders {
+        connection = connection.filter(|connection| !connection.shared.has_ended.load(Ordering::SeqCst));
+        let sent = match connection.take().map_or_else(|| Connection::new(address, newest), Ok) {
+            Ok(open) => connection.insert(open).send(number, &line),
+            Err(error) => Err(error),
+        };
+        if sent.is_err() {
+            connection = None;
+            newest.answer(number, OrderState::Failed);
+        }
+    }
+}
+
+/// A connection. Its thread for answers ends with it.
+struct Connection {
+    stream: TcpStream,
+    shared: Arc<ConnectionState>,
+}
+
+#[derive(Default)]
+struct ConnectionState {
+    newest_sent: AtomicU64,
+    has_ended: AtomicBool,
+}
+
+impl Connection {
+    fn new(address: &str, newest: &Arc<Newest>) -> io::Result<Connection> {
+        let place = address.to_socket_addrs()?.next().ok_or(io::ErrorKind::AddrNotAvailable)?;
+        let stream = TcpStream::connect_timeout(&place, PATIENCE)?;
+        stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        let (answers, newest) = (BufReader::new(stream.try_clone()?), Arc::clone(newest));
+        let shared = Arc::<ConnectionState>::default();
+        let of_thread = Arc::clone(&shared);
+        thread::Builder::new().name("wheels answers".to_owned()).spawn(move || {
+            take_answers(answers, &newest);
+            of_thread.has_ended.store(true, Ordering::SeqCst);
+            // What this connection has not answered, no other one will.
+            newest.answer(of_thread.newest_sent.load(Ordering::SeqCst), OrderState::Failed);
+        })?;
+        Ok(Connection { stream, shared })
+    }
+
+    fn send(&mut self, number: u64, line: &str) -> io::Result<()> {
+        // Before the order leaves: it may be answered before this thread goes on.
+        self.shared.newest_sent.store(number, Ordering::SeqCst);
+        if self.shared.has_ended.load(Ordering::SeqCst) {
+            return Err(io::ErrorKind::ConnectionReset.into());
+        }
+        self.stream.write_all(line.as_bytes())
+    }
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        // It is closed already if this fails.
+        let _ = self.stream.shutdown(std::net::Shutdown::Both);
+    }
+}
+
+/// Takes in lines such as `7 done` and `8 failed`, until the connection ends. Other lines are no answers.
+fn take_answers(mut answers: BufReader<TcpStream>, newest: &Newest) {
+    let mut line = Vec::new();
+    while matches!(answers.by_ref().take(LONGEST).read_until(b'\n', &mut line), Ok(1..)) {
+        let text = String::from_utf8_lossy(&line);
+        if let Some((number, answer)) = text.trim().split_once(' ')
+            && let Ok(number) = number.parse()
+        {
+            match answer {
+                "done" => newest.answer(number, OrderState::Done),
+                "failed" => newest.answer(number, OrderState::Failed),
+                _ => {}
+            }
+        }
+        line.clear();
+    }
+}

@@ -1,0 +1,68 @@
+//! Wheels behind a controller, in a real process that is interrupted while they turn.
+
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpListener;
+use std::process::{Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::Duration;
+
+use crate::plugins::examples::library;
+use crate::support::{root, text};
+
+/// A controller whose wheels turn for ever; it answers `stop` with this word. Returns its address and its orders.
+fn controller(answer: &'static str) -> (String, Receiver<String>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    let (told, orders) = channel();
+    thread::spawn(move || {
+        let mut stream = BufReader::new(listener.accept().unwrap().0);
+        let mut line = String::new();
+        while stream.read_line(&mut line).is_ok_and(|bytes| bytes > 0) {
+            let (number, order) = line.trim().split_once(' ').unwrap();
+            if order == "stop" {
+                // Its wheels take a while to come to rest.
+                thread::sleep(Duration::from_millis(100));
+                let _ = stream.get_mut().write_all(format!("{number} {answer}\n").as_bytes());
+            }
+            let _ = told.send(order.to_owned());
+            line.clear();
+        }
+    });
+    (address, orders)
+}
+
+/// Runs the example, and interrupts it when the wheels turn. Returns the orders after the first, the exit code and
+/// what was written.
+fn interrupted(answer: &'static str) -> (Vec<String>, Option<i32>, String) {
+    let (address, orders) = controller(answer);
+    let child = Command::new(env!("CARGO_BIN_EXE_saoms"))
+        .current_dir(root())
+        .args(["run", "plugins/wheels/fleet.composite", "--set", &format!("address={address}"), "--for", "60s"])
+        .args(["--plugin", library("saoms_wheels").to_str().unwrap()])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    assert_eq!(orders.recv_timeout(Duration::from_secs(60)).as_deref(), Ok("move 1 0"));
+    // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
+    assert_eq!(unsafe { libc::kill(i32::try_from(child.id()).unwrap(), libc::SIGINT) }, 0);
+    let output = child.wait_with_output().unwrap();
+    let orders = orders.iter().collect();
+    (orders, output.status.code(), text(&output))
+}
+
+#[test]
+fn an_interrupt_stops_the_wheels_before_the_program_ends() {
+    let (orders, code, told) = interrupted("done");
+    assert!(!orders.is_empty() && orders.iter().all(|order| order == "stop"), "{orders:?}");
+    assert_eq!(code, Some(130), "{told}");
+}
+
+#[test]
+fn wheels_that_do_not_confirm_the_stop_are_told_at_the_end() {
+    let (orders, code, told) = interrupted("failed");
+    assert!(orders.contains(&"stop".to_owned()), "{orders:?}");
+    assert_eq!(code, Some(130), "{told}");
+    assert!(told.contains("the wheels may still turn: the controller at `127.0.0.1:"), "{told}");
+}
