@@ -30,11 +30,6 @@ pub struct Options {
 }
 
 impl Options {
-    /// With these settings, everything else as usual.
-    pub fn with_settings(settings: Vec<Setting>) -> Self {
-        Self { settings, ..Self::default() }
-    }
-
     /// The value of an environment variable.
     pub(crate) fn variable(&self, name: &str) -> Option<&Text> {
         self.variables.iter().find(|variable| variable.name == name).map(|variable| &variable.value)

@@ -25,23 +25,14 @@ pub struct FolderFleet {
     pub is_exported: bool,
 }
 
-/// Looks at a folder as a contribution, and at those in folders below it: the fleets in it. What `sca-contribution.xml`
-/// calls `deployable` is one fleet, and every other composite that no composite there names is one of its own.
-///
-/// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share a
-/// name; and that there are no composites, more files than are looked at, or links that lead to no file. What is wrong
-/// with the composites themselves is found when they are loaded as fleets.
-pub fn load_folder(
-    folder: &Path,
-    max_size: u64,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) -> Vec<FolderFleet> {
-    Finder::new(sources.open().clone()).load_folder(folder, max_size, sources, diagnostics)
-}
-
 impl Finder {
-    /// Does what [`load_folder`] does.
+    /// Looks at a folder as a contribution, and at those in folders below it: the fleets in it. What
+    /// `sca-contribution.xml` calls `deployable` is one fleet, and every other composite that no composite there names
+    /// is one of its own.
+    ///
+    /// Reported is what is wrong with descriptions, with deployables that are not there, and with composites that share
+    /// a name; and that there are no composites, more files than are looked at, or links that lead to no file. What is
+    /// wrong with the composites themselves is found when they are loaded as fleets.
     pub fn load_folder(
         &mut self,
         folder: &Path,

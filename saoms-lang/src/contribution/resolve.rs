@@ -13,30 +13,21 @@ use crate::load::{ReadContext, STANDARD_INPUT, load_component_type, load_file};
 use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
 
-/// Reads the composites that those of a contribution include or implement components with, and what those name in turn;
-/// and the component types of implementations, the files `X.componentType` beside them.
-///
-/// They are looked for by namespace and name in the folder of the file that names them, and then in the whole
-/// contribution: the nearest folder above that has a `sca-contribution.xml`, in itself or in its `META-INF`, or that
-/// first folder where there is none. What is not there is looked for in the contributions that export its namespace
-/// (for component types, its package), where the description of its own imports that: those of the composites that are
-/// given together, those in folders beside it, and the folder that the import has as its `location`. Of a file
-/// that is not needed no more is read than its first tag, and a large folder is given up after some ten thousand
-/// entries. Texts that were not read from files are not looked at, but for [`STANDARD_INPUT`].
-///
-/// A fault of a file that is found, or that has the name of one that is not, is reported; that one is not found is
-/// for the checker to say. A [`Finder`] does it for several contributions that are in the same folders.
-pub fn load_named(
-    contribution: &mut Contribution,
-    max_size: u64,
-    sources: &mut Sources,
-    diagnostics: &mut Diagnostics,
-) {
-    Finder::new(sources.open().clone()).load_named(contribution, max_size, sources, diagnostics);
-}
-
 impl Finder {
-    /// Does what [`load_named`] does. What is wrong with the description of a contribution is reported once.
+    /// Reads the composites that those of a contribution include or implement components with, and what those name in
+    /// turn; and the component types of implementations, the files `X.componentType` beside them.
+    ///
+    /// They are looked for by namespace and name in the folder of the file that names them, and then in the whole
+    /// contribution: the nearest folder above that has a `sca-contribution.xml`, in itself or in its `META-INF`, or
+    /// that first folder where there is none. What is not there is looked for in the contributions that export its
+    /// namespace (for component types, its package), where the description of its own imports that: those of the
+    /// composites that are given together, those in folders beside it, and the folder that the import has as its
+    /// `location`. Of a file that is not needed no more is read than its first tag, and a large folder is given up
+    /// after some ten thousand entries. Texts that were not read from files are not looked at, but for
+    /// [`STANDARD_INPUT`].
+    ///
+    /// A fault of a file that is found, or that has the name of one that is not, is reported; that one is not found is
+    /// for the checker to say. What is wrong with the description of a contribution is reported once.
     pub fn load_named(
         &mut self,
         contribution: &mut Contribution,

@@ -1,12 +1,15 @@
 //! Limits on the files that a search reads.
 
 use std::fs;
+use std::path::Path;
 
 use super::head::LOOKED_AT;
 use super::index::Index;
 use super::*;
-use crate::model::{Contribution, Link, Naming, Version};
-use crate::source::OpenTexts;
+use crate::diagnostic::Diagnostics;
+use crate::load::{MAX_SIZE, load_file, read};
+use crate::model::{Composite, Contribution, Link, Naming, Version};
+use crate::source::{OpenTexts, Sources};
 
 fn composite(name: &str, includes: &[String]) -> String {
     let includes: String = includes.iter().map(|name| format!("<include name='t:{name}'/>")).collect();
@@ -14,6 +17,11 @@ fn composite(name: &str, includes: &[String]) -> String {
         "<composite xmlns='{}' xmlns:t='urn:t' name='{name}' targetNamespace='urn:t'>{includes}</composite>",
         Version::Osoa10.namespace()
     )
+}
+
+fn load(path: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
+    let file = read(path, MAX_SIZE, sources, diagnostics)?;
+    load_file(file, sources, diagnostics)
 }
 
 #[test]
@@ -55,7 +63,7 @@ fn right_names_are_looked_at_a_million_times_for_wrong_ones() {
     fs::write(&path, composite("fleet", &wrong)).unwrap();
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let mut all = Contribution::of(vec![load(&path, &mut sources, &mut diagnostics).unwrap()]);
-    load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
+    Finder::new(OpenTexts::default()).load_named(&mut all, MAX_SIZE, &mut sources, &mut diagnostics);
     let has_near = |include| match all.link(Naming::of_include(include).unwrap().origin) {
         Some(Link::Missing(missing)) => !missing.near.is_empty(),
         link => panic!("{link:?}"),

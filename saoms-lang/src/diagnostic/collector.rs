@@ -128,11 +128,7 @@ impl Diagnostics {
     }
 
     fn count(&mut self, code: &'static Code, severity: Severity, file: FileId) -> &mut Count {
-        match severity {
-            Severity::Error => self.errors += 1,
-            Severity::Warning => self.warnings += 1,
-            Severity::Note => {}
-        }
+        self.recount(severity, 1, usize::saturating_add);
         let new = Count { code, number: 0, kept: 0, beyond: None };
         let count = self.counts.entry((file, code.id)).or_insert(new);
         count.number += 1;

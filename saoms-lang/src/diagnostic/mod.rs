@@ -20,7 +20,7 @@ pub(crate) use collector::HiddenNames;
 pub use level::{SetBy, SeverityLevel};
 pub(crate) use meant_boolean::meant_boolean;
 pub use quoted::quoted;
-pub(crate) use quoted::replacing;
+pub(crate) use quoted::{list, replacing};
 use saoms_api::host::shorten;
 pub use saoms_api::host::{nearest_equal, nearest_few};
 pub use saoms_api::rule::{Severity, nearest};

@@ -3,7 +3,7 @@
 use saoms_api::host::{escaped, one_line};
 
 use super::Diagnostic;
-use crate::limits::QUOTED_CHARACTERS;
+use crate::limits::{LISTED_NAMES, QUOTED_CHARACTERS};
 use crate::source::Location;
 
 /// A text of the user between backticks: shortened when long, invisible characters escaped.
@@ -19,6 +19,19 @@ pub fn quoted(text: &str) -> String {
 /// The description of a suggestion that replaces a name.
 pub(crate) fn replacing(name: &str, meant: &str) -> String {
     format!("replace {} with {}", quoted(name), quoted(meant))
+}
+
+/// Names for a line of help: `a`, `b` and `c`, so many of them.
+pub(crate) fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+    let mut names = names.into_iter();
+    let shown: Vec<String> = names.by_ref().take(LISTED_NAMES).map(quoted).collect();
+    let more = names.count();
+    match (&shown[..], more) {
+        ([], _) => "none".to_owned(),
+        ([one], 0) => one.clone(),
+        ([most @ .., last], 0) => format!("{} and {last}", most.join(", ")),
+        _ => format!("{} and {more} more", shown.join(", ")),
+    }
 }
 
 impl Diagnostic {

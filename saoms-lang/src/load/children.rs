@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 use super::Loader;
 use super::attributes::{is_attribute_as_element, own_prefix};
 use super::vocabulary::{self, Kind, OPERATION, OWN_ELEMENTS, POLICIES, SEVERITY, SEVERITY_PARENTS};
-use crate::diagnostic::{Diagnostic, Edit, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Edit, Severity, codes, list, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
 use crate::syntax::Element;
@@ -172,7 +172,7 @@ impl Loader<'_> {
                 return Some("include");
             }
             self.report(match is_own {
-                true => one.help(format!("it is allowed in {}", list(vocabulary::own_parents(name)))),
+                true => one.help(format!("it is allowed in {}", list(vocabulary::own_parents(name).iter().copied()))),
                 false => one.help(holds()),
             });
             return None;
@@ -417,15 +417,4 @@ pub(super) fn variant(element: Element<'_>, prefix: &str) -> SmolStr {
 pub(super) fn is_defined(element: Element<'_>) -> bool {
     let name = meant_name(element);
     name.contains('.') && is_known(name)
-}
-
-/// Names in a sentence: `a`, `b` and `c`.
-fn list(names: &[&str]) -> String {
-    match names {
-        [most @ .., last] if !most.is_empty() => {
-            let most: Vec<String> = most.iter().copied().map(quoted).collect();
-            format!("{} and {}", most.join(", "), quoted(last))
-        }
-        names => names.iter().copied().map(quoted).collect(),
-    }
 }

@@ -1,7 +1,6 @@
 //! Components that have no class here, and are known by a file beside their implementation alone.
 
-use crate::check::fleet::Side;
-use crate::check::fleet::{Fleet, Kind, Member};
+use crate::check::fleet::{Fleet, Kind, Member, Side};
 use crate::check::parameters::Parameters;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, nearest, quoted};

@@ -5,12 +5,12 @@ pub(crate) mod severities;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-pub(crate) use crate::diagnostic::replacing;
 use crate::diagnostic::{
     Candidates, Code, Diagnostic, Diagnostics, Severity, Suggestion, codes, nearest_equal, quoted,
 };
+pub(crate) use crate::diagnostic::{list, replacing};
 use crate::expression::has_expression;
-use crate::limits::{LISTED_NAMES, MERGED_DIAGNOSTICS, REMEMBERED_DIAGNOSTICS};
+use crate::limits::{MERGED_DIAGNOSTICS, REMEMBERED_DIAGNOSTICS};
 use crate::source::{FileId, Location, Sources, Span, Text};
 use crate::syntax::SourceMap;
 
@@ -304,18 +304,5 @@ impl Parts {
             Some(part) => Span::new(span.start + part.start as u32, span.start + part.end as u32).in_file(file),
             None => self.written,
         }
-    }
-}
-
-/// Names for a line of help: `a`, `b` and `c`, so many of them.
-pub(crate) fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
-    let mut names = names.into_iter();
-    let shown: Vec<String> = names.by_ref().take(LISTED_NAMES).map(quoted).collect();
-    let more = names.count();
-    match (&shown[..], more) {
-        ([], _) => "none".to_owned(),
-        ([one], 0) => one.clone(),
-        ([most @ .., last], 0) => format!("{} and {last}", most.join(", ")),
-        _ => format!("{} and {more} more", shown.join(", ")),
     }
 }

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::check::contracts::offer::Offer;
-use crate::check::contracts::offer::Provider;
+use crate::check::contracts::offer::{Offer, Provider};
 use crate::check::fleet::Fleet;
 use crate::registry::InterfaceDeclaration;
 

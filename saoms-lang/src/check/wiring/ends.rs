@@ -3,8 +3,7 @@
 use super::Wires;
 use super::target::{Target, target, uri};
 use super::uri::{has_room, spread};
-use crate::check::contracts::offer::ReferenceId;
-use crate::check::contracts::offer::{Provider, parts};
+use crate::check::contracts::offer::{Provider, ReferenceId, parts};
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};

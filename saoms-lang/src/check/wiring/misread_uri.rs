@@ -1,8 +1,7 @@
 //! URIs that lead to no component, or are written in another way than SCA's, and their probable meaning.
 
 use crate::check::contracts::offer::parts;
-use crate::check::fleet::Fleet;
-use crate::check::fleet::Side;
+use crate::check::fleet::{Fleet, Side};
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::expression::pattern;

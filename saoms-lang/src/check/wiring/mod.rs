@@ -19,8 +19,7 @@ mod wire;
 
 use std::collections::{BTreeMap, HashSet};
 
-use crate::check::contracts::offer::Provider;
-use crate::check::contracts::offer::ReferenceId;
+use crate::check::contracts::offer::{Provider, ReferenceId};
 use crate::check::fleet::Fleet;
 use crate::check::options::Options;
 use crate::check::report::Report;

@@ -2,9 +2,7 @@
 //! overrides them.
 
 use crate::check::contracts::interface;
-use crate::check::contracts::offer::Offer;
-use crate::check::contracts::offer::ReferenceId;
-use crate::check::contracts::offer::parts;
+use crate::check::contracts::offer::{Offer, ReferenceId, parts};
 use crate::check::fleet::{Fleet, Kind};
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};

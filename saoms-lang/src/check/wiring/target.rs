@@ -3,8 +3,7 @@
 use super::misread_uri::{inside, unknown_component};
 use super::uri::{Uri, is_address};
 use crate::check::contracts::offer::{Offer, Provider};
-use crate::check::fleet::Fleet;
-use crate::check::fleet::Side;
+use crate::check::fleet::{Fleet, Side};
 use crate::check::options::Options;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};

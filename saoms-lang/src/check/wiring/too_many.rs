@@ -1,8 +1,7 @@
 //! References that have more targets than they take.
 
 use super::Wires;
-use crate::check::contracts::offer::ReferenceId;
-use crate::check::contracts::offer::parts;
+use crate::check::contracts::offer::{ReferenceId, parts};
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::Multiplicity;

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use proptest::prelude::*;
-use saoms_lang::contribution::load;
 use saoms_lang::diagnostic::Diagnostics;
 use saoms_lang::load::{MAX_SIZE, read};
 use saoms_lang::source::Sources;
@@ -13,6 +12,7 @@ use crate::load::collection::collection;
 use crate::load::files::{self, Sample};
 use crate::load::oracle::judge;
 use crate::load::places::checked;
+use crate::load::support::load;
 
 /// The diagnostics of the files of this repository, apart from warnings that a composite has no target namespace.
 #[test]

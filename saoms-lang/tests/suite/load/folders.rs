@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::fs;
 
 use expect_test::expect;
-use saoms_lang::contribution::{composites_below, load_folder};
+use saoms_lang::contribution::{Finder, composites_below};
 use saoms_lang::diagnostic::Diagnostics;
 use saoms_lang::load::MAX_SIZE;
-use saoms_lang::source::Sources;
+use saoms_lang::source::{OpenTexts, Sources};
 
 use crate::load::imports::description;
 use crate::load::named::composite;
@@ -263,7 +263,8 @@ fn what_is_no_file_is_passed_over() {
     let all = composites_below(folder.path(), &mut sources, &mut diagnostics);
     let names: Vec<_> = all.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
     assert_eq!(names, ["around.composite", "dead.composite", "fleet.composite", "link.composite"]);
-    let fleets = load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
+    let finder = &mut Finder::new(OpenTexts::default());
+    let fleets = finder.load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
     let files: Vec<_> = fleets.iter().map(|fleet| fleet.files[0].file_stem().unwrap()).collect();
     assert_eq!(files, ["fleet", "link"]);
     let told = diagnostics.iter().map(|one| (one.code.id, one.message.as_str()));

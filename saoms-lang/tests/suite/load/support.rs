@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use saoms_lang::contribution::{FolderFleet, load, load_folder, load_named};
+use saoms_lang::contribution::{Finder, FolderFleet, read_values};
 use saoms_lang::diagnostic::Diagnostics;
-use saoms_lang::load::{MAX_SIZE, load_file};
+use saoms_lang::load::{MAX_SIZE, load_file, read};
 use saoms_lang::model::{Composite, Contribution};
 use saoms_lang::source::{OpenTexts, Sources};
 
@@ -28,19 +28,28 @@ pub(crate) fn loaded(name: &str, text: &str) -> (Option<Composite>, Sources, Dia
     (load_file(file, &sources, &mut diagnostics), sources, diagnostics)
 }
 
+/// The composite of a file, with the files of its values.
+pub(crate) fn load(path: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Option<Composite> {
+    let file = read(path, MAX_SIZE, sources, diagnostics)?;
+    let mut composite = load_file(file, sources, diagnostics)?;
+    read_values(&mut composite, MAX_SIZE, sources, diagnostics);
+    Some(composite)
+}
+
 /// The composite of a file and all that it names, with what is said of them. These texts count in place of files.
 pub(crate) fn loaded_with_named(path: &Path, open: OpenTexts) -> (Contribution, Sources, Diagnostics) {
     let (mut sources, mut diagnostics) = (Sources::with_open(open), Diagnostics::new());
     let first = load(path, &mut sources, &mut diagnostics);
     let mut contribution = Contribution::of(first.into_iter().collect());
-    load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
+    Finder::new(sources.open().clone()).load_named(&mut contribution, MAX_SIZE, &mut sources, &mut diagnostics);
     (contribution, sources, diagnostics)
 }
 
 /// The fleets of a folder, with what is said of its files.
 pub(crate) fn loaded_folder(folder: &Path) -> (Vec<FolderFleet>, Sources, Diagnostics) {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    (load_folder(folder, MAX_SIZE, &mut sources, &mut diagnostics), sources, diagnostics)
+    let fleets = Finder::new(OpenTexts::default()).load_folder(folder, MAX_SIZE, &mut sources, &mut diagnostics);
+    (fleets, sources, diagnostics)
 }
 
 /// The diagnostics, with the folder as `FOLDER`.
