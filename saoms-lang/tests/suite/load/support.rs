@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use saoms_lang::contribution::{Finder, FolderFleet, read_values};
 use saoms_lang::diagnostic::Diagnostics;
@@ -10,9 +10,23 @@ use saoms_lang::load::{MAX_SIZE, load_file, read};
 use saoms_lang::model::{Composite, Contribution};
 use saoms_lang::source::{OpenTexts, Sources};
 
-/// A folder of these files.
-pub(crate) fn written(files: &[(&str, String)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+/// A folder that is alone in the one around it: contributions in the folders beside it are looked at, too.
+pub(crate) struct Folder {
+    _around: tempfile::TempDir,
+    path: PathBuf,
+}
+
+impl Folder {
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// A folder with these files.
+pub(crate) fn written(files: &[(&str, String)]) -> Folder {
+    let around = tempfile::tempdir().unwrap();
+    let folder = Folder { path: around.path().join("folder"), _around: around };
+    fs::create_dir(folder.path()).unwrap();
     for (name, text) in files {
         let path = folder.path().join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
