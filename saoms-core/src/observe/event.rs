@@ -67,6 +67,8 @@ pub enum Occurrence {
         topic: Arc<str>,
         /// Number of messages lost in this period.
         count: u64,
+        /// The component that sent most of those that fitted.
+        sender: Option<Arc<str>>,
     },
     /// Executions were due faster than they could be run, and the component's `overrun` is `stop`.
     Overrun {
@@ -136,8 +138,12 @@ impl fmt::Display for Occurrence {
                 "an execution takes longer than {}: it runs on a thread of its own from now on, less punctually",
                 saoms_api::host::format_duration(*budget)
             ),
-            Occurrence::Dropped { topic, count } => {
-                write!(formatter, "lost {count} messages of topic `{topic}`, whose queue was full")
+            Occurrence::Dropped { topic, count, sender } => {
+                write!(formatter, "lost {count} messages of topic `{topic}`, whose queue was full")?;
+                match sender {
+                    Some(sender) => write!(formatter, ": most were sent by `{sender}`"),
+                    None => Ok(()),
+                }
             }
             Occurrence::Busy { provider } => {
                 write!(formatter, "component `{provider}`, which it calls, is busy: tries again in each period")

@@ -80,15 +80,15 @@ fn a_full_queue_loses_the_oldest_tells_it_once_and_fails_the_run() {
     let fleet = "A actor period=10 publishes=TALK each=[0: flood 6; 1: flood 5; 3: flood 9]
                  B actor period=10 queue=4 subscribes=TALK each=[hear]
                  C actor period=10 subscribes=TALK each=[]";
-    let expected = "[0.000 s] B: lost 2 messages of topic `TALK`, whose queue was full
+    let expected = "[0.000 s] B: lost 2 messages of topic `TALK`, whose queue was full: most were sent by `A`
          [0.000 s] B: hears [2, 3, 4, 5]
          [0.010 s] B: hears [1, 2, 3, 4]
          [0.020 s] B: hears []
-         [0.030 s] B: lost 5 messages of topic `TALK`, whose queue was full
+         [0.030 s] B: lost 5 messages of topic `TALK`, whose queue was full: most were sent by `A`
          [0.030 s] B: hears [5, 6, 7, 8]
          [0.040 s] B: hears []";
     let end = "Failed after 0.05 s
-         - component `B` lost messages of topic `TALK`, whose queue was full: read faster, give it a longer `queue`, or accept loss";
+         - component `B` lost messages of topic `TALK`, whose queue was full (most were sent by `A`): read faster, give it a longer `queue`, or accept loss";
     check(fleet, 50, &format!("{expected}\n{end}"));
     let tolerant = fleet.replace("queue=4", "queue=4 loss=accept");
     check(&tolerant, 50, &format!("{expected}\nElapsed after 0.05 s"));
@@ -170,5 +170,17 @@ fn topics_are_taken_in_initialize_only_and_used_only_when_taken() {
          Failed after 0 s
          - component `A` failed: topic `TALK`: a component can only publish in `initialize`; keep what it returns
          - component `B` failed: this publisher belongs to no topic: keep what `Context::publish` returned in `initialize`",
+    );
+}
+
+#[test]
+fn what_one_execution_sends_is_bounded() {
+    check(
+        "A actor publishes=TALK each=[flood 1000001]
+         B actor",
+        1,
+        "[0.000 s] A: failed: sends more in one execution than 1000000 messages or 256 MiB: 1000000 messages, 0 MiB so far; send the rest in the next executions (messages of this execution that are not sent: 1000000)
+         Failed after 0.001 s
+         - component `A` failed: sends more in one execution than 1000000 messages or 256 MiB: 1000000 messages, 0 MiB so far; send the rest in the next executions (messages of this execution that are not sent: 1000000)",
     );
 }

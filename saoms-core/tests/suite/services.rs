@@ -126,3 +126,19 @@ fn an_unanswered_call_may_be_the_callers_failure() {
          - component `A` failed: component `B` could not serve the call: no paper",
     );
 }
+
+#[test]
+fn a_chain_of_calls_has_an_end() {
+    let callee = |place: usize| format!("C{place} callee peer=C{} called=[must-ask {place}]", place + 1);
+    let chain = |length: usize| {
+        let callees: Vec<_> = (1..length).map(callee).collect();
+        let fleet = format!("A actor peer=C1 each=[ask one]\n{}\nC{length} callee", callees.join("\n"));
+        run(&fleet, simulated(1)).1.lines()
+    };
+    assert!(chain(64).ends_with("A: is told \"one from C1\"\n"), "{}", chain(64));
+    let told = chain(65);
+    assert!(
+        told.contains("component `C65` could not serve the call: it is the end of a chain of more than 64 calls"),
+        "{told}"
+    );
+}

@@ -35,6 +35,10 @@ pub(crate) struct Part {
     /// Subscriptions of a failed instance, for the instance that replaces it.
     pub(crate) kept: Vec<TopicReader>,
     pub(crate) outbox: Vec<(TopicId, SharedMessage)>,
+    /// Bytes in the outbox from code of libraries.
+    pub(crate) sent_bytes: usize,
+    /// Number of calls within which its code runs.
+    pub(crate) call_depth: u32,
     pub(crate) chance: Chance,
     pub(crate) cancelled: Arc<AtomicBool>,
     pub(crate) vote: Option<Ballot>,
@@ -87,6 +91,8 @@ impl Body {
             subscriptions: Vec::new(),
             kept: Vec::new(),
             outbox: Vec::new(),
+            sent_bytes: 0,
+            call_depth: 0,
             chance: Chance::new(0),
             cancelled,
             vote: None,

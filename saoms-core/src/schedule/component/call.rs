@@ -10,6 +10,9 @@ use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::engine::slot::NEVER;
 use crate::schedule::shared::Shared;
 
+/// Greatest number of calls within each other: each takes some of the thread's stack.
+const MAX_DEPTH: u32 = 64;
+
 /// Calls through a reference of a component whose code runs on this thread. The provider's code runs on the same
 /// thread, as in a function call: it is taken out of the engine meanwhile, and is busy for all others.
 pub(crate) fn call(
@@ -32,12 +35,14 @@ pub(crate) fn call(
         return task(shared, caller, provider, call);
     }
     let mut body = engine.begin_call(provider, caller)?;
+    body.part.call_depth = caller.call_depth + 1;
     shared.release(engine);
     let own = (body.part.now, body.part.due);
     (body.part.now, body.part.due) = (caller.now, caller.due);
     let cause = caller.recorder.cause();
     let result = body.serve(shared, &mut Invocation { service: &target.service, call }, cause);
     (body.part.now, body.part.due) = own;
+    body.part.call_depth = 0;
     let (result, panic) = match result {
         Ok(result) => (result, None),
         Err(panic) => (Err(CallError::from(panic.clone())), Some(panic)),
@@ -103,6 +108,10 @@ impl Engine {
     fn begin_call(&mut self, index: u32, caller: &Part) -> Result<Box<Body>, CallError> {
         let slot = &mut self.slots[index as usize];
         let provider = || slot.name.to_string();
+        if caller.call_depth >= MAX_DEPTH {
+            let failure = Failure::new(format!("it is the end of a chain of more than {MAX_DEPTH} calls"));
+            return Err(CallError::Failed { provider: provider(), failure });
+        }
         if !slot.is_alive() {
             return Err(CallError::NotRunning { provider: provider() });
         }

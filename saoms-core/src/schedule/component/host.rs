@@ -91,6 +91,21 @@ impl ComponentHost<'_> {
     }
 }
 
+/// Greatest number of messages in one execution.
+const MAX_SENT: usize = 1_000_000;
+/// Greatest size of all messages that code of a library sends in one execution, in bytes: four of the longest.
+const MAX_SENT_BYTES: usize = 4 * saoms_abi::MAX_BYTES;
+
+#[cold]
+fn too_much(messages: usize, bytes: usize) -> Failure {
+    Failure::new(format!(
+        "sends more in one execution than {MAX_SENT} messages or {} MiB: {messages} messages, {} MiB so far; \
+         send the rest in the next executions",
+        MAX_SENT_BYTES >> 20,
+        bytes >> 20
+    ))
+}
+
 /// Use of a topic by a component.
 #[derive(Clone, Copy)]
 enum TopicUse {
@@ -224,6 +239,10 @@ impl Host for ComponentHost<'_> {
             Some(topic) => {
                 if !message.is_value() {
                     self.check(topic, &message)?;
+                    self.part.sent_bytes += message.bytes().len();
+                }
+                if self.part.outbox.len() >= MAX_SENT || self.part.sent_bytes > MAX_SENT_BYTES {
+                    return Err(too_much(self.part.outbox.len(), self.part.sent_bytes));
                 }
                 self.part.outbox.push((topic, message));
                 self.part.recorder.acted();

@@ -47,6 +47,7 @@ impl Engine {
             // The next try sends and votes again.
             self.record(&mut body.part, now);
             body.part.outbox.clear();
+            body.part.sent_bytes = 0;
         }
         if job == Job::Start {
             self.keep_subscriptions(&mut body);

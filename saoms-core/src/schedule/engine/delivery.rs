@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use saoms_api::Time;
@@ -39,6 +40,7 @@ impl Engine {
         if part.outbox.is_empty() {
             return;
         }
+        part.sent_bytes = 0;
         self.standstill.note_effect(now);
         self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
         for (topic, message) in part.outbox.drain(..) {
@@ -79,19 +81,31 @@ impl Engine {
         }
     }
 
-    /// Counts messages that did not fit into a queue.
-    pub(crate) fn dropped(&mut self, index: u32, topic: &Arc<str>, count: u64, now: u64) {
+    /// Counts messages that did not fit into a queue, beside these that did.
+    #[cold]
+    pub(crate) fn dropped(&mut self, index: u32, topic: &Arc<str>, count: u64, others: &[SharedMessage], now: u64) {
+        let sender = self.most_frequent_sender(others);
         let slot = &mut self.slots[index as usize];
         if slot.statistics.dropped == 0 && slot.policy.loss == Loss::Fail {
+            let by = sender.as_ref().map(|sender| format!(" (most were sent by `{sender}`)")).unwrap_or_default();
             self.reasons.push(format!(
-                "component `{}` lost messages of topic `{topic}`, whose queue was full: read faster, give it a longer `queue`, \
+                "component `{}` lost messages of topic `{topic}`, whose queue was full{by}: read faster, give it a longer `queue`, \
                  or accept loss",
                 slot.name
             ));
         }
         slot.statistics.dropped += count;
         if !std::mem::replace(&mut slot.dropping, true) {
-            self.emit(now, index, Occurrence::Dropped { topic: Arc::clone(topic), count });
+            self.emit(now, index, Occurrence::Dropped { topic: Arc::clone(topic), count, sender });
         }
+    }
+
+    fn most_frequent_sender(&self, messages: &[SharedMessage]) -> Option<Arc<str>> {
+        let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+        for message in messages {
+            *counts.entry(message.header().sender).or_default() += 1;
+        }
+        let (sender, _) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+        self.slots.get(sender as usize).map(|slot| Arc::clone(&slot.name))
     }
 }

@@ -102,7 +102,7 @@ impl Engine {
         // Only the holder of the lock writes.
         self.executions.store(self.executions.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
         let mut lost = None;
-        for (subscription, inbox) in part.subscriptions.iter_mut().zip(&mut body.inboxes) {
+        for (place, (subscription, inbox)) in part.subscriptions.iter_mut().zip(&mut body.inboxes).enumerate() {
             if !inbox.is_empty() {
                 // Events of an execution that was skipped: what came since waits in the queue.
                 continue;
@@ -110,15 +110,15 @@ impl Engine {
             let missing = self.bus.collect(subscription, inbox);
             slot.statistics.received += inbox.len() as u64;
             if missing > 0 {
-                let (topic, before) = lost.unwrap_or((self.bus.topic_of(subscription), 0));
-                lost = Some((topic, before + missing));
+                let (topic, _, before) = lost.unwrap_or((self.bus.topic_of(subscription), place, 0));
+                lost = Some((topic, place, before + missing));
             }
         }
         match lost {
             None => slot.dropping = false,
-            Some((topic, count)) => {
+            Some((topic, place, count)) => {
                 let topic = Arc::clone(self.bus.name(topic));
-                self.dropped(index, &topic, count, now);
+                self.dropped(index, &topic, count, &body.inboxes[place], now);
             }
         }
     }

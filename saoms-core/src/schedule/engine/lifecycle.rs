@@ -160,6 +160,7 @@ impl Engine {
         self.record(&mut body.part, now);
         let unsent = body.part.outbox.len();
         body.part.outbox.clear();
+        body.part.sent_bytes = 0;
         body.part.vote = None;
         let doing = match job {
             Job::Start => "could not start: ",
@@ -260,7 +261,7 @@ impl Engine {
             let lost = self.bus.unsubscribe(kept);
             if lost > 0 {
                 let topic = std::sync::Arc::clone(self.bus.name(topic));
-                self.dropped(index, &topic, lost, now);
+                self.dropped(index, &topic, lost, &[], now);
             }
         }
     }
