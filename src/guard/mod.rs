@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 pub(crate) use hang::waited_for;
 
-use crate::output::eprint;
+use crate::output::{eprint, keep_from_libraries};
 
 /// True once the program ends by itself, and not because code of a library ended it.
 static ENDS: AtomicBool = AtomicBool::new(false);
@@ -19,6 +19,7 @@ pub(crate) fn install() {
     static INSTALLED: Once = Once::new();
     INSTALLED.call_once(|| {
         crash::install();
+        keep_from_libraries();
         if let Err(error) = hang::watch() {
             eprint(&format!("warning: nobody watches for code that does not return: {error}\n"));
         }

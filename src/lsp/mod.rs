@@ -30,8 +30,18 @@ use server::{Event, Server};
 
 use crate::Exit;
 use crate::command::lsp::LspArguments;
+use crate::output::{eprint, keep_from_libraries, own};
 
 pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
+    // The editor's messages alone are written there, whatever libraries print.
+    keep_from_libraries();
+    let output = match own() {
+        Ok(output) => output,
+        Err(error) => {
+            eprint(&format!("error: standard output cannot be written: {error}\n"));
+            return Exit::Failed;
+        }
+    };
     let (events, came) = mpsc::channel();
     let (jobs, asked) = mpsc::channel();
     let classes = Arc::new(ClassCache::new(arguments.plugins.clone()));
@@ -50,5 +60,5 @@ pub(crate) fn lsp(arguments: &LspArguments) -> Exit {
         }
         let _ = events.send(Event::Closed);
     });
-    Server::new(io::stdout().lock(), Workspace::new(allow_outside), classes, jobs, newest).run(&came)
+    Server::new(output, Workspace::new(allow_outside), classes, jobs, newest).run(&came)
 }

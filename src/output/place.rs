@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process;
 
 use super::replace::{can_replace, replace};
-use super::standard::printed;
+use super::standard::{own, printed};
 
 /// The path that stands for standard output.
 const STANDARD: &str = "-";
@@ -85,6 +85,7 @@ impl Place {
     /// `/dev/null` and terminals, and for what is not there.
     pub(super) fn identity(&self) -> Option<Identity> {
         let about = match self {
+            Place::Descriptor(libc::STDOUT_FILENO) => own().and_then(|output| output.metadata()),
             Place::Descriptor(descriptor) => fs::metadata(format!("/proc/self/fd/{descriptor}")),
             Place::Irregular(path) | Place::File(path) => fs::metadata(path),
         };
@@ -101,7 +102,7 @@ impl Place {
 
     /// True if standard output is a pipe or a socket, whose reader can go away.
     pub(crate) fn is_standard_output_read() -> bool {
-        let about = fs::metadata("/proc/self/fd/1").map(|about| about.file_type());
+        let about = own().and_then(|output| output.metadata()).map(|about| about.file_type());
         about.is_ok_and(|about| about.is_fifo() || about.is_socket())
     }
 

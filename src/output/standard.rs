@@ -31,6 +31,25 @@ const LOOK: i32 = 100;
 /// The bytes that a pipe with any room takes at once (`PIPE_BUF`).
 const PIECE: usize = 4096;
 
+/// Keeps standard output for the program: from now on what code of libraries prints there goes to standard error, so
+/// that it is in no report and no JSON.
+pub(crate) fn keep_from_libraries() {
+    if STANDARD.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
+        // SAFETY: no pointers; both descriptors are those that every process begins with. Where standard error is
+        // closed nothing changes.
+        unsafe { libc::dup2(libc::STDERR_FILENO, libc::STDOUT_FILENO) };
+    }
+}
+
+/// The program's standard output.
+///
+/// # Errors
+/// The system has no descriptor left.
+pub(crate) fn own() -> io::Result<File> {
+    let standard = STANDARD.lock().unwrap_or_else(PoisonError::into_inner);
+    standard.as_ref().ok_or_else(|| io::Error::from_raw_os_error(libc::EMFILE))?.try_clone()
+}
+
 /// True if something could not be written to standard output, which was told.
 pub(crate) fn has_failed() -> bool {
     HAS_FAILED.load(Ordering::SeqCst)
@@ -108,7 +127,7 @@ impl Write for Patient<'_> {
 /// # Errors
 /// The system cannot tell.
 pub(crate) fn wait_for_no_reader() -> io::Result<()> {
-    wait(&io::stdout(), 0, -1).map(drop)
+    wait(&own()?, 0, -1).map(drop)
 }
 
 /// Waits until there is something to read, or the end of it.

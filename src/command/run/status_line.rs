@@ -24,7 +24,8 @@ impl StatusLine {
     /// The line on standard error; `None` where an output is no terminal, or one that cannot erase a line.
     pub(super) fn on_terminal() -> Option<Self> {
         let is_dumb = || env::var_os("TERM").is_none_or(|term| term == "dumb");
-        let is_shown = io::stdout().is_terminal() && io::stderr().is_terminal() && !is_dumb();
+        let is_shown =
+            crate::output::own().is_ok_and(|output| output.is_terminal()) && io::stderr().is_terminal() && !is_dumb();
         is_shown.then(|| Self::new(io::stderr()))
     }
 }

@@ -57,6 +57,9 @@ static void act(const Actor *actor, const char *place) {
         abort();
     } else if (strcmp(actor->does, "overflow") == 0) {
         zero = overflow(1);
+    } else if (strcmp(actor->does, "print") == 0) {
+        printf("printed by a library\n");
+        fflush(stdout);
     } else if (strcmp(actor->does, "exit") == 0) {
         exit(0);
     } else if (strcmp(actor->does, "exit on a thread") == 0) {

@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 
 use super::build::c_library;
 use super::run::{component, in_folder, property};
-use crate::support::{PROGRAM, saoms_in, text};
+use crate::support::{PROGRAM, saoms_in, stderr, text};
 
 /// A second of virtual time with an actor that does this there, without a core dump.
 fn run(at: &str, does: &str) -> Output {
@@ -98,4 +98,20 @@ fn the_report_of_a_crash_is_rebuilt_from_the_journal() {
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["journal"]["entries"][0]["text"], "it is hot", "{report:#}");
     assert_eq!(report["components"][0]["name"], "Bad");
+}
+
+#[test]
+fn what_a_library_prints_is_in_no_report() {
+    let folder = in_folder(&component("Good", "c.Actor", &(property("at", "execute") + &property("does", "print"))));
+    let library = c_library(folder.path(), &[]);
+    let library = library.to_str().unwrap();
+    for report in ["-", "/dev/stdout"] {
+        let run =
+            ["run", "t.composite", "--virtual", "--for", "1s", "--quiet", "--report", report, "--plugin", library];
+        let output = saoms_in(folder.path(), &run);
+        let report: serde_json::Value =
+            serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", text(&output)));
+        assert_eq!(report["outcome"]["status"], "elapsed");
+        assert!(stderr(&output).contains("printed by a library\n"), "{}", text(&output));
+    }
 }

@@ -58,6 +58,14 @@ fn assert_quiet_end(output: &Output) {
     assert!(!told.contains("error") && !told.contains("panicked"), "{told}");
 }
 
+/// True if the process has a thread of this name.
+fn has_thread(child: &Child, name: &str) -> bool {
+    let threads = fs::read_dir(format!("/proc/{}/task", child.id())).into_iter().flatten().flatten();
+    threads
+        .into_iter()
+        .any(|thread| fs::read_to_string(thread.path().join("comm")).is_ok_and(|text| text.trim() == name))
+}
+
 fn status(report: &Path) -> Value {
     let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
     report["outcome"]["status"].clone()
@@ -74,8 +82,9 @@ fn a_run_ends_while_its_events_wait_for_a_writer() {
             // The fleet runs before there is a writer.
             let _lines = running(&mut child);
         }
-        // In virtual time nothing happens before all lines are read; the journal is there from the start.
-        while !folder.join("journal").exists() {
+        // In virtual time nothing happens before all lines are read, but the fleet has started when they are waited for.
+        while !has_thread(&child, "events") {
+            assert_eq!(child.try_wait().unwrap(), None, "it has ended");
             thread::yield_now();
         }
         send(&child, libc::SIGTERM);
