@@ -173,7 +173,6 @@ pub(crate) fn library(component: &ComponentElement, contribution: &Contribution,
 }
 
 fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
-    const SHOWN: usize = 6;
     let message = format!("there is no class {}", quoted(class));
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
     for meant in near {
@@ -183,15 +182,18 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
         let inside = format!("`<saoms:loop name=\"...\" class=\"{class}\"/>`");
         return one.help(format!("it is a loop: write {inside} in a component that has loops"));
     }
-    let looked = match registry.len() {
-        0 => "no class is linked into this program".to_owned(),
-        1..=SHOWN => {
-            format!("the classes linked into this program are {}", list(registry.iter().map(|class| class.name())))
-        }
+    one.help(registered(("class", "classes"), registry.iter().map(|class| class.name())))
+}
+
+/// Help with what is registered of a kind: `one` of it, or `several`.
+pub(crate) fn registered<'r>((one, several): (&str, &str), all: impl ExactSizeIterator<Item = &'r str>) -> String {
+    const SHOWN: usize = 6;
+    match all.len() {
+        0 => format!("no {one} is linked into this program"),
+        1..=SHOWN => format!("the {several} linked into this program are {}", list(all)),
         count => format!(
-            "`saoms components` lists the {count} classes of this program and its plugins; `--plugin PATH` adds the \
-            classes of a plugin"
+            "`saoms components` lists the {count} {several} of this program and its plugins; `--plugin PATH` adds the \
+            {several} of a plugin"
         ),
-    };
-    one.help(looked)
+    }
 }

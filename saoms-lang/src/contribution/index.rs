@@ -306,9 +306,7 @@ impl Index {
             match entry.file_type() {
                 Ok(kind) if kind.is_dir() && SKIPPED.contains(&&*name) => {}
                 Ok(kind) if kind.is_dir() => listing.folders.push(path),
-                Ok(kind) if name.ends_with(".composite") && may_be_read(kind, &path) => {
-                    listing.composites.push(path);
-                }
+                Ok(kind) if name.ends_with(".composite") && may_be_read(kind, &path) => listing.composites.push(path),
                 Ok(kind) if name == DEFINITIONS && may_be_read(kind, &path) => listing.definitions.push(path),
                 _ => {}
             }

@@ -129,10 +129,7 @@ impl Finder {
             let element = implementation.origin.element(&composite.document);
             let written = match component.class() {
                 Some(class) => class.as_str(),
-                None => {
-                    let tag = element.start_tag_span();
-                    &composite.document.text()[tag.start as usize..tag.end as usize]
-                }
+                None => composite.document.piece(element.start_tag_span()),
             };
             let found = known.entry(written).or_insert_with(|| {
                 let paths = component_types::paths(component, composite);

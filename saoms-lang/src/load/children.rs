@@ -323,7 +323,7 @@ pub(super) fn renamed(one: Diagnostic, element: Element<'_>, meant: &str) -> Dia
 fn as_attribute(one: Diagnostic, element: Element<'_>) -> Diagnostic {
     let (Some(around), Some(text)) = (element.parent(), element.trimmed_text()) else { return one };
     let document = element.document();
-    let value = &document.text()[text.location.span.start as usize..text.location.span.end as usize];
+    let value = document.piece(text.location.span);
     let written = format!("{}=\"{}\"", element.local_name(), value.replace('"', "&quot;"));
     let place = Span::empty(around.name_span().end).in_file(document.file());
     let edits = vec![
@@ -335,7 +335,7 @@ fn as_attribute(one: Diagnostic, element: Element<'_>) -> Diagnostic {
 
 /// The comment that text between elements is meant to be, in the syntax of another language.
 fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
-    let text = &element.document().text()[span.start as usize..span.end as usize];
+    let text = element.document().piece(span);
     let remark = ["#", "//", ";"].iter().find_map(|mark| text.strip_prefix(mark)).map(str::trim);
     match remark.filter(|remark| !remark.contains(['<', '\n']) && !remark.contains("--")) {
         Some(remark) => one.mend("write it as a comment", format!("<!-- {remark} -->")),
@@ -372,7 +372,7 @@ pub(crate) fn renaming(element: Element<'_>, prefix: Option<&str>, name: &str) -
     let whole = prefix.map_or_else(|| name.to_owned(), |prefix| format!("{prefix}:{name}"));
     let file = element.document().file();
     let spans = [Some(element.name_span()), element.end_name_span()];
-    let is_other = |span: &Span| element.document().text()[span.start as usize..span.end as usize] != whole;
+    let is_other = |span: &Span| element.document().piece(*span) != whole;
     let edit = |span: Span| Edit { location: span.in_file(file), replacement: whole.clone() };
     spans.into_iter().flatten().filter(is_other).map(edit).collect()
 }

@@ -39,15 +39,9 @@ impl Loader<'_> {
         let mut has_faulty = false;
         self.children(element, &COMPONENT, |loader, child, family, name| {
             match (family, name) {
-                (Family::Sca, "property") => {
-                    component.properties.push(loader.property(child, &COMPONENT_PROPERTY));
-                }
-                (Family::Sca, "service") => {
-                    component.services.push(loader.service(child, &COMPONENT_SERVICE));
-                }
-                (Family::Sca, "reference") => {
-                    component.references.push(loader.reference(child, &COMPONENT_REFERENCE));
-                }
+                (Family::Sca, "property") => component.properties.push(loader.property(child, &COMPONENT_PROPERTY)),
+                (Family::Sca, "service") => component.services.push(loader.service(child, &COMPONENT_SERVICE)),
+                (Family::Sca, "reference") => component.references.push(loader.reference(child, &COMPONENT_REFERENCE)),
                 (Family::Sca | Family::Own | Family::Foreign, name) if name.starts_with("implementation.") => {
                     let made = loader.implementation(child, family, name);
                     if let Some(first) = &component.implementation {

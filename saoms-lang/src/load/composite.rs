@@ -9,7 +9,7 @@ use super::vocabulary::{
 };
 use crate::diagnostic::{Diagnostic, Severity, SeverityLevel, codes, nearest, quoted};
 use crate::model::{Composite, Include, Origin, SeverityRule, WireElement};
-use crate::source::{Located, Location, Text};
+use crate::source::{Located, Text};
 use crate::syntax::{Attribute, Document, Element};
 
 impl Loader<'_> {
@@ -47,15 +47,9 @@ impl Loader<'_> {
                     let wire = loader.wire(child);
                     composite.wires.extend(has_attributes(child).then_some(wire));
                 }
-                (Family::Sca, "property") => {
-                    composite.properties.push(loader.property(child, &COMPOSITE_PROPERTY));
-                }
-                (Family::Sca, "service") => {
-                    composite.services.push(loader.service(child, &COMPOSITE_SERVICE));
-                }
-                (Family::Sca, "reference") => {
-                    composite.references.push(loader.reference(child, &COMPOSITE_REFERENCE));
-                }
+                (Family::Sca, "property") => composite.properties.push(loader.property(child, &COMPOSITE_PROPERTY)),
+                (Family::Sca, "service") => composite.services.push(loader.service(child, &COMPOSITE_SERVICE)),
+                (Family::Sca, "reference") => composite.references.push(loader.reference(child, &COMPOSITE_REFERENCE)),
                 _ => return false,
             }
             true
@@ -109,23 +103,14 @@ impl Loader<'_> {
         let code = self.required(element, "code");
         let level = self.level(element);
         let reason = self.required(element, "reason");
-        let Some(code) = code else { return };
-        let is_wrong = level.is_none() || reason.is_none();
-        let level = level.unwrap_or_else(|| Located::new(SeverityLevel::Allow, code.location));
-        let reason = reason.unwrap_or_else(|| Located::new("".into(), code.location));
-        let (origin, within) = (Origin::of(element), within(parent));
-        self.severities.push(SeverityRule { origin, code, level, reason, is_wrong, within });
+        self.severities.extend(code.map(|code| severity_rule(element, parent, code, level, reason)));
     }
 
     /// Remembers the code of a `severity` without its prefix or in a wrong place, so that diagnostics of that code are
     /// not reported beside it.
     pub(super) fn meant_severity(&mut self, element: Element<'_>) {
         let (Some(parent), Some(code)) = (element.parent(), element.attribute("code")) else { return };
-        let code = code.trimmed();
-        let (level, reason) =
-            (Located::new(SeverityLevel::Allow, code.location), Located::new("".into(), code.location));
-        let (origin, within) = (Origin::of(element), within(parent));
-        self.severities.push(SeverityRule { origin, code, level, reason, is_wrong: true, within });
+        self.severities.push(severity_rule(element, parent, code.trimmed(), None, None));
     }
 
     fn level(&mut self, element: Element<'_>) -> Option<Located<SeverityLevel>> {
@@ -149,9 +134,23 @@ impl Loader<'_> {
     }
 }
 
-/// The subject of a severity in an element; `None` for the whole composite.
-fn within(parent: Element<'_>) -> Option<Location> {
-    parent.parent().is_some().then(|| parent.span().in_file(parent.document().file()))
+/// The setting of a `severity` in `parent`, whose subject is this, or the whole composite; without a level or a reason
+/// it is wrong.
+fn severity_rule(
+    element: Element<'_>,
+    parent: Element<'_>,
+    code: Text,
+    level: Option<Located<SeverityLevel>>,
+    reason: Option<Text>,
+) -> SeverityRule {
+    SeverityRule {
+        origin: Origin::of(element),
+        is_wrong: level.is_none() || reason.is_none(),
+        level: level.unwrap_or_else(|| Located::new(SeverityLevel::Allow, code.location)),
+        reason: reason.unwrap_or_else(|| Located::new("".into(), code.location)),
+        code,
+        within: parent.parent().is_some().then(|| parent.span().in_file(parent.document().file())),
+    }
 }
 
 fn has_attributes(element: Element<'_>) -> bool {

@@ -83,12 +83,8 @@ impl Loader<'_> {
                     None => contract.callback = Some(loader.callback(child)),
                 },
                 (Family::Own, "interface.rust") => loader.interface(child, family, kind, &mut contract),
-                _ if is_one(child, family, "interface.") => {
-                    loader.interface(child, family, kind, &mut contract);
-                }
-                _ if is_one(child, family, "binding.") => {
-                    contract.bindings.push(loader.binding(child, family));
-                }
+                _ if is_one(child, family, "interface.") => loader.interface(child, family, kind, &mut contract),
+                _ if is_one(child, family, "binding.") => contract.bindings.push(loader.binding(child, family)),
                 _ => return false,
             }
             true

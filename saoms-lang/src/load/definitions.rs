@@ -51,9 +51,7 @@ impl Loader<'_> {
                 let name = child.local_name();
                 match vocabulary::children(kind).any(|known| family == Family::Sca && known == name) {
                     true => open.extend(vocabulary::definition(name).map(|kind| (child, kind))),
-                    false if matches!(family, Family::Sca | Family::Own) => {
-                        _ = self.unexpected(child, kind, family);
-                    }
+                    false if matches!(family, Family::Sca | Family::Own) => _ = self.unexpected(child, kind, family),
                     false => {}
                 }
             }

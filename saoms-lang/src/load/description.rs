@@ -212,9 +212,7 @@ impl Description {
         }
         list.push(Entry { kind, what: what.to_owned(), at, location, is_bare });
     }
-}
 
-impl Description {
     /// Warns of imports from folders that do not exist.
     fn locations(&self, root: Element<'_>, file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) {
         let own = Path::new(sources.get(file).path()).parent().unwrap_or(Path::new(""));

@@ -25,16 +25,6 @@ impl<T> Located<T> {
     pub const fn new(value: T, location: Location) -> Self {
         Self { value, location }
     }
-
-    /// The file it is written in.
-    pub const fn file(&self) -> FileId {
-        self.location.file
-    }
-
-    /// The bytes of the file it is written at.
-    pub const fn span(&self) -> Span {
-        self.location.span
-    }
 }
 
 impl Text {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::document::Document;
-use super::element::{part_span, slice, split};
+use super::element::{part_span, split};
 use super::value::{self, Place};
 use crate::source::{Located, Location, Span, Text};
 
@@ -72,7 +72,7 @@ impl<'a> Attribute<'a> {
     /// The name as written, with its prefix.
     #[inline]
     pub fn name(self) -> &'a str {
-        slice(self.document, self.name_span())
+        self.document.piece(self.name_span())
     }
 
     /// The name without its prefix.
@@ -98,7 +98,7 @@ impl<'a> Attribute<'a> {
     /// The value as written.
     #[inline]
     pub fn raw_value(self) -> &'a str {
-        slice(self.document, self.raw.value)
+        self.document.piece(self.raw.value)
     }
 
     /// From the name to behind the closing quote.

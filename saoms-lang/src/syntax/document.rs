@@ -140,6 +140,12 @@ impl Document {
         &self.text
     }
 
+    /// A stretch of it.
+    #[inline]
+    pub(crate) fn piece(&self, stretch: Span) -> &str {
+        &self.text[stretch.start as usize..stretch.end as usize]
+    }
+
     /// The tokens in order; they tile the text.
     pub fn tokens(&self) -> impl Iterator<Item = (TokenKind, Span)> {
         (0..self.tokens.len() - 1).map(|at| self.token(at))

@@ -42,7 +42,7 @@ impl<'a> Element<'a> {
     /// The name as written, with its prefix.
     #[inline]
     pub fn name(self) -> &'a str {
-        slice(self.document, self.name_span())
+        self.document.piece(self.name_span())
     }
 
     /// The name without its prefix.
@@ -210,7 +210,7 @@ impl<'a> Element<'a> {
     /// The name in the end tag; `None` where there is no end tag, as for `<a/>`.
     pub fn end_name_span(self) -> Option<Span> {
         let tag = self.end_tag_span()?;
-        let name = &self.document.text[tag.start as usize + 2..tag.end as usize];
+        let name = &self.document.piece(tag)[2..];
         let start = tag.start + 2 + (name.len() - name.trim_start().len()) as u32;
         let length = name.trim_start().find(|c: char| c == '>' || value::is_space(c)).unwrap_or(name.len());
         Some(Span::new(start, start + length as u32))
@@ -221,10 +221,6 @@ impl<'a> Element<'a> {
     pub fn is_empty(self) -> bool {
         self.start_tag().kind == TokenKind::EmptyTag
     }
-}
-
-pub(super) fn slice(document: &Document, span: Span) -> &str {
-    &document.text[span.start as usize..span.end as usize]
 }
 
 /// The place of `part` in `whole`, which starts at byte `start`.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::Element;
 use super::document::{Node, TokenKind};
-use super::element::{part_span, slice};
+use super::element::part_span;
 use super::value::{self, Place};
 use crate::source::{Located, Span, Text};
 
@@ -41,7 +41,7 @@ impl<'a> Element<'a> {
     /// The pieces of the text directly inside, each with what it means.
     fn pieces(self) -> impl Iterator<Item = (Span, Cow<'a, str>)> + use<'a> {
         self.own_tokens().filter_map(move |(kind, span)| {
-            let written = slice(self.document, span);
+            let written = self.document.piece(span);
             Some(match kind {
                 TokenKind::Space | TokenKind::Text => (span, value::meant(written, Place::Content)),
                 TokenKind::Section => {
@@ -75,7 +75,7 @@ impl<'a> Element<'a> {
             return None;
         }
         let trimmed = |span: Span| {
-            let written = slice(self.document, span);
+            let written = self.document.piece(span);
             let text = value::trim(written);
             (!text.is_empty()).then(|| part_span(span.start, written, text))
         };

@@ -5,11 +5,11 @@ use crate::check::fleet::{Fleet, Kind, Unit};
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Composite, ReferenceElement, Version};
-use crate::source::{Location, Text};
+use crate::source::{Located, Location, Text};
 
 /// Reports a reference whose implementation wires it and that the composite wires as well (SCA Assembly 1.1, 4.3).
 pub(crate) fn reference(reference: &ReferenceElement, version: Version, report: &mut Report<'_>) {
-    let Some(wired) = reference.wired_by_impl.filter(|wired| wired.value) else { return };
+    let Some(wired) = wired(reference) else { return };
     let uris = reference.contract().bindings.iter().filter_map(|binding| binding.uri.as_ref());
     let (at, what, rule) = if let Some(target) = reference.targets.first() {
         (target.location, "has a target", "ASM50013")
@@ -42,9 +42,7 @@ fn wired_twice(
 /// Reports references that implementations wire, and that the composite or its wires lead somewhere; these are few.
 pub(crate) fn wires(composite: &Composite, report: &mut Report<'_>) {
     for reference in &composite.references {
-        if let (Some(wired), Some(target)) =
-            (reference.wired_by_impl.filter(|one| one.value), reference.targets.first())
-        {
+        if let (Some(wired), Some(target)) = (wired(reference), reference.targets.first()) {
             let what = (target.location, "has a target", "ASM40006");
             wired_twice(&reference.name, what, wired.location, Severity::Warning, report);
         }
@@ -53,13 +51,13 @@ pub(crate) fn wires(composite: &Composite, report: &mut Report<'_>) {
         return;
     }
     for component in &composite.components {
-        for reference in component.references.iter().filter(|one| is_wired(one)) {
+        for (reference, said) in component.references.iter().filter_map(|one| Some((one, wired(one)?))) {
             let is_from = |source: &&Text| {
                 let end = source.split_once('/');
                 end == Some((component.name.as_str(), reference.name.as_str()))
             };
             let mut sources = composite.wires.iter().filter_map(|wire| wire.source.as_ref());
-            let (Some(at), Some(said)) = (sources.find(is_from), reference.wired_by_impl) else { continue };
+            let Some(at) = sources.find(is_from) else { continue };
             let what = (at.location, "starts a wire", "ASM50010");
             wired_twice(&reference.name, what, said.location, severity(composite.version), report);
         }
@@ -74,7 +72,7 @@ pub(crate) fn from_outside(place: usize, fleet: &Fleet<'_>, report: &mut Report<
     let described = fleet.component_type(place).into_iter().flat_map(|described| &described.references);
     for reference in inner.chain(described) {
         let own = member.component.reference(&reference.name);
-        let Some(said) = said(place, reference, fleet).filter(|_| own.is_none_or(|own| !is_wired(own))) else {
+        let Some(said) = said(place, reference, fleet).filter(|_| own.and_then(wired).is_none()) else {
             continue;
         };
         let mut wires = member.composite.wires.iter().filter_map(|wire| wire.source.as_ref());
@@ -94,21 +92,21 @@ pub(crate) fn from_outside(place: usize, fleet: &Fleet<'_>, report: &mut Report<
 fn said<'f>(mut member: usize, mut reference: &'f ReferenceElement, fleet: &'f Fleet<'_>) -> Option<Location> {
     // Each step leads one composite further in.
     loop {
-        if let Some(wired) = reference.wired_by_impl.filter(|wired| wired.value) {
+        if let Some(wired) = wired(reference) {
             return Some(wired.location);
         }
         let Kind::Composite(scope) = fleet.members[member].kind else { return None };
         let (component, name) = parts(reference.promote.first()?);
         let name = name?;
         member = fleet.find(scope, component)?;
-        let own = fleet.members[member].component.reference(name);
-        if let Some(wired) = own.filter(|own| is_wired(own)).and_then(|own| own.wired_by_impl) {
+        if let Some(wired) = fleet.members[member].component.reference(name).and_then(wired) {
             return Some(wired.location);
         }
         reference = fleet.inner(member)?.references().find(|one| one.name == name)?;
     }
 }
 
-fn is_wired(reference: &ReferenceElement) -> bool {
-    reference.wired_by_impl.is_some_and(|wired| wired.value)
+/// The place that says that its implementation wires a reference.
+fn wired(reference: &ReferenceElement) -> Option<Located<bool>> {
+    reference.wired_by_impl.filter(|wired| wired.value)
 }

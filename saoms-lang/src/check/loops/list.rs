@@ -4,11 +4,12 @@
 use std::collections::HashMap;
 
 use super::{Planned, order};
+use crate::check::classes::registered;
 use crate::check::fleet::Member;
 use crate::check::fleet::class_index::ClassIndex;
 use crate::check::options::Options;
 use crate::check::properties::given_values::PropertyValues;
-use crate::check::report::{Report, list, replacing};
+use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{LoopElement, Part};
 use crate::registry::Registry;
@@ -179,7 +180,6 @@ pub(super) fn report_unknown(
 }
 
 fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
-    const SHOWN: usize = 6;
     let message = format!("there is no loop class {}", quoted(class));
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
     if registry.get(class).is_some() {
@@ -189,15 +189,5 @@ fn unknown_class(class: &Text, registry: &Registry) -> Diagnostic {
     for meant in registry.nearest_loops(class) {
         one = one.suggest(replacing(class, meant), class.location, escaped(meant));
     }
-    let names = registry.loops().map(|one| one.name());
-    one.help(match registry.loops().len() {
-        0 => "no loop is linked into this program".to_owned(),
-        1..=SHOWN => format!("the loops linked into this program are {}", list(names)),
-        count => {
-            format!(
-                "`saoms components` lists the {count} loops of this program and its plugins; `--plugin PATH` adds \
-                the loops of a plugin"
-            )
-        }
-    })
+    one.help(registered(("loop", "loops"), registry.loops().map(|one| one.name())))
 }

@@ -13,6 +13,7 @@ use crate::check::fleet::{Fleet, Member};
 use crate::check::report::Report;
 use crate::check::rules::similar_names::{Name, Similar};
 use crate::check::tasks::Task;
+use crate::check::tasks::topic_types::described;
 use crate::diagnostic::{Code, Diagnostic, codes, quoted};
 use crate::source::Location;
 
@@ -183,8 +184,7 @@ impl All<'_> {
         let message =
             format!("{} topic {}, which no component {missing}", self.who_does(ends, does), quoted(&topic.name));
         let one = Diagnostic::new(code, self.at(end, topic), message);
-        let kind = topic.kind.name();
-        report.push(one.help(format!("it is {} {kind} topic of {}", article(kind), quoted(&topic.message))));
+        report.push(one.help(format!("it is {} of {}", described(topic.kind), quoted(&topic.message))));
     }
 
     /// Compares how often a topic is written and read.
@@ -280,8 +280,4 @@ fn left<'t>(topic: &TrafficTopic, similar: &mut Similar<'t>) -> Option<&'t Traff
         let first = others.next();
         others.any(|other| Some(other) != first)
     })
-}
-
-fn article(word: &str) -> &'static str {
-    if word.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" }
 }

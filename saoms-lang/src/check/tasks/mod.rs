@@ -15,7 +15,7 @@ use crate::assembly::{OF_RESTART, Restart, TaskProperties, TopicRenames};
 use crate::check::component::{ComponentCheck, ComponentState, Renamed};
 use crate::check::fleet::class_index::ClassIndex;
 use crate::check::fleet::{Fleet, Kind};
-use crate::check::properties::given_values::{GivenValue, PropertyValues};
+use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::{Report, list};
 use crate::check::tasks::renames::Renames;
 use crate::check::tasks::unique_values::{RepeatedValues, Unique};
@@ -32,16 +32,12 @@ pub(crate) struct Task<'t, 'a> {
 }
 
 impl Task<'_, '_> {
-    fn get(&self, name: &str) -> Option<GivenValue<'_>> {
-        self.given.get(name)
-    }
-
     pub(crate) fn text(&self, name: &str) -> Option<Text> {
-        self.get(name)?.text()
+        self.given.get(name)?.text()
     }
 
     pub(crate) fn place(&self, name: &str) -> Option<Location> {
-        Some(self.get(name)?.place)
+        Some(self.given.get(name)?.place)
     }
 
     /// Checks all values, each alone and those that have to go together: the properties, where they are sound.
@@ -73,7 +69,7 @@ impl Task<'_, '_> {
 
     /// Reports a component that has topics and must not use them.
     fn use_jms(&self, report: &mut Report<'_>) {
-        let Some(given) = self.get("useJMS") else { return };
+        let Some(given) = self.given.get("useJMS") else { return };
         if !self.class.has_topics() || *given.as_task() != Scalar::Boolean(false).into() {
             return;
         }

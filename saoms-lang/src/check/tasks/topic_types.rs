@@ -61,7 +61,8 @@ impl<'a> Topics<'a> {
     }
 }
 
-const fn kind(kind: TopicKind) -> &'static str {
+/// A topic of a kind, for messages.
+pub(crate) const fn described(kind: TopicKind) -> &'static str {
     match kind {
         TopicKind::State => "a state topic",
         TopicKind::Event => "an event topic",
@@ -73,7 +74,7 @@ fn compare(name: &str, first: &End<'_>, second: &End<'_>, report: &mut Report<'_
     let difference = if std::ptr::eq(one, other) {
         return;
     } else if one.kind != other.kind {
-        (kind(one.kind).to_owned(), kind(other.kind).to_owned())
+        (described(one.kind).to_owned(), described(other.kind).to_owned())
     } else if one.message != other.message {
         (quoted(&one.message), quoted(&other.message))
     } else if one.schema != other.schema {

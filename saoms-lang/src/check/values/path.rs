@@ -15,7 +15,6 @@ use crate::check::report::list;
 use crate::check::values::replica::Instance;
 use crate::diagnostic::{nearest, quoted};
 use crate::limits::{LISTED_PARTS, PATH_ELEMENTS, SEARCHED_PARTS};
-use crate::source::Text;
 use crate::syntax::{Attribute, Element};
 
 /// The fault of a step of another form.
@@ -98,21 +97,20 @@ pub(crate) fn ends<'a>(
     is_last: bool,
     instance: Option<&'a Instance>,
 ) -> Option<Result<Raw<'a>, PathFault>> {
-    let raw = |texts: Vec<Text>| Raw(texts.into_iter().map(|text| Piece::text(text, instance)).collect());
-    if let Some(name) = step.strip_prefix('@').filter(|name| is_name(name)) {
-        let found = around.iter().filter_map(|one| Some(attribute(*one, name)?.trimmed())).collect::<Vec<_>>();
-        return Some(match is_last {
-            false => Err(PathFault::new(at, "an attribute has no parts")),
-            true if found.is_empty() => Err(no_attribute(at, name, around)),
-            true => Ok(raw(found)),
-        });
-    }
-    if step == "text()" {
-        let found = around.iter().filter_map(|one| one.trimmed_text()).collect::<Vec<_>>();
-        return Some(match is_last {
-            false => Err(PathFault::new(at, "a text has no parts")),
-            true if found.is_empty() => Err(PathFault::new(at, "there is no text here")),
-            true => Ok(raw(found)),
+    let name = step.strip_prefix('@').filter(|name| is_name(name));
+    if name.is_some() || step == "text()" {
+        let value = |one: Element<'a>| match name {
+            Some(name) => Some(attribute(one, name)?.trimmed()),
+            None => one.trimmed_text(),
+        };
+        let found = around.iter().filter_map(|one| value(*one)).map(|text| Piece::text(text, instance));
+        let found: Vec<Piece<'a>> = found.collect();
+        return Some(match name {
+            _ if is_last && !found.is_empty() => Ok(Raw(found)),
+            Some(name) if is_last => Err(no_attribute(at, name, around)),
+            Some(_) => Err(PathFault::new(at, "an attribute has no parts")),
+            None if is_last => Err(PathFault::new(at, "there is no text here")),
+            None => Err(PathFault::new(at, "a text has no parts")),
         });
     }
     let is_missing = step.is_empty();

@@ -73,7 +73,7 @@ fn holds(
         of.expected
     );
     let one = Diagnostic::new(code, at, message).label(named.location, "the type");
-    report.push(match meant_boolean(value).filter(|_| of.is_boolean()) {
+    report.push(match meant_boolean(value).filter(|_| of.name == "boolean") {
         Some(meant) => one.suggest(replacing(value, meant), at, meant),
         None => one.help("change the value, or the type"),
     });
@@ -178,10 +178,6 @@ impl SimpleType {
             (Values::Whole(_), _) => other.name == "decimal",
             _ => self.name == other.name,
         }
-    }
-
-    pub(crate) fn is_boolean(&self) -> bool {
-        self.name == "boolean"
     }
 
     pub(crate) fn is_whole(&self) -> bool {
