@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use saoms_api::host::PropertyValue;
-use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties, WireTarget};
+use saoms_api::Properties;
+use saoms_api::host::{PropertyValue, WriteProperties};
+use saoms_lang::assembly::{Assembly, ComponentSpec, OF_RESTART, Restart, TaskProperties, WireTarget};
 use saoms_lang::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
 use saoms_lang::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
 use saoms_lang::project::Compilation;
@@ -138,8 +139,22 @@ fn valued(component: &ComponentSpec) -> Vec<NewElement> {
     let own = component.values.iter().zip(component.written.as_deref().unwrap_or(&component.values));
     let own = own.filter(|(value, _)| !presets.contains(value)).map(|(_, (name, written))| property(name, written));
     let is_own = |name: &SmolStr| component.values.iter().any(|(own, _)| own == name);
-    let task = component.task.iter().flat_map(TaskProperties::stated).filter(|(name, _)| !is_own(name));
+    let task = component.task.iter().flat_map(stated).filter(|(name, _)| !is_own(name));
     own.chain(task.map(|(name, value)| property(&name, &value))).collect()
+}
+
+/// The task properties that a composite has to give, in order: the required ones, and those that are not the default.
+fn stated(task: &TaskProperties) -> Vec<(SmolStr, PropertyValue)> {
+    let declarations = TaskProperties::declarations();
+    let is_required = |name: &str| declarations.iter().any(|one| one.required && one.name == name);
+    let mut all = task.to_values();
+    let required: Vec<_> = all.iter().filter(|(name, _)| is_required(name)).cloned().collect();
+    let usual = TaskProperties::from_values(&required).map_or_else(|_| Vec::new(), |usual| usual.to_values());
+    all.retain(|one| {
+        let (name, is_usual) = (one.0.as_str(), usual.contains(one));
+        !is_usual || is_required(name) || OF_RESTART.contains(&name) && task.restart == Restart::OnFailure
+    });
+    all
 }
 
 fn property(name: &str, value: &PropertyValue) -> NewElement {
@@ -206,4 +221,31 @@ fn loops(component: &ComponentSpec) -> Vec<NewElement> {
 /// The name of a loop unless it is given one: the text behind the last dot of its class.
 fn simple(class: &str) -> &str {
     class.rsplit('.').next().unwrap_or(class)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(values: &[(&str, &str)]) -> String {
+        let values: Vec<(SmolStr, PropertyValue)> =
+            values.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect();
+        let stated = stated(&TaskProperties::from_values(&values).unwrap());
+        let shown = stated.iter().map(|(name, value)| match value {
+            PropertyValue::Scalar(value) => format!("{name}={value}"),
+            other => panic!("{other:?}"),
+        });
+        shown.collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn a_composite_states_what_is_required_and_what_is_not_the_default() {
+        let task = |more: &[(&str, &str)]| shown(&[&[("ID", "a"), ("period", "1000")], more].concat());
+        assert_eq!(task(&[]), "ID=a period=1s");
+        assert_eq!(task(&[("delay", "0"), ("useJMS", "true"), ("queue", "01024")]), "ID=a period=1s");
+        let given = [("loss", "accept"), ("topicRename", " A , b ::C,d"), ("overrun", "catchUp"), ("deadline", "0.5s")];
+        assert_eq!(task(&given), "ID=a period=1s topicRename=A,b::C,d overrun=catchUp deadline=500ms loss=accept");
+        let restart = task(&[("restartLimit", "7"), ("restart", "onFailure")]);
+        assert_eq!(restart, "ID=a period=1s restart=onFailure restartBackoff=100ms restartLimit=7");
+    }
 }

@@ -12,8 +12,7 @@ use std::sync::Arc;
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-pub(crate) use task::OF_RESTART;
-pub use task::{Loss, Overrun, Restart, TaskProperties};
+pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
 pub use topic_rename::TopicRenames;
 pub use traffic::{Pace, TopicEnd, Traffic, TrafficTopic};
 

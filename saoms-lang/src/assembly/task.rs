@@ -94,7 +94,7 @@ pub enum Loss {
 }
 
 /// The properties that say more about `restart`: without it they have no effect, and with it `expand` writes them.
-pub(crate) const OF_RESTART: [&str; 2] = ["restartBackoff", "restartLimit"];
+pub const OF_RESTART: [&str; 2] = ["restartBackoff", "restartLimit"];
 
 #[expect(clippy::expect_used, reason = "the declaration is a constant, which every test of the checker reads")]
 static DECLARATIONS: LazyLock<Vec<PropertyDeclaration>> = LazyLock::new(|| {
@@ -134,44 +134,24 @@ impl TaskProperties {
             Restart::OnFailure => self.restart_limit,
         }
     }
-
-    /// The values that a composite has to give, in order: the required ones, and those that are not the default.
-    pub fn stated(&self) -> Vec<(SmolStr, PropertyValue)> {
-        let is_required = |name: &str| DECLARATIONS.iter().any(|one| one.required && one.name == name);
-        let mut all = self.to_values();
-        let required: Vec<_> = all.iter().filter(|(name, _)| is_required(name)).cloned().collect();
-        let usual = Self::from_values(&required).map_or_else(|_| Vec::new(), |usual| usual.to_values());
-        all.retain(|one| {
-            let (name, is_usual) = (one.0.as_str(), usual.contains(one));
-            !is_usual || is_required(name) || OF_RESTART.contains(&name) && self.restart == Restart::OnFailure
-        });
-        all
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use saoms_api::host::WriteProperties;
+
     use super::*;
 
-    fn stated(values: &[(&str, &str)]) -> String {
+    fn read(values: &[(&str, &str)]) -> String {
         let values = values.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect();
-        let stated = TaskProperties::read(values, TopicRenames::default()).unwrap().stated();
-        let shown = stated.iter().map(|(name, value)| match value {
-            PropertyValue::Scalar(value) => format!("{name}={value}"),
-            other => panic!("{other:?}"),
-        });
-        shown.collect::<Vec<_>>().join(" ")
+        let values = TaskProperties::read(values, TopicRenames::default()).unwrap().to_values();
+        format!("{values:?}")
     }
 
     #[test]
-    fn a_composite_states_what_is_required_and_what_is_not_the_default() {
-        let task = |more: &[(&str, &str)]| stated(&[&[("ID", "a"), ("period", "1000")], more].concat());
-        assert_eq!(task(&[]), "ID=a period=1s");
-        assert_eq!(task(&[("delay", "0"), ("useJMS", "true"), ("url", ""), ("queue", "01024")]), "ID=a period=1s");
-        let given = [("loss", "accept"), ("topicRename", " A , b ::C,d"), ("overrun", "catchUp"), ("deadline", "0.5s")];
-        assert_eq!(task(&given), "ID=a period=1s topicRename=A,b::C,d overrun=catchUp deadline=500ms loss=accept");
-        assert_eq!(task(&[("restartLimit", "7")]), "ID=a period=1s");
-        let restart = task(&[("restartLimit", "7"), ("restart", "onFailure")]);
-        assert_eq!(restart, "ID=a period=1s restart=onFailure restartBackoff=100ms restartLimit=7");
+    fn what_has_no_effect_counts_as_not_given() {
+        let task = |more: &[(&str, &str)]| read(&[&[("ID", "a"), ("period", "1000")], more].concat());
+        assert_eq!(task(&[("url", ""), ("topicRename", ""), ("restartLimit", "7")]), task(&[]));
+        assert_ne!(task(&[("restartLimit", "7"), ("restart", "onFailure")]), task(&[("restart", "onFailure")]));
     }
 }

@@ -170,11 +170,9 @@ fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<RenameFault>) {
             return;
         }
         if let Some(earlier) = first.get(pair.old.text) {
-            faults.push(RenameFault {
-                at: pair.old.at.clone(),
-                message: format!("topic `{}` is renamed twice", pair.old.text),
-                other: Some((earlier.old.at.clone(), "first renamed here")),
-            });
+            let message = format!("topic `{}` is renamed twice", pair.old.text);
+            let other = Some((earlier.old.at.clone(), "first renamed here"));
+            faults.push(RenameFault { at: pair.old.at.clone(), message, other });
         } else {
             first.insert(pair.old.text, pair);
         }
@@ -184,19 +182,14 @@ fn contradictions(pairs: &[Pair<'_>], faults: &mut Vec<RenameFault>) {
             return;
         }
         let Some(next) = first.get(pair.new.text) else { continue };
-        if pair.old.text == pair.new.text {
-            faults.push(RenameFault {
-                at: pair.new.at.clone(),
-                message: format!("topic `{}` is renamed to its own name", pair.old.text),
-                other: None,
-            });
-        } else {
-            let (old, new, last) = (pair.old.text, pair.new.text, next.new.text);
-            faults.push(RenameFault {
-                at: pair.new.at.clone(),
-                message: format!("a chain: `{old}` is renamed to `{new}`, and `{new}` to `{last}`"),
-                other: Some((next.old.at.clone(), "renamed again here")),
-            });
-        }
+        let (old, new, last) = (pair.old.text, pair.new.text, next.new.text);
+        let (message, other) = match old == new {
+            true => (format!("topic `{old}` is renamed to its own name"), None),
+            false => (
+                format!("a chain: `{old}` is renamed to `{new}`, and `{new}` to `{last}`"),
+                Some((next.old.at.clone(), "renamed again here")),
+            ),
+        };
+        faults.push(RenameFault { at: pair.new.at.clone(), message, other });
     }
 }

@@ -89,9 +89,8 @@ fn wrong(root: Element<'_>) -> Option<Diagnostic> {
         return Some(one.help("write each value as `<value>...</value>`"));
     }
     let Some(first) = root.children().next() else {
-        return Some(
-            fault(at, "`values` contains no value".to_owned()).help("write each value as `<value>...</value>` in it"),
-        );
+        let one = fault(at, "`values` contains no value".to_owned());
+        return Some(one.help("write each value as `<value>...</value>` in it"));
     };
     let is_slip = |one: &Element<'_>| one.namespace() == root.namespace() && !is_value(*one);
     if let Some(other) = root.children().find(is_slip) {

@@ -73,9 +73,7 @@ impl Loader<'_> {
     }
 
     fn include(&mut self, element: Element<'_>) -> Include {
-        self.check_attributes(element, &INCLUDE);
-        self.no_text(element);
-        self.leaf(element, &INCLUDE);
+        self.parts_of(element, &INCLUDE);
         let name = self.required(element, "name");
         Include {
             origin: Origin::of(element),
@@ -86,9 +84,7 @@ impl Loader<'_> {
     }
 
     fn wire(&mut self, element: Element<'_>) -> WireElement {
-        self.check_attributes(element, &WIRE);
-        self.no_text(element);
-        self.leaf(element, &WIRE);
+        self.parts_of(element, &WIRE);
         let (source, target) = (self.required(element, "source"), self.required(element, "target"));
         // What is wrong was meant to say something: the targets of the reference are not counted then.
         let meant = |attribute: Attribute<'_>| Located::new(true, attribute.location());

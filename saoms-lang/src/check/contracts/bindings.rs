@@ -35,11 +35,8 @@ pub(crate) fn uris(service: &ServiceElement, version: Version, report: &mut Repo
     for binding in of_sca.filter(|_| version.is_1_1()) {
         if let Some(uri) = &binding.uri {
             let message = format!("`binding.sca` of service {} has a `uri`", quoted(&service.name));
-            let one = Diagnostic::new(
-                &codes::SERVICE_BINDING_URI,
-                if uri.is_empty() { binding.tag() } else { uri.location },
-                message,
-            );
+            let at = if uri.is_empty() { binding.tag() } else { uri.location };
+            let one = Diagnostic::new(&codes::SERVICE_BINDING_URI, at, message);
             report.push(one.help("remove it: references find a service by the name of its component"));
         }
     }

@@ -5,7 +5,8 @@ use super::{interface, multiplicity};
 use crate::check::contracts::offer::Offer;
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
-use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, quoted};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
+use crate::load::renaming;
 use crate::model::{Binding, Multiplicity, Part, ServiceElement};
 use crate::source::Text;
 use crate::syntax::{Document, escaped};
@@ -107,15 +108,11 @@ fn swapped(service: &ServiceElement, whose: &str, document: &Document, report: &
     if let Some(target) = element.attribute("target") {
         report.withdraw(&codes::UNKNOWN_ATTRIBUTE, target.name_span().in_file(document.file()));
     }
-    let tag = match element.prefix() {
-        Some(prefix) => format!("{prefix}:reference"),
-        None => "reference".to_owned(),
-    };
-    let spans = [Some(element.name_span()), element.end_name_span()].into_iter().flatten();
-    let edits = spans.map(|span| Edit { location: span.in_file(document.file()), replacement: tag.clone() });
+    let tag = element.prefix().map_or_else(|| "reference".to_owned(), |prefix| format!("{prefix}:reference"));
+    let edits = renaming(element, element.prefix(), "reference");
     let message = format!("{} of {whose} is a reference, not a service", quoted(&service.name));
     let one = Diagnostic::new(&codes::UNKNOWN_SERVICE, service.name.location, message);
-    report.push(one.suggest_edits(replacing(element.name(), &tag), edits.collect()));
+    report.push(one.suggest_edits(replacing(element.name(), &tag), edits));
 }
 
 /// Reports the name of a part that is not among those of a kind, which are called `all`.

@@ -126,7 +126,7 @@ pub(crate) struct Member<'a> {
     /// The fault of having the name of an earlier one.
     pub(crate) repeated: Option<Faulty>,
     /// Its path, where that is more than its name.
-    path: Option<String>,
+    pub(crate) path: Option<String>,
 }
 
 /// The implementation of a component.
@@ -167,25 +167,7 @@ impl Side {
     }
 }
 
-impl<'a> Member<'a> {
-    pub(crate) fn new(composite: &'a Composite, unit: usize, scope: usize, component: &'a ComponentElement) -> Self {
-        Self {
-            composite,
-            unit,
-            scope,
-            component,
-            autowire: false,
-            kind: Kind::Nothing,
-            instance: None,
-            is_copy: false,
-            is_absent: false,
-            is_partial: false,
-            site: SmolStr::default(),
-            repeated: None,
-            path: None,
-        }
-    }
-
+impl Member<'_> {
     /// The name that tells it from all others of the fleet: the names of the components around it, and its own.
     pub(crate) fn path(&self) -> &str {
         self.path.as_deref().unwrap_or(&self.component.name)
@@ -205,10 +187,6 @@ impl<'a> Member<'a> {
     pub(crate) fn may_give_others(&self) -> bool {
         let Some(partial) = self.instance.and_then(|instance| instance.partial) else { return false };
         partial.has_table || self.component.properties.iter().any(|one| has_expression(&one.name))
-    }
-
-    pub(crate) fn set_path(&mut self, path: String) {
-        self.path = Some(path);
     }
 }
 

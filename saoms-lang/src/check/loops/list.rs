@@ -41,14 +41,9 @@ pub(super) fn plan<'a>(
             is_sound = false;
         } else if let Some(first) = named.get(one.name.as_str()) {
             let message = format!("the loop {} is given twice", quoted(&one.name));
-            report.push(
-                Diagnostic::new(&codes::LOOP_REPEATED, one.name.location, message)
-                    .label(first.name.location, "first given here")
-                    .help(
-                        "write everything about a loop in one element; two loops of the same class need different \
-                        names",
-                    ),
-            );
+            let one = Diagnostic::new(&codes::LOOP_REPEATED, one.name.location, message);
+            let help = "write everything about a loop in one element; two loops of the same class need different names";
+            report.push(one.label(first.name.location, "first given here").help(help));
             is_sound = false;
         } else {
             named.insert(&one.name, one);

@@ -23,11 +23,8 @@ impl Parameters<'_> {
         for setting in &self.options.settings {
             if let Some(earlier) = first.insert(&setting.name, setting) {
                 let message = format!("{} is set twice", quoted(&setting.name));
-                report.push(
-                    Diagnostic::new(&codes::SETTING_REPEATED, setting.name.location, message)
-                        .label(earlier.name.location, "first set here")
-                        .help("keep one of them"),
-                );
+                let one = Diagnostic::new(&codes::SETTING_REPEATED, setting.name.location, message);
+                report.push(one.label(earlier.name.location, "first set here").help("keep one of them"));
                 continue;
             }
             let is_known =

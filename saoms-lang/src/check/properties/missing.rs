@@ -103,8 +103,6 @@ pub(crate) fn missing(
         false => format!("{} {}", giver.what, quoted(giver.name)),
     };
     let message = format!("{who} needs the property {}", quoted(name));
-    report.push(
-        Diagnostic::new(&codes::PROPERTY_MISSING, giver.name.location, message)
-            .help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())),
-    );
+    let one = Diagnostic::new(&codes::PROPERTY_MISSING, giver.name.location, message);
+    report.push(one.help(format!("add `<{tag} name=\"{name}\">...</{tag}>`: {}", declaration.expected())));
 }

@@ -227,16 +227,13 @@ impl All<'_> {
                     false => format!(", {parts} components and loops in all"),
                 };
                 let writers = self.who_does(&topic.writers, "publishes");
-                let one = Diagnostic::new(&codes::QUEUE, at, message);
-                report.push(
-                    one.help(format!(
-                        "{writers} it{in_all}: this is the case if each sends one message per execution; usually \
-                        there are fewer"
-                    ))
-                    .help(format!(
-                        "if a run reports lost messages, give the readers a `queue` of {burst}, or a shorter `period`"
-                    )),
-                );
+                let one = Diagnostic::new(&codes::QUEUE, at, message).help(format!(
+                    "{writers} it{in_all}: this is the case if each sends one message per execution; usually there \
+                    are fewer"
+                ));
+                report.push(one.help(format!(
+                    "if a run reports lost messages, give the readers a `queue` of {burst}, or a shorter `period`"
+                )));
             }
             if let Some(fastest) = fastest.filter(|fastest| period < *fastest)
                 && let Some(readers) = alike.remove(&period)

@@ -10,6 +10,7 @@ pub(crate) mod unique_values;
 use std::collections::HashSet;
 
 use saoms_api::host::declaration::Scalar;
+use saoms_api::host::format_duration;
 
 use crate::assembly::{OF_RESTART, Restart, TaskProperties, TopicRenames};
 use crate::check::component::{ComponentCheck, ComponentState, Renamed};
@@ -85,25 +86,21 @@ impl Task<'_, '_> {
         }
         let message =
             format!("`useJMS` is false, but component {} {}", quoted(&self.component.name), uses.join(" and "));
-        report.push(
-            Diagnostic::new(&codes::USE_JMS, given.place, message)
-                .help("set `useJMS` to true: without it a component cannot publish or subscribe"),
-        );
+        let one = Diagnostic::new(&codes::USE_JMS, given.place, message);
+        report.push(one.help("set `useJMS` to true: without it a component cannot publish or subscribe"));
     }
 
     fn deadline(&self, properties: &TaskProperties, report: &mut Report<'_>) {
         if let Some(deadline) = properties.deadline
             && deadline > properties.period
         {
-            let shown = |duration| saoms_api::host::format_duration(duration);
+            let [deadline, period] = [deadline, properties.period].map(format_duration);
             let message = format!(
-                "the deadline of {} is longer than the period of {}: the next execution is due before it",
-                shown(deadline),
-                shown(properties.period)
+                "the deadline of {deadline} is longer than the period of {period}: the next execution is due before it"
             );
-            let one =
-                Diagnostic::new(&codes::DEADLINE, self.place("deadline").unwrap_or(self.component.tag()), message)
-                    .help("shorten the deadline: it can be at most the period");
+            let at = self.place("deadline").unwrap_or(self.component.tag());
+            let one = Diagnostic::new(&codes::DEADLINE, at, message);
+            let one = one.help("shorten the deadline: it can be at most the period");
             report.push(match self.place("period") {
                 Some(period) => one.label(period, "the period"),
                 None => one,
@@ -145,10 +142,8 @@ fn check_url(url: &Text, report: &mut Report<'_>) {
         if !broker_address::is_loopback(url) {
             let message =
                 format!("message brokers are not supported yet: this program does not connect to {}", quoted(url));
-            report.push(
-                Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message)
-                    .help("topics work inside one program only: run the whole fleet in it"),
-            );
+            let one = Diagnostic::new(&codes::NOT_SUPPORTED_YET, url.location, message);
+            report.push(one.help("topics work inside one program only: run the whole fleet in it"));
         }
         return;
     };

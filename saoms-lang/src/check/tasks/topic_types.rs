@@ -94,11 +94,10 @@ fn compare(name: &str, first: &End<'_>, second: &End<'_>, report: &mut Report<'_
         },
         difference.0
     );
-    report.push(
-        Diagnostic::new(&codes::TOPIC_MISMATCH, second.place, message)
-            .label(first.place, format!("{} it as {}", first.verb.trim_end_matches(" to"), difference.0))
-            .help(
-                "a topic has one kind and one type of messages for all components; give one of them another topic with `topicRename`",
-            ),
-    );
+    let does = first.verb.trim_end_matches(" to");
+    let one = Diagnostic::new(&codes::TOPIC_MISMATCH, second.place, message);
+    report.push(one.label(first.place, format!("{does} it as {}", difference.0)).help(
+        "a topic has one kind and one type of messages for all components; give one of them another topic with \
+        `topicRename`",
+    ));
 }

@@ -6,7 +6,7 @@ use smol_str::SmolStr;
 
 use super::Unfolding;
 use super::conditions::Presence;
-use crate::check::fleet::Member;
+use crate::check::fleet::{Kind, Member};
 use crate::check::judged::Faulty;
 use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, codes, quoted};
@@ -28,24 +28,31 @@ impl<'a> Unfolding<'a, '_, '_> {
         let is_seen = presence != Presence::Absent && !open.is_absent;
         let scope = self.fleet.units[unit].scope;
         let index = self.fleet.members.len();
-        let mut member = Member::new(composite, unit, scope, component);
         let owner = self.fleet.scopes[scope].owner;
-        member.autowire = autowire;
-        member.instance = instance;
-        member.is_absent = !is_seen;
-        member.is_partial = presence == Presence::Unknown
+        let is_partial = presence == Presence::Unknown
             || instance.is_some_and(|instance| instance.partial.is_some())
             || owner.is_some_and(|owner| self.fleet.members[owner].is_partial);
-        let is_partial = member.is_partial;
-        member.site = self.site(component, unit, owner);
-        member.is_copy = instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy);
-        let own = component.path.as_ref().unwrap_or(&component.name);
-        match owner {
-            Some(owner) => member.set_path(format!("{}/{own}", self.fleet.members[owner].path())),
-            None if component.path.is_some() => member.set_path(own.to_string()),
-            None => {}
-        }
-        self.fleet.members.push(member);
+        let site = self.site(component, unit, owner);
+        let own = component.path.as_ref();
+        let path = match owner.map(|owner| self.fleet.members[owner].path()) {
+            Some(around) => Some(format!("{around}/{}", own.unwrap_or(&component.name))),
+            None => own.map(|own| own.to_string()),
+        };
+        self.fleet.members.push(Member {
+            composite,
+            unit,
+            scope,
+            component,
+            autowire,
+            kind: Kind::Nothing,
+            instance,
+            is_copy: instance.is_some() || owner.is_some_and(|owner| self.fleet.members[owner].is_copy),
+            is_absent: !is_seen,
+            is_partial,
+            site,
+            repeated: None,
+            path,
+        });
         let name = component.name.as_str();
         if name.contains(char::is_whitespace) && !has_expression(name) {
             // It cannot be a name, which is reported: targets mean it without its blanks, or are read as several.

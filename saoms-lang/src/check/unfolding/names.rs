@@ -40,11 +40,9 @@ pub(crate) fn composites(composites: &[Composite], report: &mut Report<'_>) -> H
             continue;
         };
         let message = format!("there are two composites {} in one namespace", quoted(name.1));
-        report.push(
-            Diagnostic::new(&codes::COMPOSITE_REPEATED, composite.name.location, message)
-                .label(first.name.location, "the first")
-                .help("give each its own name; was one file given twice?"),
-        );
+        let one = Diagnostic::new(&codes::COMPOSITE_REPEATED, composite.name.location, message);
+        let one = one.label(first.name.location, "the first");
+        report.push(one.help("give each its own name; was one file given twice?"));
         if first.document.text() == composite.document.text() {
             again.insert(place);
         }

@@ -139,8 +139,8 @@ pub(crate) fn raw<'a>(
     match (ways.next(), ways.next()) {
         (Some((first, _)), Some((second, _))) => {
             let message = format!("the property {} is given a value in two ways", quoted(&property.name));
-            report
-                .push(Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other value").help(
+            let one = Diagnostic::new(&codes::VALUE_IN_TWO_WAYS, second, message).label(first, "the other value");
+            report.push(one.help(
                 "write it in one way: as text inside, as the attribute `value`, as `<value>` elements, or in a `file`",
             ));
             Err(Faulty)

@@ -71,12 +71,8 @@ pub(crate) fn reference(
         quoted(&first.name),
         quoted(&other.name)
     );
-    report.push(
-        Diagnostic::new(&codes::INTERFACE_DIFFERS, at, message)
-            .rule("ASM60008")
-            .label(first_at, "the first")
-            .help("promote each with its own reference: no service has both interfaces"),
-    );
+    let one = Diagnostic::new(&codes::INTERFACE_DIFFERS, at, message).rule("ASM60008").label(first_at, "the first");
+    report.push(one.help("promote each with its own reference: no service has both interfaces"));
     false
 }
 
