@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use crate::assembly::{TopicRenames, on_bus};
 use crate::check::classes;
-use crate::check::fleet::{Fleet, Kind};
+use crate::check::fleet::Fleet;
 use crate::check::loops;
 use crate::check::options::Options;
 use crate::check::parameters::Parameters;
@@ -158,8 +158,7 @@ fn topics<'a>(
     let mut declared: HashMap<*const ClassTopic, Rc<ClassTopic>> = HashMap::new();
     let mut all: HashMap<ElementPath, Vec<TopicUse>> = HashMap::new();
     for (at, member) in fleet.members.iter().enumerate().filter(|(_, member)| !member.is_absent) {
-        let Kind::Class(index) = member.kind else { continue };
-        let class = &fleet.classes[index];
+        let Some(class) = fleet.class_of(at) else { continue };
         let is_periodic = class.class.declaration().is_periodic();
         let task = Task { component: member.component, class, given: &given[at] };
         let text = task.text("topicRename").filter(|_| is_periodic);

@@ -1,8 +1,8 @@
 //! The files around a composite: what it names, and the contribution that it is part of.
 //!
-//! A contribution is a folder of composites, described by `sca-contribution.xml` where it has one. [`Finder::load_named`] finds
-//! the composites and component types that composites name, [`Finder::load_folder`] the fleets of a folder, and [`read_values`]
-//! the values that are in files.
+//! A contribution is a folder of composites, described by `sca-contribution.xml` where it has one.
+//! [`Finder::load_named`] finds the composites and component types that composites name, [`Finder::load_folder`] the
+//! fleets of a folder, and [`read_values`] the values that are in files.
 
 mod component_types;
 mod exchange;

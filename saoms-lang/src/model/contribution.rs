@@ -13,8 +13,8 @@ use crate::syntax::ElementId;
 
 /// The files of one fleet: the composites that were asked for, and those that they name.
 ///
-/// [`Contribution::of`] links names among the composites it is given; [`load_named`](crate::contribution::Finder::load_named)
-/// also looks for those in files.
+/// [`Contribution::of`] links names among the composites it is given;
+/// [`load_named`](crate::contribution::Finder::load_named) also looks for those in files.
 #[derive(Debug, Default)]
 pub struct Contribution {
     composites: Vec<Composite>,

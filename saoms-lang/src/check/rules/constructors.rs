@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::check::component::{ComponentCheck, ComponentState};
+use crate::check::fleet::Fleet;
 use crate::check::fleet::class_index::ClassIndex;
-use crate::check::fleet::{Fleet, Kind};
 use crate::check::loops;
 use crate::check::options::Options;
 use crate::check::properties::findings::{Subject, diagnostic};
@@ -143,11 +143,8 @@ pub(crate) fn check_all(
     let is_asked =
         |origin: Option<&Path>, is_only_read: bool| !is_only_read && (!options.without_plugin_code || origin.is_none());
     let all = || {
-        let all = fleet.members.iter().zip(checks);
-        all.filter_map(|(member, check)| match member.kind {
-            Kind::Class(class) => Some((member, check, &fleet.classes[class])),
-            _ => None,
-        })
+        let all = fleet.members.iter().zip(checks).enumerate();
+        all.filter_map(|(place, (member, check))| Some((member, check, fleet.class_of(place)?)))
     };
     for (member, check, of) in all().filter(|(_, check, _)| check.is_sound()) {
         report.about(member);
