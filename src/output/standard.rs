@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
-use saoms_api::host::Visible;
+use saoms_api::host::{Visible, format_duration};
 use serde::Serialize;
 
 /// Standard output without a buffer; `None` where the system has no descriptor left.
@@ -112,7 +112,12 @@ impl Write for Patient<'_> {
             if wait(self.0, libc::POLLOUT, if patience < 0 { LOOK } else { patience })? {
                 return self.0.write(&bytes[..bytes.len().min(PIECE)]);
             }
-            IS_GIVEN_UP.store(patience >= 0, Ordering::SeqCst);
+            if patience >= 0 && !IS_GIVEN_UP.swap(true, Ordering::SeqCst) {
+                let waited = format_duration(Duration::from_millis(patience as u64));
+                eprint(&format!(
+                    "warning: the reader of standard output read nothing for {waited}: the rest is not printed\n"
+                ));
+            }
         }
         Err(ErrorKind::BrokenPipe.into())
     }

@@ -154,17 +154,22 @@ impl RunningFleet {
     /// Runs the fleet to its end: all voters see no work left, the given time is over, a stop was requested, or no
     /// component is left that can run. Afterwards every component has shut down, or is named in the outcome.
     pub fn run_to_end(mut self) -> RunReport {
-        let shared = &self.handle.shared;
-        if shared.clock.is_virtual() {
-            self.resume(NEVER);
-        }
-        drive::wait_until(shared, |_| false);
+        self.wait_for_end();
         self.finish_journal();
         let shared = &self.handle.shared;
         let report = shared.lock().report(&shared.sections());
         self.finish();
         self.handle.shared.observers.end(&report);
         report
+    }
+
+    /// Waits until every component has shut down. What observers still have to show, [`run_to_end`](Self::run_to_end)
+    /// waits for.
+    pub fn wait_for_end(&self) {
+        if self.handle.shared.clock.is_virtual() {
+            self.resume(NEVER);
+        }
+        drive::wait_until(&self.handle.shared, |_| false);
     }
 
     /// Lets virtual time advance to this time.

@@ -27,7 +27,7 @@ use saoms_lang::project::INPUT;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
-use crate::output::{counted, displayed, eprint, eprint_coloured, eprint_json, print_json};
+use crate::output::{counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use console::Console;
 use ending::{Signalled, end_without_reader};
 use events::Events;
@@ -198,6 +198,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     if let Some(events) = events {
         events.play(fleet.handle(), arguments.virtual_time, || signals.has_come());
     }
+    if arguments.virtual_time {
+        // Virtual time waits for who reads what is printed.
+        limit_patience(arguments.grace.max(PAGER_PATIENCE));
+        fleet.wait_for_end();
+    } else {
+        fleet.wait_for_end();
+        limit_patience(arguments.grace);
+    }
     let outcome = fleet.run_to_end().outcome;
     drop(reload);
     if report.is_some_and(|report| report.output.has_failed())
@@ -213,6 +221,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         RunStatus::Interrupted => Exit::Done,
     }
 }
+
+/// The least time, in virtual time, for which a reader of standard output that reads nothing is waited for: somebody
+/// may look at a page of the output.
+const PAGER_PATIENCE: Duration = Duration::from_secs(60);
 
 /// The fleet to run, and the files that were read; `None` after its errors have been shown. Texts and diagnostics are
 /// dropped here: a run may last for days.

@@ -1,7 +1,7 @@
 //! What ends a run from outside, and what becomes of output that nobody takes.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
@@ -205,6 +205,21 @@ fn a_reader_that_stops_does_not_keep_a_run_from_its_end() {
     send(&child, libc::SIGTERM);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(status(&folder.join("report.json")), "interrupted");
+    drop(unread);
+}
+
+/// The run ends by itself, and its lines do not fit into the pipe.
+#[test]
+fn a_reader_that_stops_does_not_keep_a_run_from_the_end_of_its_time() {
+    let folder = empty_folder("stopped-in-time");
+    let mut run = endless(&folder, &["--for", "2s", "--report", "report.json", "--grace", "100ms"]);
+    fs::write(folder.join("one.composite"), ENDLESS.replace(">20<", ">1<")).unwrap();
+    let mut child = run.spawn().unwrap();
+    let unread = running(&mut child);
+    let told = io::read_to_string(child.stderr.take().unwrap()).unwrap();
+    child.wait().unwrap();
+    assert!(told.contains("the reader of standard output read nothing for 100ms: the rest is not printed"), "{told}");
+    assert_eq!(status(&folder.join("report.json")), "elapsed");
     drop(unread);
 }
 
