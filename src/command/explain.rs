@@ -97,6 +97,13 @@ fn page(code: &Code) -> String {
 }
 
 fn refusal(wanted: &str, all: &[&Code]) -> String {
+    let is_rule = wanted.get(..3).is_some_and(|start| start.eq_ignore_ascii_case("ASM"));
+    if is_rule && wanted.bytes().skip(3).all(|byte| byte.is_ascii_digit()) {
+        return format!(
+            "error: no code is about the rule `{wanted}` alone\n\
+             help: explain the code that stands before it in the diagnostic, as S2021 in `error[S2021, {wanted}]`\n"
+        );
+    }
     let mut text = format!("error: there is no code `{wanted}`\n");
     if let Some(nearest) = nearest(wanted, all.iter().flat_map(|code| names(code))) {
         let _ = writeln!(text, "help: did you mean `{nearest}`?");

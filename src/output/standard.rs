@@ -95,7 +95,7 @@ pub(crate) fn printed(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
     }
     let help = match error.kind() {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            "\n  = help: it is not whole: make room, and run the command again"
+            "\n  = help: the output is incomplete: free disk space, then run the command again"
         }
         _ => "",
     };

@@ -36,7 +36,7 @@ fn a_run_in_which_work_was_given_up_is_incomplete_whatever_ends_it() {
         ("A actor period=10 each=[1: gave-up]\nB actor period=10 each=[0: open; 3: done]", "0.03 s"),
         ("A actor period=10 each=[gave-up]", "0.05 s"),
     ] {
-        check(fleet, 50, &format!("Incomplete after {end}\n- work was given up, as told by `A`"));
+        check(fleet, 50, &format!("Incomplete after {end}\n- work was given up, reported by `A`"));
     }
     check(
         "A actor period=10 each=[0: open; 1: gave-up; 2: fail now]",

@@ -82,7 +82,7 @@ fn a_run_ends_while_its_events_wait_for_a_writer() {
             // The fleet runs before there is a writer.
             let _lines = running(&mut child);
         }
-        // In virtual time nothing happens before all lines are read, but the fleet has started when they are waited for.
+        // In virtual time nothing happens before all lines are read, but the fleet has started by then.
         while !has_thread(&child, "events") {
             assert_eq!(child.try_wait().unwrap(), None, "it has ended");
             thread::yield_now();

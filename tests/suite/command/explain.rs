@@ -31,6 +31,7 @@ fn a_mistyped_code_is_refused_with_the_nearest_one_and_the_others_are_explained(
     let output = saoms(&["explain", "S30O4", "S3001"]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).ends_with("those of a plugin with `--plugin PATH`\n"), "{}", stderr(&output));
+    assert!(stderr(&saoms(&["explain", "ASM60004"])).contains("help: explain the code that stands before it"));
     assert!(stderr(&output).starts_with("error: there is no code `S30O4`\nhelp: did you mean `S3004`?\n"));
     assert!(stdout(&output).starts_with("S3001 "));
 }

@@ -36,7 +36,7 @@ fn a_run_whose_luggage_was_given_up_is_incomplete() {
     assert!(line("Robot7         error: breaks down at (2,6)") < line("gives up luggage 1"), "{shown}");
     let end = end(&output);
     assert!(end.starts_with("incomplete after 1.800 s: 0 of 1 pieces of luggage delivered, 1 given up, no"), "{end}");
-    assert!(end.ends_with("\n  work was given up, as told by `World`, `Environment`, `Master`"), "{end}");
+    assert!(end.ends_with("\n  work was given up, reported by `World`, `Environment`, `Master`"), "{end}");
     assert_eq!(report["outcome"]["status"], "incomplete");
     assert_eq!(report["luggage"]["given_up"], 1);
     assert_eq!(report["votes"]["given_up"], serde_json::json!(["World", "Environment", "Master"]));

@@ -74,7 +74,7 @@ impl Engine {
         let shown: Vec<String> = names.by_ref().take(REASON_NAMES).collect();
         let more = names.count();
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        format!("work was given up, as told by {}{more}", shown.join(", "))
+        format!("work was given up, reported by {}{more}", shown.join(", "))
     }
 
     fn outcome(&self) -> Outcome {
