@@ -77,12 +77,9 @@ pub(crate) fn check<'s>(
     }
     let rules: Vec<&RegisteredRule> = rules.collect();
     for Site { parts, missing, is_part } in connected(sites, (fleet, checks, wiring)) {
-        let rules = rules.iter().filter(|rule| rule.judges_parts() || !is_part);
-        let rules: Vec<&RegisteredRule> = rules.copied().collect();
         let missing = missing.into_values().map(|class| class.map(declarations)).collect();
-        let indices = parts.iter().enumerate().map(|(index, place)| (*place, index)).collect();
         let facts = Facts { fleet, checks, wiring, repeated, missing };
-        facts.check_sites(&parts, &indices, &rules, report);
+        facts.check_sites(&parts, rules.iter().copied().filter(|rule| rule.judges_parts() || !is_part), report);
     }
 }
 
@@ -155,15 +152,10 @@ struct Facts<'s, 'f> {
 }
 
 impl<'s, 'f> Facts<'s, 'f> {
-    /// Asks the rules about the components of sites that are connected; `indices` has their places among these.
-    fn check_sites(
-        &self,
-        parts: &[usize],
-        indices: &HashMap<usize, usize>,
-        rules: &[&'s RegisteredRule],
-        report: &mut Report<'_>,
-    ) {
+    /// Asks the rules about the components of sites that are connected.
+    fn check_sites(&self, parts: &[usize], rules: impl Iterator<Item = &'s RegisteredRule>, report: &mut Report<'_>) {
         let Self { fleet, checks, wiring, repeated, missing } = self;
+        let indices: HashMap<usize, usize> = parts.iter().copied().zip(0..).collect();
         let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place)?));
         let subject = |index: usize| {
             let place = *parts.get(index)?;
