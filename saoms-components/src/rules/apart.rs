@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
+use super::hearing::site_of;
 use super::robots::{FleetRobot, by_world, robots};
 use crate::messages::{CRITICAL_SITUATION, POSITION, ROBOT_LIST};
 
@@ -12,8 +13,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5012",
         name: "robot-apart",
-        meaning: "A `topicRename` separates a robot from a topic that the other robots of its world use: they \
-            collide with it, or do not know its state.",
+        meaning: "A `topicRename` or a site separates a robot from a topic that the other robots of its world use: \
+            they collide with it, or do not know its state.",
         severity: Severity::Error,
         rule: None,
     },
@@ -34,16 +35,23 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     let by_world = by_world(&robots);
     let (mut findings, mut told) = (Vec::new(), HashSet::new());
+    for (world, robot) in &by_world {
+        if let Some(own) = robot.other_world(fleet) {
+            told.insert(robot.index);
+            findings.push(in_other_world(fleet, robot, *world, own));
+        }
+    }
     for inside in by_world.chunk_by(|(one, _), (other, _)| one == other) {
         for (topic, severity, effect) in SHARED {
             let name = |robot: &FleetRobot| fleet.components()[robot.index].topic(topic);
+            let inside = inside.iter().filter(|(_, robot)| robot.other_world(fleet).is_none());
             let mut counts: HashMap<&str, usize> = HashMap::new();
-            for (_, robot) in inside {
+            for (_, robot) in inside.clone() {
                 *counts.entry(name(robot)).or_default() += 1;
             }
             // The first robot with the name that most of them use.
             let most = counts.values().max().copied().unwrap_or_default();
-            let Some((_, usual)) = inside.iter().find(|(_, robot)| counts[name(robot)] == most) else { continue };
+            let Some((_, usual)) = inside.clone().find(|(_, robot)| counts[name(robot)] == most) else { continue };
             let others = name(usual);
             for (_, robot) in inside {
                 let own = name(robot);
@@ -55,7 +63,11 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                     "robot {} uses the topic `{own}` where the other robots in its world use `{others}`: {effect}",
                     robot.number
                 );
+                let of_site = |name| site_of(topic, name).filter(|site| !site.is_empty());
                 let help = match others == topic {
+                    true if of_site(own).is_some() => {
+                        "remove `saoms:site` there: all robots of a world need the same topics".to_owned()
+                    }
                     true => format!("remove the pair `{topic},{own}`: all robots of a world need the same topics"),
                     false if others.contains('/') || own.contains('/') => {
                         format!("put all robots of a world into one site, or add the pair `{topic},/{others}`")
@@ -74,6 +86,23 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// The finding for a robot that is wired to a world other than that which hears of it.
+fn in_other_world(fleet: &FleetView<'_>, robot: &FleetRobot, world: usize, own: usize) -> Finding {
+    let (components, topic) = (fleet.components(), ROBOT_LIST.name());
+    let list = |index: usize| components[index].topic(topic);
+    let [path, own_path] = [world, own].map(|index| components[index].path);
+    let message = format!(
+        "robot {} is wired to `{path}`, which does not hear of it: it publishes on the topic `{}`, `{path}` listens \
+        to `{}`",
+        robot.number,
+        list(robot.index),
+        list(world)
+    );
+    Finding::new(Place::property("world").in_component(robot.index), message)
+        .label(Place::component(own), "this world hears of the robot")
+        .help(format!("wire the robot to `{own_path}`, or put it into the site of `{path}`"))
 }
 
 /// Place of the new names of a robot's topics.

@@ -27,9 +27,35 @@ pub(super) struct Hearing {
 
 type ByTopic = HashMap<String, Vec<usize>>;
 
-/// Help where two components do not hear each other.
-pub(super) const TOGETHER: &str = "use the same topic for both: put them into one site, or give the topic the same \
+/// Help where two components do not hear each other, for whatever reason.
+const TOGETHER: &str = "use the same topic for both: put them into one site, or give the topic the same \
     new name with `topicRename` in both; a name that begins with `/` is outside of all sites";
+
+/// Help where a component and something else do not hear each other on a topic, each with its name on the bus.
+pub(super) fn together(topic: &str, (path, own): (&str, &str), (what, other): (&str, &str)) -> String {
+    let in_site = |site: &str| match site {
+        "" => "in no site".to_owned(),
+        site => format!("in the site `{site}`"),
+    };
+    match (site_of(topic, own), site_of(topic, other)) {
+        (Some(site), Some(others)) if site != others => {
+            let help = match (site, others) {
+                ("", site) | (site, "") => {
+                    format!("remove `saoms:site` there, or put all that work together into the site `{site}`")
+                }
+                _ => "give both the same `saoms:site`".to_owned(),
+            };
+            format!("`{path}` is {}, but {what} is {}: {help}", in_site(site), in_site(others))
+        }
+        _ => TOGETHER.to_owned(),
+    }
+}
+
+/// The site of a topic that keeps its name in it; empty outside of all sites.
+pub(super) fn site_of<'n>(topic: &str, on_bus: &'n str) -> Option<&'n str> {
+    let site = on_bus.strip_suffix(topic)?;
+    if site.is_empty() { Some(site) } else { site.strip_suffix('/') }
+}
 
 /// What masters of the environment publish.
 const PASSED_ON: [&str; 3] = [EVENT_LUGGAGE.name(), EXCEPTIONAL_EVENT.name(), FAULT.name()];

@@ -6,7 +6,7 @@ use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::budget::Budget;
-use super::hearing::TOGETHER;
+use super::hearing::together;
 use super::map::{LuggageLine, WorldMap, area, by_events, rows};
 use super::robots::unless_elsewhere;
 use crate::environment::{Spanned, Spot};
@@ -69,8 +69,11 @@ fn nothing_to_draw(
     let message =
         format!("`random` needs an area to draw a block from, but no component publishes one on the topic `{heard}`");
     Finding::new(piece.place(spot), message)
-        .label(Place::component(*index), format!("this component publishes its area on the topic `{name}`"))
-        .help(TOGETHER)
+        .label(
+            Place::property("topicRename").in_component(*index),
+            format!("this component publishes its area on the topic `{name}`"),
+        )
+        .help(together(AREA.name(), (fleet.components()[*index].path, name), ("the scenario", heard)))
 }
 
 fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget: &mut Budget) -> Option<Finding> {

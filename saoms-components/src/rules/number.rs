@@ -27,7 +27,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let components = fleet.components();
     // Robots of two sites have numbers of their own, unless they hear each other or share a world.
-    let mut pairs = sharing(&robots, |robot| (robot.number, robot.world.ok_or(robot.index)));
+    let mut pairs = sharing(&robots, |robot| {
+        (robot.number, robot.world.filter(|_| robot.other_world(fleet).is_none()).ok_or(robot.index))
+    });
     for topic in SHARED {
         pairs.extend(sharing(&robots, |robot| (robot.number, components[robot.index].topic(topic))));
     }

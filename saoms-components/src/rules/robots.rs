@@ -124,6 +124,14 @@ pub(super) fn by_world(robots: &[FleetRobot]) -> Vec<(usize, &FleetRobot)> {
 }
 
 impl FleetRobot {
+    /// The world of its own site, which hears of it, where it is wired to that of another one, which does not.
+    pub(super) fn other_world(&self, fleet: &FleetView<'_>) -> Option<usize> {
+        let hearing = hearing(fleet);
+        let of = |index: usize| hearing.worlds_of_robots(fleet.components()[index].topic(ROBOT_LIST.name()));
+        let (own, wired) = (of(self.index), self.world?);
+        own.first().copied().filter(|_| of(wired).contains(&wired) && !own.contains(&wired))
+    }
+
     /// Place of the robot's charger in the composite, as far as it is given.
     pub(super) fn charger_place(&self, fleet: &FleetView<'_>) -> Place {
         self.first_given(fleet, &["chargeY", "chargeX", "ID"])

@@ -6,7 +6,7 @@ use std::ops::Range;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::hearing::{TOGETHER, events, hearing, passed_on};
+use super::hearing::{events, hearing, passed_on, site_of, together};
 use super::robots::{FleetRobot, may_be_others, publishers_beside_robots, robots, unless_elsewhere};
 use crate::environment::{Environment, EventSpec, Scenario};
 use crate::master::{MasterEnvironment, MasterRobot};
@@ -47,7 +47,16 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
         let finding = Finding::new(place, mistake.message).help(mistake.help.clone());
         Some(match &mistake.other {
-            Some((other, label)) => finding.label(Place::component(*other), label.clone()),
+            Some((other, label)) => {
+                let finding = finding.label(Place::property("topicRename").in_component(*other), label.clone());
+                match site_of(ENVIRONMENT.name(), events) {
+                    None | Some("") => finding,
+                    Some(site) => finding.label(
+                        Place::property("topicRename").in_component(*index),
+                        format!("the scenario is in the site `{site}`"),
+                    ),
+                }
+            }
             None => finding,
         })
     });
@@ -119,7 +128,8 @@ fn without_master(fleet: &FleetView<'_>, events: &str) -> Mistake {
     };
     let own = fleet.components()[master].topic(ENVIRONMENT.name());
     let label = format!("this master forwards events of the topic `{own}`, but the scenario uses `{events}`");
-    Mistake { message, help: TOGETHER.to_owned(), other: Some((master, label)) }
+    let help = together(ENVIRONMENT.name(), (fleet.components()[master].path, own), ("the scenario", events));
+    Mistake { message, help, other: Some((master, label)) }
 }
 
 /// Where a component has to be to use a topic of this name on the bus.
@@ -145,7 +155,9 @@ fn not_brought(fleet: &FleetView<'_>, events: &str, luggage: &BTreeSet<&str>, wo
         let label =
             format!("this robot receives luggage on the topic `{}`, but this luggage is on `{told}`", topic(robot));
         let message = "no robot receives the luggage of this scenario";
-        return Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((robot, label)) });
+        let own = (components[robot].path, topic(robot));
+        let help = together(EVENT_LUGGAGE.name(), own, ("this luggage", told));
+        return Some(Mistake { message, help, other: Some((robot, label)) });
     }
     let robots = robots(fleet);
     let hear: Vec<&FleetRobot> = robots.iter().filter(|robot| luggage.contains(topic(robot.index))).collect();
@@ -183,15 +195,17 @@ fn not_known<'r>(fleet: &FleetView<'_>, events: &str, robots: impl Iterator<Item
     for robot in robots {
         // What stands between a robot and its world is not known.
         let world = robot.world.filter(|world| worlds.contains(world))?;
-        if hearing.worlds(events).contains(&world) {
+        if hearing.worlds(events).contains(&world) || robot.other_world(fleet).is_some() {
             return None;
         }
         first.get_or_insert(world);
     }
-    let own = fleet.components()[first?].topic(ENVIRONMENT.name());
+    let world = &fleet.components()[first?];
+    let own = world.topic(ENVIRONMENT.name());
     let label = format!("this world receives luggage on the topic `{own}`, but this luggage is on `{events}`");
     let message = "the world of the robots does not receive the luggage of this scenario: robots cannot collect it";
-    Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((first?, label)) })
+    let help = together(ENVIRONMENT.name(), (world.path, own), ("this luggage", events));
+    Some(Mistake { message, help, other: Some((first?, label)) })
 }
 
 /// Reason why landings and take-offs have no effect.
@@ -210,7 +224,9 @@ fn not_handled(fleet: &FleetView<'_>, events: &str) -> Option<Mistake> {
         return Some(Mistake { message, help, other: None });
     };
     let label = format!("this component receives them on the topic `{}`, but these are on `{told}`", topic(master));
-    Some(Mistake { message, help: TOGETHER.to_owned(), other: Some((master, label)) })
+    let own = (fleet.components()[master].path, topic(master));
+    let help = together(EXCEPTIONAL_EVENT.name(), own, ("the scenario", told));
+    Some(Mistake { message, help, other: Some((master, label)) })
 }
 
 /// The names on the bus of the states that robots are told to take.

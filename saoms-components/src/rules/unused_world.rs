@@ -35,6 +35,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     first.dedup_by_key(|(world, _)| *world);
     let wires = fleet.components().iter().flat_map(|one| one.wires.iter().map(|(_, target)| *target));
     let mut used: Vec<usize> = wires.collect();
+    // Another rule reports robots that are wired to the wrong one.
+    used.extend(robots.iter().filter_map(|robot| robot.other_world(fleet)));
     used.sort_unstable();
     let mut findings = Vec::new();
     // Robots that a world does not hear of are not those that it is for.

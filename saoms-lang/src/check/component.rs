@@ -58,6 +58,6 @@ impl<'a> ComponentCheck<'a> {
     pub(crate) fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
         let (name, given) = (&member.component.name, &self.given);
         let (values, places) = (given.own(), given.places());
-        Subject { what: "component", name, at: name.location, values, places }
+        Subject { what: "component", name, at: name.location, element: Some(member.component), values, places }
     }
 }

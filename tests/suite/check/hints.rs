@@ -191,3 +191,30 @@ fn a_name_with_a_blank_is_not_proposed() {
     let told = told("blank", &[("fleet.composite", &hall("name=\"World\"", "name=\"Wor ld\""))]);
     assert!(!told.concat().contains("with `Wor ld`"), "{told:#?}");
 }
+
+#[test]
+fn components_in_different_sites_are_told_theirs() {
+    let site = |name: &str| {
+        let component = format!("<component name=\"{name}\"");
+        hall(&component, &format!("{component} xmlns:saoms=\"urn:saoms:1\" saoms:site=\"N\""))
+    };
+    for (test, name, code, help) in [
+        (
+            "master",
+            "Master",
+            "S5008",
+            "`Master` is in the site `N`, but the scenario is in no site: remove `saoms:site`",
+        ),
+        ("scenario", "Environment", "S5008", "`Master` is in no site, but the scenario is in the site `N`: remove"),
+        ("robot", "Robot7", "S5008", "`Robot7` is in the site `N`, but this luggage is in no site: remove"),
+        ("world", "World", "S5008", "`World` is in the site `N`, but this luggage is in no site: remove"),
+    ] {
+        assert_hint(test, &told(test, &[("fleet.composite", &site(name))]), code, help);
+    }
+    let (robot, _) = parts();
+    let other = robot.replace("name=\"Robot7\"", "name=\"Robot8\" xmlns:saoms=\"urn:saoms:1\" saoms:site=\"N\"");
+    let other =
+        other.replace("Robot7", "Robot8").replace("<reference", "<property name=\"chargeX\">2</property><reference");
+    let told = told("one robot", &[("fleet.composite", &hall("</composite>", &format!("{other}</composite>")))]);
+    assert_hint("one robot", &told, "S5012", "remove `saoms:site` there");
+}

@@ -192,6 +192,45 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
             &[],
         ),
         (
+            "S5008: a master alone in another site",
+            "World:World:
+             Environment:Environment: scenario=at 1s luggage (1,1) to (2,2)
+             NMaster:MasterEnvironment:North
+             Robot1:Robot:@World",
+            &["S5008 no component forwards the events of this scenario to the robots"],
+        ),
+        (
+            "S5008: a world and its robot in another site",
+            "NWorld:World:North
+             Environment:Environment: scenario=at 1s luggage (1,1) to (2,2)
+             Master:MasterEnvironment:
+             NRobot1:Robot:North@NWorld",
+            &["S5008 no robot receives the luggage of this scenario"],
+        ),
+        (
+            "S5008: one that another site has is not that of this one",
+            "NEnvironment:Environment:North scenario=at 1s landing 3
+             NMaster:MasterEnvironment:North
+             NMasterRobot:MasterRobot:North
+             NRobot1:Robot:North
+             SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)
+             SMaster:MasterEnvironment:South
+             SRobot2:Robot:South",
+            &[],
+        ),
+        (
+            "S5012: a robot wired to the world of another site",
+            "NWorld:World:North
+             NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)
+             NMaster:MasterEnvironment:North
+             NRobot1:Robot:North@NWorld
+             World:World:South
+             SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)
+             SMaster:MasterEnvironment:South
+             SRobot1:Robot:South@NWorld",
+            &["S5012 robot 1 is wired to `NWorld`, which does not hear of it"],
+        ),
+        (
             "S5008: a landing in one site wakes the robots of another",
             "NEnvironment:Environment:North scenario=at 1s landing 3
              NMaster:MasterEnvironment:North topicRename=EETOPIC,/EETOPIC

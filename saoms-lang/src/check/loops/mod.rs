@@ -41,7 +41,7 @@ impl Resolved<'_> {
         self.changed.iter().map(|one| {
             let (spec, name) = (&self.specs[one.place], &one.element.name);
             let (values, places) = (&spec.values, &one.places);
-            (&*spec.class, Subject { what: "loop", name, at: name.location, values, places })
+            (&*spec.class, Subject { what: "loop", name, at: name.location, element: None, values, places })
         })
     }
 }

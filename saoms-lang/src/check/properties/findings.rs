@@ -7,6 +7,7 @@ use smol_str::SmolStr;
 use crate::check::properties::given_values::ValuePlace;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
+use crate::model::ComponentElement;
 use crate::source::Location;
 use crate::syntax::escaped;
 
@@ -18,6 +19,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) name: &'a str,
     /// The place of its name.
     pub(crate) at: Location,
+    /// The component, but none of a loop.
+    pub(crate) element: Option<&'a ComponentElement>,
     pub(crate) values: &'a [(SmolStr, PropertyValue)],
     /// The place of each value.
     pub(crate) places: &'a [ValuePlace],
@@ -90,9 +93,15 @@ struct Located {
     is_xml: bool,
 }
 
-/// The place in the files: the component's name for a property that the composite does not give.
+/// The place in the files. For a property that the composite does not give it is that of the reference of this name, of
+/// the site where topics are not renamed otherwise, or the component's name.
 fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Located {
-    let nowhere = Located { at: subject.at, source: None, text: None, is_xml: false };
+    let beside = place.property_name().zip(subject.element).and_then(|(name, element)| match name {
+        "topicRename" => element.site.as_ref(),
+        name => element.reference(name)?.targets.first(),
+    });
+    let nowhere =
+        Located { at: beside.map_or(subject.at, |text| text.location), source: None, text: None, is_xml: false };
     let given = place.property_name().and_then(|name| subject.value(name));
     let Some((values, given)) = given else { return nowhere };
     let Some(&first) = given.places.first() else { return nowhere };

@@ -85,7 +85,8 @@ pub(crate) fn check<'s>(
 
 /// The sites in document order, those that wires or topics connect together: robots of several sites may have one
 /// world, and those of two sites hear each other on a topic outside of both. What a site says outside of it may be
-/// heard in one that is not known.
+/// heard in one that is not known. A site that publishes a topic to nobody is together with those that hear it from
+/// nobody: a component may be in the wrong one.
 fn connected<'s>(
     mut sites: BTreeMap<&str, Site<'s>>,
     (fleet, checks, wiring): (&Fleet<'_>, &[ComponentCheck<'_>], &Wiring),
@@ -93,6 +94,8 @@ fn connected<'s>(
     // A site that another one is connected to leads to it.
     let mut leads: HashMap<&str, &str> = sites.keys().map(|site| (*site, *site)).collect();
     let mut first: HashMap<Cow<'_, str>, &str> = HashMap::new();
+    // Whether components of a site publish a topic, and whether some subscribe to it.
+    let mut sides: BTreeMap<&str, BTreeMap<&str, [bool; 2]>> = BTreeMap::new();
     let unknown: Vec<&str> = sites.iter().filter(|(_, one)| one.is_part).map(|(site, _)| *site).collect();
     let all = sites.iter().filter(|_| leads.len() > 1);
     let all: Vec<(&str, usize)> = all.flat_map(|(site, one)| one.parts.iter().map(|place| (*site, *place))).collect();
@@ -100,8 +103,13 @@ fn connected<'s>(
         for provider in wiring[place].iter().flatten().flatten() {
             join(&mut leads, site, &fleet.members[provider.member].site);
         }
-        let class = fleet.class_of(place).into_iter();
-        for (_, on_bus) in class.flat_map(|class| topics(&fleet.members[place], &checks[place], class)) {
+        let Some(class) = fleet.class_of(place) else { continue };
+        for (topics, side) in [(&class.publishes, 0), (&class.subscribes, 1)] {
+            for topic in topics {
+                sides.entry(topic.name.as_str()).or_default().entry(site).or_insert([false; 2])[side] = true;
+            }
+        }
+        for (_, on_bus) in topics(&fleet.members[place], &checks[place], class) {
             let is_inside = on_bus.strip_prefix(site).is_some_and(|rest| site.is_empty() || rest.starts_with('/'));
             if !first.contains_key(&on_bus) && !is_inside {
                 unknown.iter().for_each(|other| join(&mut leads, site, other));
@@ -109,6 +117,12 @@ fn connected<'s>(
             let other = *first.entry(on_bus).or_insert(site);
             join(&mut leads, site, other);
         }
+    }
+    for sites in sides.values() {
+        let one_side = |side| sites.iter().find(|(_, has)| **has == side).map(|(site, _)| *site);
+        let (Some(publishes), Some(hears)) = (one_side([true, false]), one_side([false, true])) else { continue };
+        let apart = sites.iter().filter(|(_, has)| has[0] != has[1]);
+        apart.for_each(|(site, has)| join(&mut leads, site, if has[0] { hears } else { publishes }));
     }
     let mut groups: BTreeMap<&str, Site<'s>> = BTreeMap::new();
     while let Some((site, one)) = sites.pop_first() {
