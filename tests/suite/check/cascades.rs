@@ -10,8 +10,9 @@ use saoms_lang::project::Project;
 use saoms_lang::registry::Registry;
 use saoms_lang::source::{OpenTexts, Sources, Span};
 use saoms_lang::syntax::{self, Document, Element};
+use saoms_testkit::Fleet;
 
-use crate::support::shipped;
+use crate::support::{project, shipped};
 
 /// The places of each kind in a file where a slip is tried.
 const PLACES: usize = 4;
@@ -90,4 +91,23 @@ fn one_slip_gives_few_diagnostics() {
     let all: usize = counts.values().sum();
     assert!(worst.is_empty(), "{worst}\n{counts:?}");
     assert!(counts[&1] * 100 >= all * ONE, "{counts:?}");
+}
+
+/// An end tag too many takes nothing away: all else is judged, before it and behind it.
+#[test]
+fn an_end_tag_too_many_hides_no_other_mistake() {
+    let hall = project("composites/hall.composite");
+    let mistakes = [
+        ("luggage (3,1)", "lugage (3,1)", "S3014"),
+        ("(3,10)<", "(3,10)\n at 2s breakdown Robot20<", "S5005"),
+        ("target=\"World\"", "target=\"Wrld\"", "S2011"),
+        ("<reference name=\"world\"", "<property name=\"dicharge\" value=\"1\"/><reference name=\"world\"", "S3004"),
+        ("<reference name=\"world\"", "<property name=\"discharge\" source=\"$d\"/><reference name=\"world\"", "S2024"),
+    ];
+    let slip = hall.replacen("<component name=\"Master\">", "</component>\n<component name=\"Master\">", 1);
+    for (right, wrong, code) in mistakes {
+        let found = Fleet::of_text(slip.replacen(right, wrong, 1)).diagnostics();
+        let codes: Vec<&str> = found.lines().filter_map(|line| line.split(' ').nth(1)).collect();
+        assert!(codes.contains(&"S0102") && codes.contains(&code), "{code}: {found}");
+    }
 }

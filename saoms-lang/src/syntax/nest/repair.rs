@@ -109,8 +109,14 @@ impl<'a> Nest<'_, 'a> {
                 let one = fault().label(place, format!("this {} is closed", quoted(found)));
                 one.mend("remove it", "")
             });
+            let node = *self.node(same);
+            let is_twice =
+                node.after == self.count && input.slice(self.span(node.end).end, tag.start).trim().is_empty();
             if is_early {
                 self.close_late(same, top, at);
+            } else if is_twice {
+                // Without it nothing is missing: a start tag that was lost leaves what was behind it.
+                self.lexer.tokens[at as usize].kind = TokenKind::Error;
             } else {
                 self.ignore(at, top);
             }
