@@ -79,6 +79,16 @@ pub(crate) fn execute() -> Exit {
     }
 }
 
+/// Help for an option that only other commands have.
+fn of_others(option: &str) -> Option<String> {
+    let name = option.strip_prefix("--")?;
+    let all = Arguments::command();
+    let has = |one: &&clap::Command| one.get_arguments().any(|argument| argument.get_long() == Some(name));
+    let named: Vec<String> =
+        all.get_subcommands().filter(has).map(|one| format!("`saoms {}`", one.get_name())).collect();
+    (!named.is_empty()).then(|| format!("this option belongs to {}", named.join(", ")))
+}
+
 /// The parsed command line. A wrong one is reported and ends the process.
 fn parsed() -> Arguments {
     Arguments::try_parse().unwrap_or_else(|mut error| {
@@ -95,6 +105,12 @@ fn parsed() -> Arguments {
             && ["-o", "--output"].contains(&word.as_str())
         {
             let tip = "this command writes to standard output: write `> FILE` behind it".to_owned();
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        if error.kind() == ErrorKind::UnknownArgument
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
+            && let Some(tip) = of_others(word)
+        {
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
         if error.kind() == ErrorKind::ArgumentConflict {

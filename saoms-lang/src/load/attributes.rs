@@ -118,6 +118,7 @@ impl Loader<'_> {
                 own_without_prefix(one, attribute, element)
             }
             None if kind.has(name, Version::Osoa10) => one.help("remove it: only SCA 1.0 has this attribute"),
+            None if name == "file" => one.help("only a property of a component has it: write the value here"),
             None if kind.names(self.version).next().is_none() => one.help("it has no attributes"),
             None => {
                 let names: Vec<String> = kind.names(self.version).map(quoted).collect();
@@ -144,6 +145,7 @@ impl Loader<'_> {
             Some(meant) => one.replace(attribute.name(), attribute.name_location(), &format!("{prefix}:{meant}")),
             None if kind.has(name, self.version) && element.attribute(name).is_some() => one.help(given_already(name)),
             None if kind.has(name, self.version) => one.mend("remove the prefix", name),
+            None if name == "env" => one.help("only a property of the composite has it: take that with `source`"),
             None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
             None => one.help(format!("its attributes of SAOMS are {}", names.join(", "))),
         });
@@ -429,6 +431,7 @@ fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
         ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
         // In a component it may be the property that is called so.
         ("property", "name") => written == "id" && element.parent().is_some_and(|around| around.parent().is_none()),
+        ("property", "value") => matches!(written, "val" | "default"),
         ("wire", "source") => written == "from",
         ("wire", "target") => written == "to",
         _ => false,

@@ -225,6 +225,7 @@ impl Description {
             }
             let message = format!("there is no folder {}", quoted(&location));
             let one = Diagnostic::new(&codes::FILE_NOT_FOUND, location.location, message);
+            let path = std::path::absolute(&path).unwrap_or(path);
             let help = format!("the full path is {}", quoted(&path.display().to_string()));
             diagnostics.push(one.severity(Severity::Warning).help(help));
         }

@@ -86,7 +86,7 @@ impl Loader<'_> {
             "{} is not a name of an environment variable: use letters, digits and `_`, and no digit first",
             quoted(&named)
         );
-        self.value_fault(attribute, message, None);
+        self.value_fault(attribute, message, named.strip_prefix('$').filter(|name| is_name(name)));
         None
     }
 

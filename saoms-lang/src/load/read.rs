@@ -95,7 +95,7 @@ pub(crate) fn value(path: &Path, max_size: u64, named: Location, open: &OpenText
     let bytes = named_bytes(path, max_size, open).map_err(|failure| {
         let mut one = failure.diagnostic(path, max_size, named, &VALUE);
         if one.code == &codes::FILE_NOT_FOUND {
-            let shown = path.display().to_string();
+            let shown = std::path::absolute(path).unwrap_or_else(|_| path.into()).display().to_string();
             if shown.contains('\\') {
                 one.help.insert(0, format!("separate folders with `/`: write {}", quoted(&shown.replace('\\', "/"))));
             } else {
@@ -139,7 +139,11 @@ struct Expected {
 
 const COMPOSITE: Expected =
     Expected { kind: "XML text", help: "a composite is an XML text in UTF-8", ending: Some(".composite") };
-const VALUE: Expected = Expected { kind: "text", help: "the value of a property is a text in UTF-8", ending: None };
+const VALUE: Expected = Expected {
+    kind: "text",
+    help: "the value of a property is a text in UTF-8; save a spreadsheet as CSV",
+    ending: None,
+};
 
 /// The reason why there are no bytes.
 enum Failure {

@@ -16,12 +16,17 @@ impl Lexer<'_> {
         let after = &input.text[at as usize + 1..];
         let length = after.bytes().take_while(|&byte| byte.is_ascii_alphanumeric() || b"#_-.:".contains(&byte)).count();
         if after.as_bytes().get(length) != Some(&b';') || length == 0 {
+            let is_pair = after.starts_with('&');
             self.faults.add(|| {
                 let message = "`&` must start a reference such as `&amp;`";
-                let one = input.fault(&codes::XML_ENTITY, at, at + 1, message);
+                let one = input.fault(&codes::XML_ENTITY, at, at + 1 + is_pair as u32, message);
+                if is_pair {
+                    let one = one.help("write `&amp;&amp;` for the characters themselves");
+                    return one.mend("replace `&&` with the `and` of conditions", "and");
+                }
                 one.help("write `&amp;` for the character itself").mend("replace `&` with `&amp;`", "&amp;")
             });
-            return (at + 1, true);
+            return (at + 1 + is_pair as u32, true);
         }
         let end = at + length as u32 + 2;
         if resolve(&after[..length]).is_some() {

@@ -88,6 +88,8 @@ fn several_files_need_a_folder() {
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     let output = saoms(&["expand", "composites/hall.composite", "-o", "out.composite"]);
     assert!(stderr(&output).contains("tip: this command writes to standard output: write `> FILE` behind it"));
+    let output = saoms(&["run", "composites/hall.composite", "--wiring"]);
+    assert!(stderr(&output).contains("tip: this option belongs to `saoms check`"), "{}", stderr(&output));
     let output = saoms(&["run", "composites/hall.composite", "--seed", "abc"]);
     assert!(stderr(&output).contains("expected a whole number from 0 to 18446744073709551615"));
 }

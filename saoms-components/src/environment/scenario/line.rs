@@ -178,7 +178,7 @@ fn short(span: &str) -> Option<String> {
     let unit = match &span[number.len()..] {
         "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => "ms",
         "sec" | "secs" | "second" | "seconds" => "s",
-        "mins" | "minute" | "minutes" => "min",
+        "m" | "mins" | "minute" | "minutes" => "min",
         "hr" | "hrs" | "hour" | "hours" => "h",
         _ => return None,
     };

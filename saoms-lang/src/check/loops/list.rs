@@ -169,7 +169,12 @@ pub(super) fn report_unknown(
     let component = quoted(&member.component.name);
     let message = format!("component {component} has no loop {}", quoted(name));
     let known = ("its loops are", names.iter().copied());
-    let one = report.unknown(&codes::UNKNOWN_LOOP, name.location, message, name, known);
+    let one = match name.rsplit_once('.').filter(|(_, meant)| names.contains(meant)) {
+        Some((_, meant)) => {
+            Diagnostic::new(&codes::UNKNOWN_LOOP, name.location, message).replace(name, name.location, meant)
+        }
+        None => report.unknown(&codes::UNKNOWN_LOOP, name.location, message, name, known),
+    };
     let one = if names.is_empty() { one.help("it has none") } else { one };
     report.push(if is_removal { one } else { one.help("to add a loop, name its class: `class=\"...\"`") });
 }

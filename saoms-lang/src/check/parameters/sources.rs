@@ -88,6 +88,10 @@ impl<'a> Parameters<'a> {
         let one = report.unknown(&codes::UNKNOWN_SOURCE, at, message, name, known);
         report.push(match unit.by_name.is_empty() {
             true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
+            false if one.suggestions.is_empty() && unit.owner.is_some() => one.help(format!(
+                "a value of the composite around comes in through a property: declare {} here, and give it in the component",
+                quoted(name)
+            )),
             false => one,
         });
         Err(Faulty)
@@ -157,7 +161,7 @@ impl<'a> Parameters<'a> {
         }
         let message = format!("{} does not name a property of the composite", quoted(source));
         let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
-            .help("write `$name`, or `$name/part` for a part of a complex property");
+            .help("write `$name` without braces, or `$name/part` for a part of a complex property");
         if unit.by_name.contains_key(source.as_str()) {
             one = one.suggest("insert `$`", source.location, escaped(&format!("${source}")));
         }

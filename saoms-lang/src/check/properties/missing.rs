@@ -16,7 +16,8 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
     let is_task = table.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
     let message = format!("{} {of} has no property {}", table.what, quoted(name));
     // What is given already is not meant a second time.
-    let is_given = |meant: &str| giver.properties.iter().any(|one| one.name == *meant);
+    let given = giver.properties.iter().filter(|one| one.name.location.file == at.file);
+    let is_given = |meant: &str| given.clone().any(|one| one.name == *meant);
     let near = nearest_equal(name, table.names());
     let one = match near.first().filter(|_| near.iter().all(|meant| is_given(meant))) {
         Some(given) => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message)
@@ -33,7 +34,8 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
         None => one,
     };
     report.push(match is_task {
-        true => one.help(format!("{of} is passive: it is never executed and has no task properties")),
+        true => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, one.message)
+            .help(format!("{of} is passive: it is never executed and has no task properties")),
         false if table.names().next().is_none() => one.help(format!("{of} has no properties at all")),
         false => one,
     });

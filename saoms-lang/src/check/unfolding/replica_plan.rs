@@ -59,7 +59,7 @@ impl<'a> Plan<'a> {
             };
             let message = format!("{what} replicas, but the number of replicas is missing");
             let one = Diagnostic::new(&codes::REPLICAS, at, message);
-            report.push(one.help("add `saoms:count=\"...\"` to the component to the component"));
+            report.push(one.help("add `saoms:count=\"...\"` to the component"));
             return Err(Faulty);
         };
         let count = number(written, names, report);

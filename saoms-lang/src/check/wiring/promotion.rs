@@ -192,9 +192,10 @@ fn find<'f>(
 ) -> Option<ReferenceId<'f>> {
     let uri = Uri::of(text, (2, side), (unit.scope, fleet), report)?;
     let member = uri.member(text, (unit.scope, None), fleet, Some(side.rule()), report)?;
-    let names = match side {
-        Side::Service => fleet.service_names(member),
-        Side::Reference => fleet.reference_names(member),
+    let (services, references) = (fleet.service_names(member), fleet.reference_names(member));
+    let (names, other, others) = match side {
+        Side::Service => (services, "reference", references),
+        Side::Reference => (references, "service", services),
     };
     let Some(names) = names else {
         return find_given(text, &uri, member, side, fleet, report).map(|name| (member, name));
@@ -212,7 +213,12 @@ fn find<'f>(
             }
             let message = format!("component {component} has no {what} {}", quoted(name));
             let known = (&*format!("its {what}s are"), names.iter().copied());
-            report.unknown(code, report.part(text, at.clone()), message, name, known)
+            let at = report.part(text, at.clone());
+            let one = report.unknown(code, at, message, name, known);
+            match others.is_some_and(|names| names.contains(name)) {
+                true => one.help(format!("{} is a {other}: promote it with `<{other} ...>`", quoted(name))),
+                false => one,
+            }
         }
         (None, Some(only)) => return Some((member, only)),
         (None, None) if names.is_empty() => {

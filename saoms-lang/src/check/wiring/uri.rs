@@ -61,6 +61,7 @@ impl<'t> Uri<'t> {
             report.push(match promoted {
                 Some(promoted) => promoted.add_to(one, text),
                 None if is_known && named.len() <= most => one.replace(text, text.location, &meant),
+                None if component.is_empty() => one.help(format!("write {form}, with no blank around the `/`")),
                 None => one.help(format!("write {form}")),
             });
             return None;

@@ -127,7 +127,9 @@ pub(super) fn outside(input: Input<'_>, place: Span, root: Option<Named<'_>>) ->
     let message = "text outside of the root element";
     let one = input.fault(&codes::XML_OUTSIDE_ROOT, place.start, place.end, message);
     match root {
-        None => one.help("move it into the root element, or remove it; only comments and instructions can be outside"),
+        None => one
+            .help("move it into the root element, or remove it; only comments and instructions can be outside")
+            .help("a table of values is no composite"),
         Some(root) => one.label(root.at.in_file(input.file), "the root element"),
     }
 }

@@ -50,6 +50,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         "<a>&nbsp;</a>",
         "<a>&AMP;</a>",
         "<a>a & b</a>",
+        "<a b='x && y'/>",
         "<a b='x&y'/>",
         "<a>&#0;</a>",
         "<a>&#xD800;</a>",
@@ -182,6 +183,8 @@ fn what_is_not_well_formed_is_found_at_its_place() {
             1:4 [&AMP;] S0109 unknown entity `&AMP;` | replace `&AMP;` with `&amp;`
         <a>a & b</a>
             1:6 [&] S0109 `&` must start a reference such as `&amp;` | replace `&` with `&amp;`
+        <a b='x && y'/>
+            1:9 [&&] S0109 `&` must start a reference such as `&amp;` | replace `&&` with the `and` of conditions
         <a b='x&y'/>
             1:8 [&] S0109 `&` must start a reference such as `&amp;` | replace `&` with `&amp;`
         <a>&#0;</a>

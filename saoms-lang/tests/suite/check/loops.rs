@@ -97,6 +97,7 @@ fn names_of_loops_and_their_classes_are_known() {
   fix: replace `PathSM` with `PathMS` [4:63-69 \"PathMS\"]
 "
     );
+    assert!(faults("<saoms:loop name=\"example.PathMS\"/>").contains("fix: replace `example.PathMS` with `PathMS`"));
     assert!(faults("<saoms:loop name=\"x\" class=\"example.Cart\"/>").contains("help: it is a component class"));
 }
 

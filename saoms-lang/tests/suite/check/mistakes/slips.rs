@@ -96,7 +96,7 @@ fn replicas_that_lack_their_index_get_it() {
     .assert_eq(&replicas("R", "S", "${index}"));
     expect![[r#"
         2:18-27 error S2046: `R${index}` is a name for replicas, but the number of replicas is missing
-          help: add `saoms:count="..."` to the component to the component
+          help: add `saoms:count="..."` to the component
     "#]].assert_eq(&of("<component name=\"R${index}\"><implementation.java class=\"example.Robot\"/>\n<property name=\"ID\">R${index}</property><property name=\"period\">1</property><property name=\"number\">${index}</property></component>"));
     expect![[r#"
         2:31-36 error S2045: the composite has no property `index`
@@ -124,7 +124,7 @@ fn a_count_that_is_none_is_an_error() {
     .assert_eq(&robots("xmlns:s='urn:saoms:0'", "s:count='3'", ""));
     expect![[r#"
         2:18-27 error S2046: `G${index}` is a name for replicas, but the number of replicas is missing
-          help: add `saoms:count="..."` to the component to the component
+          help: add `saoms:count="..."` to the component
     "#]]
     .assert_eq(&robots("xmlns:s='urn:other'", "s:count='3'", ""));
     expect![[r#"
@@ -136,7 +136,7 @@ fn a_count_that_is_none_is_an_error() {
     let allowed = "<s:severity xmlns:s='urn:saoms:1' code='S1007' level='allow' reason='tools put their own there'/>";
     expect![[r#"
         2:18-27 error S2046: `G${index}` is a name for replicas, but the number of replicas is missing
-          help: add `saoms:count="..."` to the component to the component
+          help: add `saoms:count="..."` to the component
     "#]]
     .assert_eq(&robots("", "count='3'", allowed));
 }
@@ -423,4 +423,42 @@ fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
           help: add `name="..."` to it
     "#]]
     .assert_eq(&faults_of(&[&fleet_1_0(&text)], &[]));
+}
+
+#[test]
+fn what_belongs_elsewhere_is_told_where() {
+    let column = "<component name=\"R${index}\" saoms:count=\"1\" saoms:overrides=\"robots.csv\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R</property><property name=\"period\">1</property><property name=\"speed\">1</property></component>";
+    let column = column.replacen(' ', " xmlns:saoms=\"urn:saoms:1\" ", 1);
+    let (_, column) = checked(&column, &[("robots.csv", b"index,Speed\n1,2\n")], 500);
+    let said = [
+        of("<property name=\"speed\" file=\"speed.txt\"/>"),
+        of("<property name=\"speed\" saoms:env=\"$SPEED\">1</property>"),
+        of("<property name=\"speed\" val=\"1\"/>"),
+        of(&robot("R", "<property name=\"number\" saoms:env=\"N\">1</property>")),
+        of(&format!("{GPS}\n<reference name=\"gps\" promote=\"G/position\"/>")),
+        column,
+    ];
+    expect![[r#"
+        2:17-22 warning S2026: no component uses the property `speed` of the composite
+          help: remove it, or use its value in a component with `source="$speed"`
+        2:24-28 error S1007: `property` has no attribute `file`
+          help: only a property of a component has it: write the value here
+        2:17-22 warning S2026: no component uses the property `speed` of the composite
+          help: remove it, or use its value in a component with `source="$speed"`
+        2:35-41 error S1011: `$SPEED` is not a name of an environment variable: use letters, digits and `_`, and no digit first
+          fix: replace it with `SPEED` [2:35-41 "SPEED"]
+        2:17-22 warning S2026: no component uses the property `speed` of the composite
+          help: remove it, or use its value in a component with `source="$speed"`
+        2:24-27 error S1007: `property` has no attribute `val`
+          fix: replace `val` with `value` [2:24-27 "value"]
+        3:25-34 error S1007: `property` has no attribute `saoms:env`
+          help: only a property of the composite has it: take that with `source`
+        3:34-42 error S2021: component `G` has no reference `position`
+          help: its references are `other`
+          help: `position` is a service: promote it with `<service ...>`
+        2:44-53 error S3006: component `R1` needs the property `number` (index 1)
+          help: add `<property name="number">...</property>`: a whole number from 1 to 99
+        robots.csv:1:7-12 error S3004: class `example.Robot` has no property `Speed` (in `R1`, index 1)
+          fix: replace `Speed` with `speed` [robots.csv:1:7-12 "speed"]
+    "#]].assert_eq(&said.concat());
 }

@@ -152,7 +152,7 @@ fn what_is_wrong_with_replicas_is_found_at_its_place() {
         3:18-19 error S2046: all replicas would have the name `A`
           fix: replace `A` with `A${index}` [3:18-19 "A${index}"]
         4:41-42 error S2046: `from` is for replicas, but the number of replicas is missing
-          help: add `saoms:count="..."` to the component to the component
+          help: add `saoms:count="..."` to the component
         5:42-48 error S2046: there cannot be -1 replicas
           2:63-65 the value of `robots`
           help: write a number of 0 or more

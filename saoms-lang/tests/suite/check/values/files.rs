@@ -94,7 +94,7 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
           help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`; the file cannot be checked before
           help: it is in line 1, column 2 of `colour`
         6:30-35 error S0006: the file is a program or library, not text
-          help: the value of a property is a text in UTF-8
+          help: the value of a property is a text in UTF-8; save a spreadsheet as CSV
         7:30-35 error S3012: the property `grace` is given a value in two ways
           7:37-41 the other value
           help: write it in one way: as text inside, as the attribute `value`, as `<value>` elements, or in a `file`

@@ -41,11 +41,11 @@ fn sources_lead_to_composite_properties() {
         13:33-37 error S2024: the composite has no property `sped`
           fix: replace `sped` with `speed` [13:33-37 "speed"]
         14:32-37 error S2023: `speed` does not name a property of the composite
-          help: write `$name`, or `$name/part` for a part of a complex property
+          help: write `$name` without braces, or `$name/part` for a part of a complex property
           fix: insert `$` [14:32-37 "$speed"]
         15:38-40 error S2023: the property has a simple value: there are no parts in it
         16:33-35 error S2023: `/x` does not name a property of the composite
-          help: write `$name`, or `$name/part` for a part of a complex property
+          help: write `$name` without braces, or `$name/part` for a part of a complex property
         19:33-41 error S3006: the property `period` has no value: its source has no value
           5:17-24 declared here, without a value
           help: write it in the file, or give `--set nothing=...`

@@ -118,7 +118,6 @@ fn unknown_and_repeated_properties() {
         3:17-23 error S3004: class `example.Navigator` has no property `period`
           help: `example.Navigator` is passive: it is never executed and has no task properties
         7:17-23 error S3004: class `example.Broker` has no property `period`
-          help: its properties are `IP` and `port`
           help: `example.Broker` is passive: it is never executed and has no task properties
     "#]].assert_eq(&faults(
         r#"<component name="N"><implementation.java class="example.Navigator"/>

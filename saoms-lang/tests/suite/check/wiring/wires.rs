@@ -61,7 +61,7 @@ fn targets_lead_to_services() {
           help: it offers `position` (example.Positions)
         /move
         3:34-39 error S2010: `/move` has the wrong form
-          help: write `component`, `component/service` or `component/service/binding`
+          help: write `component`, `component/service` or `component/service/binding`, with no blank around the `/`
         R//b
         3:34-38 error S2010: `R//b` has the wrong form
           fix: replace `R//b` with `R/b` [3:34-38 "R/b"]
