@@ -79,7 +79,12 @@ pub fn parse_duration(text: &str) -> Result<Duration, String> {
         Ok(duration) => Ok(duration),
         Err(WrongDuration::Negative) => Err(format!("`{text}` is negative: expected {EXPECTED}")),
         Err(WrongDuration::TooLong) => Err(format!("`{text}` is longer than any run can last")),
-        Err(WrongDuration::Other) => Err(format!("`{text}` is not a duration: expected {EXPECTED}")),
+        Err(WrongDuration::Other) => match text.strip_suffix('m').filter(|number| read_duration(number).is_ok()) {
+            Some(number) => Err(format!(
+                "`{text}` is not a duration: expected `{number}min`, for minutes, or `{number}ms`, for milliseconds"
+            )),
+            None => Err(format!("`{text}` is not a duration: expected {EXPECTED}")),
+        },
     }
 }
 

@@ -80,17 +80,22 @@ impl Map {
         }
         #[expect(clippy::cast_possible_truncation, reason = "both are at most `LONGEST`")]
         let mut map = Map::new(width as u32, height as u32);
-        let mut unknown = Vec::new();
+        let (mut unknown, mut lengths) = (Vec::new(), Vec::new());
         let width_said = header.width.map(|(width, _)| width);
         for (y, row) in (0..).zip(rows) {
-            if faults.len() + unknown.len() >= MOST_WRONG {
+            if faults.len() + unknown.len() + lengths.len() >= MOST_WRONG {
                 break;
             }
             match map.read_row(y, row, width, width_said) {
                 Ok(None) => {}
                 Ok(Some(sign)) => unknown.push(sign),
-                Err((part, message)) => faults.push(TextFault::of(text, part, message)),
+                Err(wrong) => lengths.push(wrong),
             }
+        }
+        if let Some((row, message)) = lengths.first() {
+            // They have one cause.
+            let also = (lengths.len() > 1).then(|| format!(" (and in {} more)", lengths.len() - 1));
+            faults.push(TextFault::of(text, row, format!("{message}{}", also.unwrap_or_default())));
         }
         faults.extend(unknown_signs(text, &unknown));
         if faults.is_empty() { Ok(map) } else { Err(faults) }

@@ -60,13 +60,7 @@ fn wrong_maps_say_where_and_why() {
             ],
         ),
         ("width 3\nmap", &["`width 3\nmap` found no rows, expected one line of `.` and `@` a row"]),
-        (
-            "..\n...\n ...\n....",
-            &[
-                "`..` found 2 blocks in this row, expected 3 as in the others",
-                "`....` found 4 blocks in this row, expected 3 as in the others",
-            ],
-        ),
+        ("..\n...\n ...\n....", &["`..` found 2 blocks in this row, expected 3 as in the others (and in 1 more)"]),
         (
             "...\n.x.\n\n#..",
             &[

@@ -40,6 +40,11 @@ pub(super) fn has_broker(fleet: &FleetView<'_>) -> bool {
     robots(fleet).has_broker
 }
 
+/// True if each robot of the fleet is known, with a number of its own property, class name or ID. Others are told of.
+pub(super) fn are_all_known(fleet: &FleetView<'_>) -> bool {
+    robots(fleet).len() == fleet.indices::<Robot>().count()
+}
+
 /// The findings, as warnings where other programs may supply what is missing here.
 pub(super) fn unless_elsewhere(fleet: &FleetView<'_>, findings: Vec<Finding>) -> Vec<Finding> {
     const HELP: &str = "ignore this if another program at the same broker (`url`) provides what is missing";

@@ -7,10 +7,10 @@ use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
 use saoms_api::{Finding, Place};
 
 use super::budget::Budget;
-use super::hearing::{events, passed_on};
-use super::robots::{FleetRobot, has_broker, may_be_others, robots};
+use super::hearing::{events, passed_on, site_of};
+use super::robots::{FleetRobot, are_all_known, has_broker, may_be_others, robots};
 use crate::environment::{Environment, EventSpec, RandomRange, Scenario};
-use crate::messages::FAULT;
+use crate::messages::{ENVIRONMENT, FAULT};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -81,11 +81,14 @@ struct Names<'r> {
     numbers: Vec<u32>,
     /// The other robots.
     deaf: Vec<&'r FleetRobot>,
+    /// The name on the bus of the events of the environment.
+    events: &'r str,
 }
 
 impl<'r> Names<'r> {
     fn of(fleet: &FleetView<'r>, all: &'r [FleetRobot], environment: usize) -> Names<'r> {
-        let topics = passed_on(fleet, events(fleet, environment), FAULT.name());
+        let events = events(fleet, environment);
+        let topics = passed_on(fleet, events, FAULT.name());
         let hears = |robot: &&FleetRobot| {
             topics.is_empty() || topics.contains(fleet.components()[robot.index].topic(FAULT.name()))
         };
@@ -97,7 +100,7 @@ impl<'r> Names<'r> {
         }
         let mut numbers: Vec<u32> = robots.iter().map(|robot| robot.number).collect();
         numbers.sort_unstable();
-        Names { robots, by_name, numbers, deaf }
+        Names { robots, by_name, numbers, deaf, events }
     }
 
     /// Number of robots with numbers in this range.
@@ -121,7 +124,8 @@ fn check_name(
     let (text, RandomRange { least, most }) = (written.text, written.value);
     let finding = |message: String| Finding::new(Place::default(), message).severity(severity);
     if let Some(number) = names.by_name.get(text) {
-        if *number == least {
+        // Of robots that share a number, that is told.
+        if *number == least || names.between(*number, *number) > 1 {
             return None;
         }
         let message = format!("`{text}` means robot {least} here, but the robot with this ID has the number {number}");
@@ -134,11 +138,6 @@ fn check_name(
         }
         let robot = names.robots.iter().find(|robot| robot.number == least)?;
         let id = robot.properties.id.as_str();
-        // Zeros before the number do not matter.
-        let stem = |name: &'_ str| name.trim_end_matches(|sign: char| sign.is_ascii_digit()).to_owned();
-        if stem(text) == stem(id) || stem(text) == stem(fleet.components()[robot.index].path) {
-            return None;
-        }
         let message = format!("no robot has the ID `{text}`: it means robot {least} here, whose ID is `{id}`");
         return Some(finding(message).severity(Severity::Warning).instead(id));
     }
@@ -150,14 +149,16 @@ fn check_name(
         let place = Place::component(robot.index);
         return Some(finding(message).label(place, format!("robot {least}")).help(help));
     }
-    if names.numbers.windows(2).any(|pair| pair[0] == pair[1]) {
+    if !are_all_known(fleet) || names.numbers.windows(2).any(|pair| pair[0] == pair[1]) {
         // Robots that share an ID or a number are told of; which are missing is not known.
         return None;
     }
+    let site = site_of(ENVIRONMENT.name(), names.events).filter(|site| !site.is_empty());
+    let whole = site.map_or_else(|| "the fleet".to_owned(), |site| format!("site `{site}`"));
     let message = match (least == most, known) {
-        (true, _) => format!("the fleet has no robot {least}"),
-        (false, 0) => format!("the fleet has no robot from {least} to {most}"),
-        (false, _) => format!("the fleet has only {known} of the robots from {least} to {most}"),
+        (true, _) => format!("{whole} has no robot {least}"),
+        (false, 0) => format!("{whole} has no robot from {least} to {most}"),
+        (false, _) => format!("{whole} has only {known} of the robots from {least} to {most}"),
     };
     let is_name = !text.starts_with(|sign: char| sign.is_ascii_digit());
     let near = (is_name && budget.admit(NAME * names.robots.len())).then(|| nearest(text, names.ids())).flatten();

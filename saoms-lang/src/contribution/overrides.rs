@@ -14,7 +14,7 @@ const KEYS: [&str; 2] = ["index", "name"];
 /// long.
 pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
     let text = sources.get(file).text();
-    if let Some(fault) = separated(file, text) {
+    if let Some(fault) = conflict(file, text).or_else(|| separated(file, text)) {
         diagnostics.push(fault);
         return None;
     }
@@ -86,6 +86,14 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         rows.push(Row { key: of, values });
     }
     Some(Table { file, key, properties, rows })
+}
+
+/// The fault of a table with the marks of git around two versions of its lines.
+fn conflict(file: FileId, text: &str) -> Option<Diagnostic> {
+    let line = text.lines().find(|line| line.starts_with("<<<<<<< "))?;
+    let message = "conflict markers of git, with two versions of these lines";
+    let one = Diagnostic::new(&codes::OVERRIDES, Text::part_of(file, text, line).location, message);
+    Some(one.help("keep one version, and remove the lines with `<<<<<<<`, `=======` and `>>>>>>>`"))
 }
 
 /// The fault of a table whose first line has another separator than commas, as some spreadsheets write them.

@@ -58,9 +58,14 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
         }
     }
     let (components, properties) = (composite.components.iter_mut(), &composite.properties);
+    let mut tables: HashMap<SmolStr, Arc<Table>> = HashMap::new();
     for replicas in components.filter_map(|component| component.replicas.as_mut()) {
         // Which file an expression names is known when composites are unfolded: see `read_tables`.
         if let Some(file) = replicas.overrides.as_ref().filter(|file| !has_expression(file)) {
+            replicas.table = tables.get(&file.value).cloned();
+            if replicas.table.is_some() {
+                continue;
+            }
             replicas.table = read_table(file, file.location, max_size, sources, diagnostics).unwrap_or_else(|fault| {
                 let (name, mut fault) = (file.strip_prefix('$').unwrap_or(file), *fault);
                 if properties.iter().any(|one| *one.name == *name && !name.is_empty()) {
@@ -70,6 +75,7 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
                 diagnostics.push(fault);
                 None
             });
+            tables.extend(replicas.table.iter().map(|table| (file.value.clone(), Arc::clone(table))));
         }
     }
 }

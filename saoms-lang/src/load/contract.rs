@@ -27,8 +27,11 @@ impl Loader<'_> {
         let name = self.name(element);
         let is_promoting = std::ptr::eq(kind, &COMPOSITE_REFERENCE);
         let promote = if is_promoting { self.promoted(element) } else { Vec::new() };
-        let targets = self.list(element, "target");
-        if targets.is_empty()
+        let mut targets = self.list(element, "target");
+        if is_promoting && element.attribute("promote").is_none() {
+            // Where it stands is reported, whatever it leads to.
+            targets.clear();
+        } else if targets.is_empty()
             && let Some(attribute) = element.attribute("target")
         {
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), "`target` names nothing");

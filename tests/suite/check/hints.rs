@@ -115,6 +115,139 @@ fn parts() -> (String, String) {
     (format!("<component name=\"Robot7\">{robot}"), others.to_owned())
 }
 
+/// A composite with replicated robots, the composite around it, and their table, after replacements in the first two.
+fn replicated(inner: &[[&str; 2]], outer: &[[&str; 2]], table: &str) -> [(&'static str, String); 3] {
+    let after = |text: &str, edits: &[[&str; 2]]| {
+        edits.iter().fold(text.to_owned(), |text, [from, to]| {
+            assert!(text.contains(from), "{from}");
+            text.replacen(from, to, 1)
+        })
+    };
+    [
+        ("inner.composite", after(include_str!("hints/inner.composite"), inner)),
+        ("fleet.composite", after(include_str!("hints/fleet.composite"), outer)),
+        ("robots.csv", table.to_owned()),
+    ]
+}
+
+/// The messages and help for such a fleet.
+fn told_of_replicas(test: &str, inner: &[[&str; 2]], outer: &[[&str; 2]], table: &str) -> Vec<String> {
+    let files = replicated(inner, outer, table);
+    told(test, &files.each_ref().map(|(name, text)| (*name, text.as_str())))
+}
+
+#[test]
+fn one_fault_of_replicas_is_told_once() {
+    const ID: &str = r#"<property name="ID">Robot${index:02}</property>"#;
+    const SCENARIO: &str = r#"<property name="scenario">
+      at 1s luggage (3,1) to (9,4)
+      at 2s breakdown Robot02
+    </property>"#;
+    const TABLE: &str = "index,battery\n1,60\n";
+    assert_eq!(told_of_replicas("right", &[], &[], TABLE), [""; 0]);
+    for (test, inner, outer, table, code, help) in [
+        (
+            "same ID",
+            [ID, r#"<property name="ID">Robot</property>"#],
+            ["A", "A"],
+            TABLE,
+            "S3013",
+            "with `Robot${index}`",
+        ),
+        (
+            "same ID by index",
+            [ID, r#"<property name="ID">Robot0${index - index}</property>"#],
+            ["A", "A"],
+            TABLE,
+            "S3013",
+            "`${index}` is different for each",
+        ),
+        (
+            "same number",
+            [ID, &format!("{ID}<property name=\"number\">1</property>")],
+            ["A", "A"],
+            TABLE,
+            "S3013",
+            "replace `1` with `${index}`",
+        ),
+        (
+            "misspelt property",
+            ["World", "World"],
+            [r#"name="robots" source"#, r#"name="robot" source"#],
+            TABLE,
+            "S3004",
+            "replace `robot` with `robots`",
+        ),
+        (
+            "reference outside",
+            [
+                "<reference name=\"world\" target=\"World\"/>\n  </component>",
+                "</component>\n  <reference name=\"world\" target=\"World\"/>",
+            ],
+            ["A", "A"],
+            TABLE,
+            "S1008",
+            "a reference of the composite has a `promote`",
+        ),
+        (
+            "git in table",
+            ["World", "World"],
+            ["A", "A"],
+            "index,battery\n<<<<<<< HEAD\n1,60\n=======\n1,70\n>>>>>>> other\n",
+            "S2047",
+            "keep one version, and remove the lines",
+        ),
+        (
+            "table as scenario",
+            [SCENARIO, r#"<property name="scenario" file="robots.csv"/>"#],
+            ["A", "A"],
+            "index,battery\n1,60\n2,70\n",
+            "S3014",
+            "name the table with `saoms:overrides`",
+        ),
+        ("site", ["Robot02", "Robot04"], ["</composite>", B], TABLE, "site `B` has no robot 4", "replace `Robot04`"),
+        ("zeros", ["Robot02", "Robot2"], ["A", "A"], TABLE, "S5005", "replace `Robot2` with `Robot02`"),
+        (
+            "minutes",
+            ["at 2s", "at 10m"],
+            ["A", "A"],
+            TABLE,
+            "expected `10min`, for minutes, or `10ms`",
+            "saoms components",
+        ),
+        (
+            "charger",
+            ["${index}</property>\n    <reference", "${index / 2 + 1}</property>\n    <reference"],
+            ["A", "A"],
+            TABLE,
+            "S5003",
+            "move the charger of one robot",
+        ),
+    ] {
+        let told = told_of_replicas(test, &[inner], &[outer], table);
+        assert_hint(test, &told, code, help);
+        assert!(told.iter().all(|line| !line.contains("both come from here")), "{test}: {told:#?}");
+    }
+}
+
+#[test]
+fn a_cell_of_a_table_of_two_is_told_once() {
+    let (_, robots) = include_str!("hints/inner.composite").split_once("  <component name=\"Robot${").unwrap();
+    let more = format!(
+        "  <component name=\"Robot${{{}</composite>",
+        robots.replace("</composite>", "").replace("index:02", "index + 10:02").replace("chargeX\">0", "chargeX\">1")
+    );
+    let told = told_of_replicas("shared", &[["</composite>", &more]], &[], "index,battery\n1,abc\n");
+    assert_hint("shared", &told, "(in `A/Robot01`, index 1, and in 1 more)", "Battery level");
+}
+
+/// A second site, with fewer robots.
+const B: &str = "  <component name=\"B\" saoms:site=\"B\">
+    <implementation.composite name=\"w:inner\"/>
+    <property name=\"robots\">2</property>
+  </component>
+</composite>";
+
 #[test]
 fn a_robot_in_another_composite_than_the_world_is_not_given_a_target() {
     let (robot, others) = parts();

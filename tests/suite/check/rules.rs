@@ -286,7 +286,7 @@ fn events_of_unknown_robots_are_found() {
             ("Lift5", "saoms.Robot", &[("number", "2")], false),
         ])
     };
-    assert!(scenario("at 1s breakdown 1..2; at 1s breakdown Robot001").is_empty());
+    assert!(scenario("at 1s breakdown 1..2; at 1s breakdown Robot1").is_empty());
     assert_eq!(
         scenario("at 1s breakdown Robt1; at 2s breakdown Robot2"),
         [

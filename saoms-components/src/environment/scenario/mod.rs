@@ -15,6 +15,8 @@ use saoms_api::Finding;
 pub use continuation::{Continuation, continuations};
 pub use random::{RandomRange, Spot};
 
+use crate::text::TextFault;
+
 /// A scenario: events and their times.
 ///
 /// ```
@@ -84,6 +86,15 @@ pub struct Spanned<T> {
 /// Maximum number of wrong lines that are reported.
 const MOST_WRONG: usize = 1000;
 
+/// The fault of a text that is a table of replicas: all its lines have one cause.
+fn table(text: &str) -> Option<TextFault> {
+    let head = text.lines().map(str::trim).find(|line| !line.is_empty())?;
+    head.starts_with("index,").then(|| {
+        let fault = TextFault::of(text, head, "this is a table of replicas, expected a scenario with one event a line");
+        fault.help("name the table with `saoms:overrides`; `at 1s luggage (3,1) to (3,10)` is a line of a scenario")
+    })
+}
+
 impl Scenario {
     /// Reads a scenario from its lines, given in any number of texts.
     ///
@@ -101,6 +112,10 @@ impl Scenario {
         // one with a last event.
         let mut endless = false;
         for (place, text) in texts.iter().enumerate() {
+            if let Some(fault) = table(text.as_ref()) {
+                findings.push(fault.finding("scenario", place));
+                continue;
+            }
             for part in line::split(text.as_ref()) {
                 let read = line::read(text.as_ref(), part, endless);
                 endless = read.as_ref().is_ok_and(|line| line.times.is_none() && line.until.is_none());

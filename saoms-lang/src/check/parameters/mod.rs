@@ -277,6 +277,16 @@ impl<'a> Parameters<'a> {
     /// Counts what composites that are not fully known take from those around them.
     fn pass_on(&mut self, fleet: &Fleet<'a>) {
         for unit in (0..self.units.len()).rev() {
+            // What a misspelt property of the component takes that this composite implements is meant to be used.
+            if let Some(owner) = fleet.scopes[fleet.units[unit].scope].owner.map(|owner| &fleet.members[owner]) {
+                let sources = owner.component.properties.iter().filter_map(|given| {
+                    let is_known = self.units[unit].by_name.contains_key(given.name.as_str());
+                    expression(given.source()?).filter(|_| !is_known)
+                });
+                for (name, _) in sources.collect::<Vec<_>>() {
+                    self.units[owner.unit].by_name.get_mut(name).into_iter().for_each(|outer| outer.is_used = true);
+                }
+            }
             let is_open = self.units[unit].source.is_some() || fleet.scopes[fleet.units[unit].scope].fault.is_some();
             let open = self.units[unit].by_name.values().filter(|parameter| is_open || parameter.is_used);
             let from: Vec<(usize, &'a str)> = open

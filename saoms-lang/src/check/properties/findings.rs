@@ -69,7 +69,11 @@ pub(crate) fn diagnostic<'s>(
     let mut one = Diagnostic::new(code, place.at, message).severity(severity);
     for (other, text) in finding.labels() {
         let at = located(other, subject(other), report).at;
-        one = one.other(at, text);
+        // Replicas in one use of a composite are no two uses of it.
+        let around = |subject: Subject<'s>| subject.name.rsplit_once('/').map(|(around, _)| around);
+        if at != place.at || around(about) != around(subject(other)) {
+            one = one.other(at, text);
+        }
     }
     if let Some(source) = place.source {
         let property = finding.place().property_name().unwrap_or_default();
