@@ -1,12 +1,13 @@
 //! Rule: shifts that cannot keep to their times.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
 use saoms_api::host::format_duration;
-use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
+use crate::robot::Robot;
 use crate::shift::{Shift, ShiftProperties};
 
 pub(super) static RULE: FleetRule = FleetRule {
@@ -14,7 +15,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         id: "S5013",
         name: "shift",
         meaning: "A shift schedules itself, a component that runs from the start of the fleet, or a component that \
-            another shift schedules at the same time.",
+            another shift schedules at the same time; or nothing schedules one that waits for it.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -78,7 +79,32 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             first.insert(task, (index, properties.clone()));
         }
     }
+    findings.extend(never_scheduled(fleet));
     findings
+}
+
+/// Findings about components of this crate that wait to be scheduled, and nothing does that.
+fn never_scheduled(fleet: &FleetView<'_>) -> Vec<Finding> {
+    // What is left out for a fault may schedule any of them.
+    if !fleet.missing().is_empty() {
+        return Vec::new();
+    }
+    let (components, robots) = (fleet.components(), fleet.indices::<Robot>().collect::<HashSet<usize>>());
+    // Robots are wired to their world, which they do not schedule; others may.
+    let wires = components.iter().enumerate().filter(|(index, _)| !robots.contains(index));
+    let scheduled: HashSet<usize> = wires.flat_map(|(_, one)| one.wires.iter().map(|(_, target)| *target)).collect();
+    let running: HashSet<&str> = components.iter().filter(|one| one.starts).map(|one| one.class.name).collect();
+    let waits = components.iter().enumerate().filter(|(index, one)| {
+        // One of several may be there to be started in place of another by hand; robots work side by side.
+        let is_needed = robots.contains(index) || !running.contains(one.class.name);
+        !one.starts && is_needed && one.class.name.starts_with("saoms.") && !scheduled.contains(index)
+    });
+    let finding = |(index, one): (usize, &ComponentView<'_>)| {
+        let message = format!("`{}` never runs: it waits to be scheduled, and nothing schedules it", one.path);
+        Finding::new(Place::property("runOnStartup").in_component(index), message)
+            .help("remove `runOnStartup`, or wire the reference `tasks` of a `saoms.Shift` to this component")
+    };
+    waits.map(finding).collect()
 }
 
 impl ShiftProperties {

@@ -326,6 +326,27 @@ fn a_name_with_a_blank_is_not_proposed() {
 }
 
 #[test]
+fn what_makes_the_work_too_long_for_a_battery_is_shown() {
+    let folder = empty_folder("hints/handling");
+    let slow = "\"saoms.World\"/><property name=\"handlingTime\">3s</property>";
+    fs::write(folder.join("fleet.composite"), hall("\"saoms.World\"/>", slow)).unwrap();
+    let text = String::from_utf8(saoms_in(&folder, &["check", "fleet.composite"]).stderr).unwrap();
+    assert!(
+        text.contains("error[S5006]") && text.contains("-- collecting or depositing takes 30 executions"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_task_property_of_a_passive_class_is_to_be_removed() {
+    let broker = "<component name=\"B\"><implementation.rust class=\"saoms.MessageBroker\"/><property name=\"ID\" \
+                  value=\"B\"/></component></composite>";
+    let told = told("passive", &[("fleet.composite", &hall("</composite>", broker))]);
+    assert_hint("passive", &told, "S3004", "`saoms.MessageBroker` is passive: it is never executed");
+    assert_eq!(told.len(), 2, "{told:#?}");
+}
+
+#[test]
 fn components_in_different_sites_are_told_theirs() {
     let site = |name: &str| {
         let component = format!("<component name=\"{name}\"");

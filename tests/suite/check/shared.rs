@@ -236,9 +236,22 @@ fn shifts_schedule_others_that_wait_for_them() {
         ["`Robot1` runs from the start of the fleet, but `Early` schedules it only for its shifts"]
     );
     assert_eq!(
-        shifts(&[("Early", "work=1s", "Early")], true),
+        shifts(&[("Early", "work=1s", "Early")], false),
         ["`Early` schedules itself: it stops at the end of its first shift"]
     );
+}
+
+#[test]
+fn what_waits_for_a_shift_and_has_none_never_runs() {
+    for name in ["World", "Environment", "Master", "Robot7"] {
+        let robot = ("Robot7", "saoms.Robot", &[][..], true);
+        let all: Vec<Component<'_>> = [WORLD, ENVIRONMENT, MASTER, robot]
+            .into_iter()
+            .map(|one| if one.0 == name { (one.0, one.1, &[("runOnStartup", "false")][..], one.3) } else { one })
+            .collect();
+        let message = format!("warning S5013 `{name}` never runs: it waits to be scheduled, and nothing schedules it");
+        assert_eq!(found(&all), [message]);
+    }
 }
 
 #[test]

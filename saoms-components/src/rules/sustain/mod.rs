@@ -10,8 +10,8 @@ mod reach;
 
 use std::time::Duration;
 
-use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::{Finding, Place};
 
 use super::budget::Budget;
 use super::hearing::passed_on;
@@ -79,7 +79,27 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
     if findings.is_empty() {
         findings.extend(overloaded(&area, &ranges, luggage, &mut ways));
     }
-    findings
+    findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], &ranges[0])).collect()
+}
+
+/// The finding with the properties that make the work take long, as far as the composite gives them.
+fn explained(fleet: &FleetView<'_>, finding: Finding, area: &WorldMap, robot: &FleetRobot, range: &Range) -> Finding {
+    let executions = |count: u32, what: &str| match count {
+        1 => None,
+        count => Some(format!("{what} takes {count} executions")),
+    };
+    let discharge = robot.properties.discharge.map(|percent| format!("each execution takes {percent} % of a battery"));
+    let causes = [
+        (area.index, "moveTime", executions(range.moving, "a move")),
+        (area.index, "handlingTime", executions(range.handling, "collecting or depositing")),
+        (robot.index, "discharge", discharge),
+    ];
+    let given = |index: usize, name: &str| fleet.components()[index].values.iter().any(|(given, _)| given == name);
+    let causes = causes.into_iter().filter(|(index, name, _)| given(*index, name));
+    causes.fold(finding, |finding, (index, name, text)| match text {
+        Some(text) => finding.label(Place::property(name).in_component(index), text),
+        None => finding,
+    })
 }
 
 /// Range and speed of a robot.
