@@ -19,8 +19,12 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
         return Vec::new();
     }
     // What differs in its number alone is not meant, but another one of them.
-    let is_other =
-        |known: &str| stem.len() < last.len() && known.len() == last.len() && known.starts_with(stem) && known != last;
+    let number = |name: &str| {
+        let digits = name.strip_prefix(stem).filter(|digits| digits.starts_with(|sign: char| sign.is_ascii_digit()))?;
+        digits.parse::<u64>().ok()
+    };
+    let own = number(last);
+    let is_other = |known: &str| own.is_some() && number(known).is_some_and(|known| Some(known) != own);
     let mut names: Vec<(&str, bool)> = names.filter(|(known, _)| !is_other(simple(known))).collect();
     names.sort_by_key(|(name, is_alias)| (*is_alias, name.split('.').count(), name.len()));
     let names = || names.iter().map(|(name, _)| *name);

@@ -55,6 +55,7 @@ fn what_was_probably_meant_is_proposed() {
             "replace `saoms.World.class` with `saoms.World`",
         ),
         ("number", "\"saoms.Robot\"", "\"robot.Robot999\"", "S3001", "replace `robot.Robot999` with `saoms.Robot`"),
+        ("short number", "\"saoms.Robot\"", "\"robot.Robot12\"", "S3001", "replace `robot.Robot12` with `saoms.Robot`"),
         ("minutes", "\"100ms\"", "\"10m\"", "S3007", "replace `10m` with `10min`"),
         ("milliseconds", "\"100ms\"", "\"10m\"", "S3007", "replace `10m` with `10ms`"),
         (
@@ -213,7 +214,7 @@ fn one_fault_of_replicas_is_told_once() {
             ["A", "A"],
             TABLE,
             "expected `10min`, for minutes, or `10ms`",
-            "saoms components",
+            "replace `10m` with `10min`",
         ),
         (
             "charger",
