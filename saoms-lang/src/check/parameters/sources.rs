@@ -81,6 +81,8 @@ impl<'a> Parameters<'a> {
         if unit.name.is_some() || unit.owner.is_some_and(|owner| owner.property(name).is_some()) {
             return Err(Faulty);
         }
+        // It may be the one of the composite around that is meant.
+        unit.owner.into_iter().for_each(|owner| report.diagnostics().add_meant(owner.origin.file(), name));
         let names = unit.by_name.keys().copied();
         let at = report.part(source, 1..1 + name.len());
         let message = format!("the composite has no property {}", quoted(name));

@@ -462,3 +462,16 @@ fn what_belongs_elsewhere_is_told_where() {
           fix: replace `Speed` with `speed` [robots.csv:1:7-12 "speed"]
     "#]].assert_eq(&said.concat());
 }
+
+#[test]
+fn a_property_of_the_composite_around_is_handed_in() {
+    let robot = robot("R", "<property name=\"number\" source=\"$tick\"/>");
+    let hall = part("hall", "", &format!("<property name=\"first\">1</property>{robot}"));
+    let around = "<property name=\"tick\">1</property><component name=\"H\"><implementation.composite name=\"t:hall\"/><property name=\"first\">1</property></component>";
+    let told = outcome(&[&part("fleet", "", around), &hall], &[]);
+    expect![[r#"
+        hall:3:34-38 error S2024: the composite has no property `tick`
+          help: its properties are `first`
+          help: a value of the composite around comes in through a property: declare `tick` here, and give it in the component
+    "#]].assert_eq(&told);
+}
