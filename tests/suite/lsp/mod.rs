@@ -154,7 +154,7 @@ fn what_is_wrong_is_mended_and_names_are_changed_in_all_files() {
 #[test]
 fn what_is_no_fault_here_is_allowed_with_a_reason_and_all_is_mended_at_once() {
     let text = composite(
-        "  <component name=\"A\"><implementation.java class=\"saoms.Robto\"/></component>\n  <component name=\"B\" autowrie=\"true\"><implementation.java class=\"robot.Robot01\"/></component>",
+        "  <component name=\"A\"><implementation.java class=\"saoms.Robto\"/></component>\n  <component name=\"B\" autowrie=\"true\"><implementation.java class=\"saoms.Master\"/></component>",
     );
     let mut editor = Editor::started("allow", &[("fleet.composite", &text)]);
     editor.open("fleet.composite", &text);
