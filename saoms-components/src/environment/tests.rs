@@ -143,7 +143,7 @@ fn every_wrong_line_says_where_and_why() {
         ("at luggage (3,1) to (3,10)", "luggage", format!("found `luggage`, expected {time}"), None),
         ("at", "", format!("found the end of the line, expected {time}"), None),
         ("at 6parsec landing 4", "6parsec", "`6parsec` is not a duration: expected a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h".into(), None),
-        ("at 6m landing 4", "6m", "`6m` is not a duration: expected a number of milliseconds, or a number with one of the units ns, us, ms, s, min, h".into(), Some("6min")),
+        ("at 6m landing 4", "6m", "`6m` is not a duration: expected `6min`, for minutes, or `6ms`, for milliseconds".into(), Some("6min")),
         ("at -6 s landing 4", "-6 s", "found `-6 s`, which is before the start of the scenario: expected a time from 0s on".into(), Some("6 s")),
         ("at 6s luggage (3,1)", "", "found the end of the line, expected `to` and the block to bring it to".into(), None),
         ("at 6s luggage (3,1) too (3,10)", "too", "found `too`, expected `to` and the block to bring it to".into(), Some("to")),
