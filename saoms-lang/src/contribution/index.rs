@@ -334,7 +334,7 @@ fn may_be_read(kind: FileType, path: &Path) -> bool {
 }
 
 /// The files `*.composite` whose composites one in `folder` can name: those in it, and those of its contribution, as
-/// [`load_named`](super::load_named) looks for them. Texts that count in place of files are among them.
+/// [`load_named`](super::Finder::load_named) looks for them. Texts that count in place of files are among them.
 pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let mut index = Index::new(open.clone());
     let mut all = index.listing(folder).composites.clone();
