@@ -1,11 +1,11 @@
-use saoms_api::{Context, Failure};
+use saoms_api::{Context, Failure, Record, record};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
 use crate::messages::{Collision, LuggageStage};
 
 use super::hardware_client::Reply;
-use super::{RobotKnowledge, Trouble};
+use super::{RobotKnowledge, Trouble, Variables};
 
 /// Number of consecutive failures to move or to deposit after which the hardware counts as broken.
 const MOST_FAILURES: u32 = 5;
@@ -42,6 +42,7 @@ impl RobotKnowledge {
         match self.hardware.begin(context, self.number, action)? {
             Reply::Later => Ok(Outcome::NotBegun),
             Reply::Answer(progress) => {
+                self.begun = context.cause();
                 if action.kind == ActionKind::Move {
                     self.next = action.block;
                 }
@@ -51,13 +52,33 @@ impl RobotKnowledge {
     }
 
     /// Polls the running action; if it is over, updates the robot's knowledge. `None` if no action is running.
+    ///
+    /// What changes follows from the decision of the loop that began the action.
     pub(crate) fn poll(&mut self, context: &mut Context<'_>) -> Result<Option<(Action, Outcome)>, Failure> {
         let Some(action) = self.hardware.running() else { return Ok(None) };
         let outcome = match self.hardware.poll(context, self.number)? {
             Reply::Later => Outcome::Running,
-            Reply::Answer(progress) => self.take_in(context, action, progress)?,
+            Reply::Answer(progress) => {
+                let before = (self.block, self.next, self.variables);
+                context.because(self.begun);
+                let outcome = self.take_in(context, action, progress)?;
+                self.note_changes(context, before);
+                outcome
+            }
         };
         Ok(Some((action, outcome)))
+    }
+
+    /// Writes to the journal what an action changed outside of a loop's execution, where nobody else looks.
+    fn note_changes(&self, context: &mut Context<'_>, before: (Block, Block, Variables)) {
+        let (block, next, was) = before;
+        let now = &self.variables;
+        context.changed("block", block, self.block);
+        context.changed("next", next, self.next);
+        context.changed("busy", was.busy, now.busy);
+        context.changed("transporter", was.transporter, now.transporter);
+        context.changed("hasLuggage", was.has_luggage, now.has_luggage);
+        context.changed("healer", was.healer, now.healer);
     }
 
     /// Takes the hardware out of service and learns where the robot stays; `false` while the hardware cannot be
@@ -124,6 +145,7 @@ impl RobotKnowledge {
             self.trouble = Some(Trouble::Hardware);
         }
         let Action { kind, block, luggage } = action;
+        context.effect(failure_of(action));
         match kind {
             ActionKind::Move => {
                 self.next = self.block;
@@ -168,5 +190,19 @@ impl RobotKnowledge {
         let what = if action.kind == ActionKind::Collect { "collect" } else { "deposit" };
         let (name, block) = (&self.name, action.block);
         context.console(format_args!("{name} says: Ready to {what} luggage in position {block}"));
+    }
+}
+
+/// A failed action, as the journal has it.
+fn failure_of(action: Action) -> Record {
+    let Action { kind, block, luggage } = action;
+    match kind {
+        ActionKind::Move => record!(could_not_move: "could not move to {block}", block),
+        ActionKind::Collect => {
+            record!(could_not_collect: "could not collect luggage {luggage} at {block}", luggage, block)
+        }
+        ActionKind::Deposit => {
+            record!(could_not_deposit: "could not deposit luggage {luggage} at {block}", luggage, block)
+        }
     }
 }

@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use saoms_api::{Context, Entries, Extras, Failure, Knowledge, Publisher, Time};
+use saoms_api::{Cause, Context, Entries, Extras, Failure, Knowledge, Publisher, Time};
 
 use crate::grid::Block;
 use crate::hardware::Action;
@@ -74,6 +74,8 @@ pub struct RobotKnowledge {
     pub(super) hardware: HardwareClient,
     /// Publisher of collisions, for fleets without a world.
     pub(super) collisions: Publisher<Collision>,
+    /// Cause of the hardware's newest action: the decision of the loop that began it.
+    pub(super) begun: Cause,
     /// The hardware's action that was running when this execution started, and its outcome.
     pub(super) polled: Option<(Action, Outcome)>,
     /// True if it offered to help another robot.
@@ -122,6 +124,7 @@ impl RobotKnowledge {
             routes: Routes::default(),
             hardware: HardwareClient::default(),
             collisions: Publisher::default(),
+            begun: Cause::default(),
             polled: None,
             offers_help: false,
             trouble: None,

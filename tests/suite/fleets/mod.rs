@@ -10,5 +10,6 @@ mod pause;
 mod physics;
 mod replace;
 mod shifts;
+mod slow;
 mod sustained;
 mod waiting;

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
@@ -135,6 +135,8 @@ impl Loop for ClassicPathFollower {
         }
         let polled = knowledge.poll(context)?;
         knowledge.report_outcome(self.luggage, context)?;
+        // Where the robot goes next has a reason of its own.
+        context.because(Cause::default());
         match polled {
             Some((_, outcome)) if outcome.is_open() => return Ok(Some(ClassicPathSymptom::Working)),
             Some((Action { kind: ActionKind::Collect | ActionKind::Deposit, .. }, _)) => return Ok(None),

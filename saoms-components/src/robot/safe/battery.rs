@@ -1,4 +1,4 @@
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
+use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{RobotKnowledge, Trouble};
@@ -20,8 +20,6 @@ pub struct SafeBattery {
     in_charge: bool,
     /// Number of changes of the ways at the last check of the way to the charger.
     changes: u32,
-    /// Cause of the return to the charger; events on the way follow from it.
-    turned: Cause,
     /// Its own charger, while it charges at another one.
     own: Option<Block>,
     /// Battery level that the journal has.
@@ -180,13 +178,13 @@ impl Loop for SafeBattery {
             let lasts = self.own.is_none_or(|own| knowledge.lasts_to(own));
             (must_charge && lasts && knowledge.may_leave()).then_some(SafeBatterySymptom::Charged { battery })
         } else if knowledge.battery.is_empty() {
-            context.because(self.turned);
+            context.because(knowledge.energy.turned);
             Some(SafeBatterySymptom::Empty)
         } else if must_charge {
             let charger = knowledge.charge_block;
             let other = knowledge.charger_in_reach();
             other.map(|other| {
-                context.because(self.turned);
+                context.because(knowledge.energy.turned);
                 SafeBatterySymptom::OutOfReach { charger, other }
             })
         } else if knowledge.goes_on() {
@@ -227,7 +225,7 @@ impl Loop for SafeBattery {
         match decision {
             SafeBatteryDecision::BeInCharge(_) => {}
             SafeBatteryDecision::Charge => {
-                self.turned = context.cause();
+                knowledge.energy.turned = context.cause();
                 knowledge.energy.turn_back();
                 let (name, battery) = (&knowledge.name, &knowledge.battery);
                 context.console(format_args!("{name} has low battery and is going under charge..."));

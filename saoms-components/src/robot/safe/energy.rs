@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use saoms_api::Cause;
+
 use crate::grid::Block;
 use crate::robot::{Job, RobotKnowledge};
 
@@ -24,6 +26,8 @@ const YIELD_FROM: u32 = 3;
 #[derive(Debug)]
 pub(crate) struct Energy {
     must_charge: bool,
+    /// Cause of the return to the charger; what happens on the way follows from it.
+    pub(super) turned: Cause,
     pace: Pace,
     /// Current reserve in executions: less than usual on a way that takes nearly the whole battery.
     reserve: u32,
@@ -33,7 +37,7 @@ pub(crate) struct Energy {
 
 impl Default for Energy {
     fn default() -> Energy {
-        Energy { must_charge: false, pace: Pace::default(), reserve: RESERVE, returns: 0 }
+        Energy { must_charge: false, turned: Cause::default(), pace: Pace::default(), reserve: RESERVE, returns: 0 }
     }
 }
 

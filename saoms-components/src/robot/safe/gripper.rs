@@ -106,8 +106,10 @@ impl Loop for SafeGripper {
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Option<SafeGripperSymptom>, Failure> {
+        // What comes next follows from the action that is over, if it was the gripper's.
+        context.because(context.cause());
         if let Some((job, stage)) = knowledge.untold {
             let delivered = stage == LuggageStage::Delivered;
             return Ok(Some(if delivered {

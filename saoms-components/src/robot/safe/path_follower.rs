@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
 use crate::grid::Block;
 use crate::hardware::Action;
@@ -56,6 +56,8 @@ pub enum SafePathDecision {
     Go(Block),
     /// Stay for now, and announce the block that the robot wants.
     Stay,
+    /// Go on with the move to the next block, and announce the block that the robot wants after it.
+    MoveOn(Block),
 }
 
 impl Recordable for SafePathSymptom {
@@ -76,6 +78,7 @@ impl Recordable for SafePathDecision {
             SafePathDecision::Hold => record!(holds_block: "keeps its block"),
             SafePathDecision::Go(block) => record!(moves: "moves to {block}", block),
             SafePathDecision::Stay => record!(stays: "stays for now"),
+            SafePathDecision::MoveOn(block) => record!(moves_on: "is still moving to {block}", block),
         }
     }
 }
@@ -99,6 +102,8 @@ impl Loop for SafePathFollower {
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hardware.is_moving() {
             knowledge.polled = knowledge.poll(context)?;
+            // Where the robot goes next has a reason of its own.
+            context.because(Cause::default());
             if let Some((_, Outcome::Failed)) = knowledge.polled {
                 // The wanted block is adjacent to the block that the robot did not reach.
                 knowledge.traffic.stay(knowledge.next);
@@ -124,6 +129,9 @@ impl Loop for SafePathFollower {
             self.waiting.end(context);
             return Ok(None);
         }
+        if knowledge.leg.urgency == Urgency::Energy {
+            context.because(knowledge.energy.turned);
+        }
         Ok(Some(match knowledge.leg.goal {
             Some(goal) if knowledge.leg.urgency != Urgency::None => {
                 SafePathSymptom::OnTheWay { at: knowledge.next, goal }
@@ -144,8 +152,9 @@ impl Loop for SafePathFollower {
         let from = knowledge.next;
         let wanted = knowledge.traffic.wanted(from).filter(|_| !knowledge.variables.stop_a_period);
         Ok(Some(match wanted {
-            Some(wanted) if knowledge.block == from => SafePathDecision::Go(wanted),
-            _ => SafePathDecision::Stay,
+            _ if knowledge.block != from => SafePathDecision::MoveOn(from),
+            Some(wanted) => SafePathDecision::Go(wanted),
+            None => SafePathDecision::Stay,
         }))
     }
 
@@ -168,7 +177,7 @@ impl Loop for SafePathFollower {
                 return self.say_if_news(context, position);
             }
             SafePathDecision::Go(to) => go(knowledge, context, to)?,
-            SafePathDecision::Stay => false,
+            SafePathDecision::Stay | SafePathDecision::MoveOn(_) => false,
         };
         knowledge.energy.pace().note_way(knowledge.leg.urgency != Urgency::None, goes_on);
         let position = want(knowledge, context);
