@@ -157,7 +157,7 @@ static inline SaomsBytes saoms_bytes(const SaomsBuffer *buffer) {
 }
 
 /* CDR: a header of four bytes, then the fields in their order; numbers in little endian, at their alignment. A nested message is its
- * fields, an enumeration the number of its constant, a sequence the number of its elements (`u32`) and these. */
+ * fields, an array its elements, an enumeration the number of its constant, a sequence the number of its elements (`u32`) and these. */
 
 // A buffer that holds the header, to write a message into.
 static inline SaomsBuffer saoms_writer(void *bytes, size_t capacity) {

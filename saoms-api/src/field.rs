@@ -2,9 +2,19 @@ use crate::Value;
 use crate::host::cdr::{DecodeError, Reader, Writer};
 use crate::host::declaration::ConstText;
 
-/// A type that a message, a service argument, a reply or an entry of a knowledge can hold: `bool`, `i8` to `i64`, `u8`
-/// to `u64`, `f32`, `f64`, `String`, `Vec`s, `Option`s, other messages, and enumerations (`#[derive(Field)]` on an enum
-/// without data).
+/// A type that a message, a service argument, a reply or an entry of a knowledge can hold. They are those of ROS 2
+/// interfaces, so that a message of ROS 2 can be declared field by field:
+///
+/// | Rust | ROS 2 interfaces |
+/// | --- | --- |
+/// | `bool`, `i8` to `i64`, `u8` to `u64`, `f32`, `f64` | `bool`, `int8` to `int64`, `uint8` (also `byte`, `char`) to `uint64`, `float32`, `float64` |
+/// | `String`, `Vec<T>` | `string`, `T[]` |
+/// | `[T; 36]` | `T[36]` |
+/// | [`Bounded<String, 10>`](crate::Bounded), [`Bounded<Vec<T>, 10>`](crate::Bounded) | `string<=10`, `T[<=10]` |
+/// | `Option<T>` | `T[<=1]` |
+/// | [`builtin_interfaces::Time`](crate::builtin_interfaces::Time), [`builtin_interfaces::Duration`](crate::builtin_interfaces::Duration) | the same |
+/// | a struct with `#[derive(Message)]` or `#[derive(Field)]` | a nested message |
+/// | an enum without data with `#[derive(Field)]` | its integer, with constants |
 ///
 /// `#[field(pair)]` on a struct of two `i32` makes it a single value ([`Value::Pair`]), as which it stands in a
 /// knowledge and in the journal.
@@ -47,6 +57,16 @@ pub trait Field: Sized + 'static {
         for value in values {
             value.write(writer);
         }
+    }
+
+    /// Reads the elements of an array.
+    ///
+    /// # Errors
+    /// As [`read`](Field::read).
+    fn read_array<const COUNT: usize>(reader: &mut Reader<'_>) -> Result<[Self; COUNT], DecodeError> {
+        let at = reader.offset();
+        // Always as many as were asked for.
+        Self::read_all(COUNT, reader)?.try_into().map_err(|_| DecodeError::new("not the elements of the array", at))
     }
 
     /// Reads the elements of a sequence, after its length.
@@ -99,6 +119,10 @@ macro_rules! numbers {
 
             fn read_all(count: usize, reader: &mut Reader<'_>) -> Result<Vec<Self>, DecodeError> {
                 reader.scalars(count, <$type>::from_le_bytes)
+            }
+
+            fn read_array<const COUNT: usize>(reader: &mut Reader<'_>) -> Result<[Self; COUNT], DecodeError> {
+                reader.array(<$type>::from_le_bytes)
             }
         })*
     };
@@ -179,6 +203,28 @@ impl<T: Field> Field for Vec<T> {
     fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
         let count = reader.length(T::LEAST_SIZE)?;
         T::read_all(count, reader)
+    }
+}
+
+impl<T: Field, const COUNT: usize> Field for [T; COUNT] {
+    const TYPE: ConstText = ConstText::Joined(&[
+        ConstText::Plain("{\"array\":"),
+        T::TYPE,
+        ConstText::Plain(",\"length\":"),
+        ConstText::Number(COUNT),
+        ConstText::Plain("}"),
+    ]);
+    const LEAST_SIZE: usize = {
+        assert!(COUNT > 0, "an array in a message has at least one element");
+        T::LEAST_SIZE * COUNT
+    };
+
+    fn write(&self, writer: &mut Writer) {
+        T::write_all(self, writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        T::read_array(reader)
     }
 }
 

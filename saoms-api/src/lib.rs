@@ -65,6 +65,8 @@ extern crate self as saoms_api;
 mod adaptation;
 #[doc(hidden)]
 pub mod boundary;
+mod bounded;
+pub mod builtin_interfaces;
 mod chance;
 mod component;
 mod context;
@@ -87,6 +89,7 @@ mod topic;
 pub use adaptation::{
     Cause, Effector, Entries, Entry, Extras, Knowledge, Loop, LoopClass, Loops, Record, Recordable, Value,
 };
+pub use bounded::Bounded;
 pub use chance::Chance;
 pub use component::{Class, Component};
 pub use context::{Context, Level};

@@ -6,9 +6,35 @@ use std::sync::{Arc, OnceLock};
 use crate::host::cdr;
 use crate::{Cause, Field, Time};
 
-/// A message between components. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are numbers,
-/// `bool`, `String`, `Vec`s, enumerations or other messages. `#[message(key = "field")]` names the integer field that
-/// is the key of a state topic.
+/// A message between components. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are of the
+/// types that [`Field`] lists. `#[message(...)]` takes
+///
+/// | attribute | meaning |
+/// | --- | --- |
+/// | `key = "field"` | the integer field that is the key of a state topic |
+/// | `name = "sensor_msgs/msg/LaserScan"` | the name, if it is not that of the struct |
+/// | `constants(NO_FIX: i8 = -1, FIX: i8 = 0)` | constants of the struct, which stand in the schema, too |
+///
+/// ```
+/// use saoms_api::{Message, builtin_interfaces};
+///
+/// /// A position with its quality, as a receiver of satellites gives it.
+/// #[derive(Clone, Debug, Message)]
+/// #[message(constants(
+///     /// There is no position.
+///     NO_FIX: i8 = -1,
+///     FIX: i8 = 0,
+/// ))]
+/// struct Fix {
+///     stamp: builtin_interfaces::Time,
+///     status: i8,
+///     /// Of longitude and latitude, row by row.
+///     covariance: [f64; 4],
+/// }
+///
+/// let none = Fix { stamp: Default::default(), status: Fix::NO_FIX, covariance: [0.0; 4] };
+/// assert_eq!(none.status, -1);
+/// ```
 pub trait Message: Field + Clone + fmt::Debug + Send + Sync + 'static {
     /// The name of the type, as tools show it.
     const NAME: &'static str;

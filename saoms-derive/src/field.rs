@@ -3,6 +3,7 @@ use quote::{format_ident, quote};
 use syn::ext::IdentExt;
 use syn::{Data, DeriveInput, Error, Fields, Generics, Ident, LitStr, Result, Type};
 
+use crate::constants::{self, Constant};
 use crate::enumeration;
 use crate::json::{self, Json};
 
@@ -11,14 +12,17 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
     let fields = struct_fields(input, "a message")?;
     let mut name = input.ident.unraw().to_string();
     let mut key: Option<LitStr> = None;
+    let mut constants = Vec::new();
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("message")) {
         attribute.parse_nested_meta(|meta| {
             if meta.path.is_ident("name") {
                 name = meta.value()?.parse::<LitStr>()?.value();
             } else if meta.path.is_ident("key") {
                 key = Some(meta.value()?.parse()?);
+            } else if meta.path.is_ident("constants") {
+                constants.extend(Constant::list(meta.input)?);
             } else {
-                return Err(meta.error("expected `name = \"...\"` or `key = \"field\"`"));
+                return Err(meta.error("expected `name = \"...\"`, `key = \"field\"` or `constants(NAME: u8 = 1)`"));
             }
             Ok(())
         })?;
@@ -33,10 +37,12 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
         }
     });
     let ident = &input.ident;
-    let field = structure(ident, &name, &key_name, &fields, &TokenStream::new());
+    let field = structure(ident, (&name, &key_name), &fields, &constants, &TokenStream::new());
+    let constants = constants::associated(ident, &input.vis, &constants);
     let schema = json::flat(&quote!(<#ident as ::saoms_api::Field>::TYPE));
     Ok(quote! {
         #field
+        #constants
 
         #[automatically_derived]
         impl ::saoms_api::Message for #ident {
@@ -56,19 +62,24 @@ pub(crate) fn field(input: &DeriveInput) -> Result<TokenStream> {
     let fields = struct_fields(input, "a field")?;
     let mut name = input.ident.unraw().to_string();
     let mut value = TokenStream::new();
+    let mut constants = Vec::new();
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("field")) {
         attribute.parse_nested_meta(|meta| {
             if meta.path.is_ident("pair") {
                 value = pair(&fields).map_err(|message| meta.error(message))?;
             } else if meta.path.is_ident("name") {
                 name = meta.value()?.parse::<LitStr>()?.value();
+            } else if meta.path.is_ident("constants") {
+                constants.extend(Constant::list(meta.input)?);
             } else {
-                return Err(meta.error("expected `name = \"...\"` or `pair`"));
+                return Err(meta.error("expected `name = \"...\"`, `pair` or `constants(NAME: u8 = 1)`"));
             }
             Ok(())
         })?;
     }
-    Ok(structure(&input.ident, &name, "", &fields, &value))
+    let field = structure(&input.ident, (&name, ""), &fields, &constants, &value);
+    let constants = constants::associated(&input.ident, &input.vis, &constants);
+    Ok(quote!(#field #constants))
 }
 
 fn key_field<'a>(key: &LitStr, fields: &[(&'a Ident, &Type)]) -> Result<&'a Ident> {
@@ -128,7 +139,13 @@ fn pair(fields: &[(&Ident, &Type)]) -> std::result::Result<TokenStream, &'static
     }
 }
 
-fn structure(ident: &Ident, name: &str, key: &str, fields: &[(&Ident, &Type)], value: &TokenStream) -> TokenStream {
+fn structure(
+    ident: &Ident,
+    (name, key): (&str, &str),
+    fields: &[(&Ident, &Type)],
+    constants: &[Constant],
+    value: &TokenStream,
+) -> TokenStream {
     let mut text = Json::default();
     text.plain("{\"name\":");
     text.string(name);
@@ -141,6 +158,7 @@ fn structure(ident: &Ident, name: &str, key: &str, fields: &[(&Ident, &Type)], v
         text.plain("}");
     });
     text.member("key", key);
+    constants::declare(constants, &mut text);
     text.plain("}");
     let text = text.into_text();
     let names: Vec<_> = fields.iter().map(|(name, _)| name).collect();

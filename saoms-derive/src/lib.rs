@@ -2,6 +2,7 @@
 
 mod case;
 mod class;
+mod constants;
 mod docs;
 mod entries;
 mod enumeration;

@@ -7,6 +7,7 @@ mod check;
 mod command;
 mod fleets;
 mod lsp;
+mod peers;
 mod plugins;
 mod project;
 mod scenarios;

@@ -68,9 +68,13 @@ pub(crate) fn saoms_in(folder: &Path, arguments: &[&str]) -> Output {
 
 /// Runs `saoms` in a folder with this text on standard input.
 pub(crate) fn saoms_with(folder: &Path, arguments: &[&str], input: &[u8]) -> Output {
-    let mut command = command(arguments);
+    fed(command(arguments).current_dir(folder), input)
+}
+
+/// Runs a command with this text on standard input.
+pub(crate) fn fed(command: &mut Command, input: &[u8]) -> Output {
     let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = pipes.current_dir(folder).spawn().unwrap();
+    let mut child = pipes.spawn().unwrap();
     // A command that reads no input closes it.
     let _ = child.stdin.take().unwrap().write_all(input);
     child.wait_with_output().unwrap()

@@ -14,6 +14,7 @@ use std::time::Duration;
 pub use crate::adaptation::{
     DynEntries, DynLoop, EntryDeclaration, KnowledgeClass, LoopRegistration, NamedLoops, Phase, Snapshot, Subject,
 };
+pub use crate::bounded::Measured;
 pub use crate::component::DynComponent;
 pub use crate::field::Arguments;
 pub use crate::message::SharedMessage;

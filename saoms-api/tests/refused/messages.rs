@@ -30,4 +30,22 @@ enum Wide {
     One,
 }
 
+#[derive(Clone, Debug, Message)]
+#[message(constants(ONE: u8 = 300, TWO: &[u8] = "two"))]
+struct Constants {
+    value: u8,
+}
+
+#[derive(Clone, Debug, Message)]
+#[message(constants(ONE: u8 = 1 + 2))]
+struct Sums {
+    value: u8,
+}
+
+#[derive(Clone, Debug, Message)]
+#[message(keys = "value")]
+struct Unknown {
+    value: u8,
+}
+
 fn main() {}

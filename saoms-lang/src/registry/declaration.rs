@@ -285,14 +285,31 @@ fn signature(operation: &Value) -> String {
 /// The short form of a type of schemas: `int32`, `sequence of Block`.
 pub fn type_name(value: &Value) -> String {
     let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let Value::Object(object) = value else { return word(value) };
-    match (object.get("optional"), object.get("sequence"), object.get("name"), object.get("enumeration")) {
-        (Some(of), ..) => format!("{}, or none", type_name(of)),
-        (_, Some(of), ..) => format!("sequence of {}", type_name(of)),
-        (_, _, Some(name), _) => word(name),
-        (.., Some(of)) => format!("one of a {} enumeration", word(of)),
-        _ => String::new(),
+    type_words(value, &|value| match (value.get("name"), value.get("enumeration")) {
+        (Some(name), _) => word(name),
+        (_, Some(of)) => format!("one of a {} enumeration", word(of)),
+        _ => word(value),
+    })
+}
+
+/// A type of schemas in words, where `name` gives those of a type that is not made of another one.
+pub fn type_words(value: &Value, name: &dyn Fn(&Value) -> String) -> String {
+    let Some(inner) = inner_type(value) else { return name(value) };
+    if let (Some(most), Some(element)) = (value.get("most"), inner.get("sequence")) {
+        return format!("sequence of at most {most} {}", type_words(element, name));
     }
+    let words = type_words(inner, name);
+    match (value.get("sequence"), value.get("length"), value.get("most")) {
+        (Some(_), ..) => format!("sequence of {words}"),
+        (_, Some(length), _) => format!("array of {length} {words}"),
+        (.., Some(most)) => format!("{words} of at most {most} bytes"),
+        _ => format!("{words}, or none"),
+    }
+}
+
+/// The type of the elements of a sequence, of an array and so on; `None` for a type that is not made of another one.
+pub fn inner_type(value: &Value) -> Option<&Value> {
+    ["optional", "sequence", "array", "bounded"].into_iter().find_map(|kind| value.get(kind))
 }
 
 impl PartialEq for InterfaceDeclaration {

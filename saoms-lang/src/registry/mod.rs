@@ -24,11 +24,11 @@ use saoms_api::host::{LoopRegistration, Registration};
 use saoms_api::rule::{Code, FleetRule};
 
 pub use class::{Provider, RegisteredClass};
-pub use declaration::type_name;
 pub use declaration::{
     Alias, ClassDeclaration, ClassKind, ClassTopic, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
     ServiceDeclaration,
 };
+pub use declaration::{inner_type, type_name, type_words};
 pub use error::{Holder, RegistryError};
 pub use looping::{DeclaredEntry, DefaultLoops, KnowledgeDeclaration, LoopDeclaration, LoopProvider, RegisteredLoop};
 pub use rule::{RegisteredRule, RuleProvider};

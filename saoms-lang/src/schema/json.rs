@@ -1,10 +1,10 @@
-//! Messages as JSON: a message is an object, a sequence an array, a constant of an enumeration its name, a number that
-//! JSON does not have (`NaN`, `inf`, `-inf`) its name.
+//! Messages as JSON: a message is an object, a sequence or an array a list, a constant of an enumeration its name, a
+//! number that JSON does not have (`NaN`, `inf`, `-inf`) its name, something optional that is not there `null`.
 
 use saoms_api::host::cdr::{DecodeError, Reader, Writer};
 use serde_json::{Map, Number as JsonNumber, Value};
 
-use super::read::{Scalar, boolean, constant, scalar};
+use super::read::{Scalar, boolean, bound, constant, option, scalar};
 use super::{Number, Schema, SchemaError, Type};
 
 impl Schema {
@@ -53,6 +53,15 @@ fn read(kind: &Type, reader: &mut Reader<'_>) -> Result<Value, DecodeError> {
             let count = reader.length(element.least_size())?;
             (0..count).map(|_| read(element, reader)).collect::<Result<_, _>>()?
         }
+        Type::Array(element, count) => (0..*count).map(|_| read(element, reader)).collect::<Result<_, _>>()?,
+        Type::Bounded(content, most) => {
+            bound(content, *most, reader)?;
+            read(content, reader)?
+        }
+        Type::Optional(element) => match option(element, reader)? {
+            0 => Value::Null,
+            _ => read(element, reader)?,
+        },
     })
 }
 
@@ -119,6 +128,28 @@ fn write(kind: &Type, value: &Value, writer: &mut Writer) -> Result<(), SchemaEr
             let list = value.as_array().ok_or_else(|| wrong(value, "a list"))?;
             writer.length(list.len());
             list.iter().try_for_each(|value| write(element, value, writer))?;
+        }
+        Type::Array(element, count) => {
+            let list = value.as_array().filter(|list| list.len() == *count);
+            let list = list.ok_or_else(|| wrong(value, &format!("a list of {count}")))?;
+            list.iter().try_for_each(|value| write(element, value, writer))?;
+        }
+        Type::Bounded(content, most) => {
+            let length = value.as_array().map(Vec::len).or_else(|| value.as_str().map(str::len));
+            match (length, &**content) {
+                (Some(length), Type::Sequence(_)) if length > *most => {
+                    return Err(wrong(value, &format!("a list of at most {most}")));
+                }
+                (Some(length), Type::String) if length > *most => {
+                    return Err(wrong(value, &format!("a text of at most {most} bytes")));
+                }
+                _ => write(content, value, writer)?,
+            }
+        }
+        Type::Optional(_) if value.is_null() => writer.length(0),
+        Type::Optional(element) => {
+            writer.length(1);
+            write(element, value, writer)?;
         }
     }
     Ok(())

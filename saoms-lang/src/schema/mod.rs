@@ -48,6 +48,10 @@ enum Type {
     Number(Number),
     String,
     Sequence(Box<Type>),
+    Array(Box<Type>, usize),
+    /// A string or a sequence of at most so many bytes or elements.
+    Bounded(Box<Type>, usize),
+    Optional(Box<Type>),
     Enumeration(Number, Vec<(String, i128)>),
     Message(Schema),
 }
@@ -80,6 +84,8 @@ impl std::error::Error for SchemaError {}
 
 /// Messages within messages go no deeper: schemas come from libraries that anybody may have built.
 const DEEPEST: usize = 32;
+/// No message has so many bytes: arrays make large ones of short schemas.
+const LARGEST: usize = 64 << 20;
 
 impl Schema {
     /// Reads the text of a schema.
@@ -161,10 +167,33 @@ fn kind(value: &Value, deepest: usize) -> Result<Type, SchemaError> {
             name => Number::of(name).map(Type::Number).ok_or_else(unknown),
         };
     }
-    if let Some(element) = value.get("sequence") {
+    let inner = |of: &Value| {
         let deepest =
             deepest.checked_sub(1).ok_or_else(|| SchemaError(format!("it is nested more than {DEEPEST} deep")))?;
-        return Ok(Type::Sequence(Box::new(kind(element, deepest)?)));
+        kind(of, deepest).map(Box::new)
+    };
+    let number = |name| value.get(name).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
+    if let Some(element) = value.get("sequence") {
+        return inner(element).map(Type::Sequence);
+    }
+    if let Some(element) = value.get("optional") {
+        return inner(element).map(Type::Optional);
+    }
+    if let Some(element) = value.get("array") {
+        let length = number("length").filter(|length| *length > 0).ok_or_else(unknown)?;
+        let array = Type::Array(inner(element)?, length);
+        return match array.least_size() {
+            0..=LARGEST => Ok(array),
+            _ => Err(SchemaError(format!("found an array of {length}, which takes more than {LARGEST} bytes"))),
+        };
+    }
+    if let Some(content) = value.get("bounded") {
+        let content = inner(content)?;
+        let is_bounded = matches!(*content, Type::String | Type::Sequence(_));
+        return match number("most").filter(|_| is_bounded) {
+            Some(most) => Ok(Type::Bounded(content, most)),
+            None => Err(unknown()),
+        };
     }
     if let Some(number) = value.get("enumeration") {
         let number = number.as_str().and_then(Number::of).filter(|number| !number.is_float()).ok_or_else(unknown)?;
@@ -234,8 +263,12 @@ impl Type {
         match self {
             Type::Bool => 1,
             Type::Number(number) | Type::Enumeration(number, _) => number.size(),
-            Type::String | Type::Sequence(_) => 4,
-            Type::Message(schema) => schema.fields.iter().map(|field| field.kind.least_size()).sum::<usize>().max(1),
+            Type::String | Type::Sequence(_) | Type::Bounded(..) | Type::Optional(_) => 4,
+            Type::Array(element, length) => element.least_size().saturating_mul(*length),
+            Type::Message(schema) => {
+                let sizes = schema.fields.iter().map(|field| field.kind.least_size());
+                sizes.fold(0, usize::saturating_add).max(1)
+            }
         }
     }
 }

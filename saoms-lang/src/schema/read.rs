@@ -21,15 +21,48 @@ fn skip(kind: &Type, reader: &mut Reader<'_>) -> Result<(), DecodeError> {
         Type::Message(schema) => skip_message(schema, reader),
         Type::Sequence(element) => {
             let count = reader.length(element.least_size())?;
-            match **element {
-                // Any bits are a number: nothing to look at one by one.
-                Type::Number(number) if number.size() == 8 => reader.scalars::<8, ()>(count, |_| ()).map(drop),
-                Type::Number(number) if number.size() == 4 => reader.scalars::<4, ()>(count, |_| ()).map(drop),
-                Type::Number(number) if number.size() == 2 => reader.scalars::<2, ()>(count, |_| ()).map(drop),
-                Type::Number(_) => reader.scalars::<1, ()>(count, |_| ()).map(drop),
-                _ => (0..count).try_for_each(|_| skip(element, reader)),
-            }
+            skip_all(element, count, reader)
         }
+        Type::Array(element, count) => skip_all(element, *count, reader),
+        Type::Bounded(content, most) => {
+            bound(content, *most, reader)?;
+            skip(content, reader)
+        }
+        Type::Optional(element) => (0..option(element, reader)?).try_for_each(|_| skip(element, reader)),
+    }
+}
+
+/// Elements that stand side by side.
+fn skip_all(element: &Type, count: usize, reader: &mut Reader<'_>) -> Result<(), DecodeError> {
+    match *element {
+        // Any bits are a number: nothing to look at one by one.
+        Type::Number(number) if number.size() == 8 => reader.scalars::<8, ()>(count, |_| ()).map(drop),
+        Type::Number(number) if number.size() == 4 => reader.scalars::<4, ()>(count, |_| ()).map(drop),
+        Type::Number(number) if number.size() == 2 => reader.scalars::<2, ()>(count, |_| ()).map(drop),
+        Type::Number(_) => reader.scalars::<1, ()>(count, |_| ()).map(drop),
+        _ => (0..count).try_for_each(|_| skip(element, reader)),
+    }
+}
+
+/// Looks at the length of the string or sequence that comes next.
+pub(super) fn bound(content: &Type, most: usize, reader: &Reader<'_>) -> Result<(), DecodeError> {
+    let (at, mut ahead) = (reader.offset(), reader.clone());
+    let length = match content {
+        Type::Sequence(element) => ahead.length(element.least_size())?,
+        _ => ahead.string()?.len(),
+    };
+    match length <= most {
+        true => Ok(()),
+        false => Err(DecodeError::new(format!("found a length of {length}, expected at most {most}"), at)),
+    }
+}
+
+/// Reads whether something optional is there: 0 or 1.
+pub(super) fn option(element: &Type, reader: &mut Reader<'_>) -> Result<usize, DecodeError> {
+    let at = reader.offset();
+    match reader.length(element.least_size())? {
+        count @ 0..=1 => Ok(count),
+        more => Err(DecodeError::new(format!("found {more} values, expected at most one of an option"), at)),
     }
 }
 

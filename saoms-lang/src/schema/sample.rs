@@ -23,22 +23,35 @@ fn value(kind: &Type, chance: &mut Chance, writer: &mut Writer) {
     match kind {
         Type::Bool => writer.scalar([u8::from(chance.chance(0.5))]),
         Type::Number(number) => scalar(*number, chance, writer),
-        Type::String => {
-            let text: String =
-                (0..chance.below(5)).map(|_| chance.pick(&['a', ' ', '7', 'ü', '\0']).unwrap_or(&'a')).collect();
-            writer.string(&text);
-        }
+        Type::String => text(usize::MAX, chance, writer),
         Type::Enumeration(number, values) => {
             let constant = chance.pick(values).map_or(0, |(_, constant)| *constant);
             integer(*number, constant as u64, writer);
         }
         Type::Message(schema) => message(schema, chance, writer),
-        Type::Sequence(element) => {
-            let count = chance.below(4);
-            writer.length(count as usize);
-            (0..count).for_each(|_| value(element, chance, writer));
-        }
+        Type::Sequence(element) => sequence(element, 3, chance, writer),
+        Type::Array(element, count) => (0..*count).for_each(|_| value(element, chance, writer)),
+        Type::Bounded(content, most) => match &**content {
+            Type::Sequence(element) => sequence(element, (*most).min(3), chance, writer),
+            _ => text(*most, chance, writer),
+        },
+        Type::Optional(element) => sequence(element, 1, chance, writer),
     }
+}
+
+fn text(most: usize, chance: &mut Chance, writer: &mut Writer) {
+    let mut text: String =
+        (0..chance.below(5)).map(|_| chance.pick(&['a', ' ', '7', 'ü', '\0']).unwrap_or(&'a')).collect();
+    while text.len() > most {
+        text.pop();
+    }
+    writer.string(&text);
+}
+
+fn sequence(element: &Type, most: usize, chance: &mut Chance, writer: &mut Writer) {
+    let count = chance.below(most as u64 + 1);
+    writer.length(count as usize);
+    (0..count).for_each(|_| value(element, chance, writer));
 }
 
 /// Small numbers and the bounds are what code trips over.

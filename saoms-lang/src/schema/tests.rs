@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 use saoms_api::host::cdr;
-use saoms_api::{Field, Message};
+use saoms_api::{Bounded, Field, Message};
 use serde_json::json;
 
 use super::Schema;
@@ -30,6 +30,11 @@ struct All {
     numbers: Vec<f64>,
     large: u64,
     half: f32,
+    matrix: [f64; 3],
+    corners: [Block; 2],
+    few: Bounded<Vec<i16>, 2>,
+    short: Bounded<String, 3>,
+    maybe: Option<Block>,
 }
 
 fn schema() -> Schema {
@@ -40,10 +45,13 @@ prop_compose! {
     fn all()(
         small: u8, flag: bool, text in ".{0,8}", takeoff: bool, x: i32, y: i64,
         numbers in prop::collection::vec(-1e9..1e9f64, 0..4), large: u64, count in 0..3usize,
+        few in prop::collection::vec(0..9i16, 0..=2), short in "[a-z]{0,3}",
     ) -> All {
         All {
             small, flag, text, kind: if takeoff { Kind::Takeoff } else { Kind::Landing }, block: Block { x, y },
             blocks: vec![Block { x: y as i32, y: x.into() }; count], numbers, large, half: 0.5,
+            matrix: [x.into(); 3], corners: [Block { x, y }, Block::default()], few: Bounded::new(few).unwrap(),
+            short: Bounded::new(short).unwrap(), maybe: takeoff.then_some(Block { x, y }),
         }
     }
 }
@@ -58,7 +66,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_judged_as_the_type_itself_does(message in all(), at in 0..200usize, byte: u8, cut in 0..200usize) {
+    fn any_bytes_are_judged_as_the_type_itself_does(message in all(), at in 0..300usize, byte: u8, cut in 0..300usize) {
         let mut bytes = cdr::encode(&message);
         let place = at % bytes.len();
         bytes[place] = byte;
@@ -74,6 +82,8 @@ fn json_is_what_people_expect() {
     assert_eq!(value["kind"], "TAKEOFF");
     assert_eq!(value["block"], json!({"x": 0, "y": 0}));
     assert_eq!(value["half"], "NaN");
+    assert_eq!(value["matrix"], json!([0.0, 0.0, 0.0]));
+    assert_eq!(value["maybe"], json!(null));
 }
 
 #[test]
@@ -88,6 +98,19 @@ fn wrong_json_is_told() {
 }
 
 #[test]
+fn wrong_lengths_are_told() {
+    let error = |field: &str, wrong| {
+        let mut value = schema().decode(&cdr::encode(&All::default())).unwrap();
+        value[field] = wrong;
+        schema().encode(&value).unwrap_err().to_string()
+    };
+    assert_eq!(error("matrix", json!([1, 2])), "field `matrix`: found [1,2], expected a list of 3");
+    assert_eq!(error("few", json!([1, 2, 3])), "field `few`: found [1,2,3], expected a list of at most 2");
+    assert_eq!(error("short", json!("long")), "field `short`: found \"long\", expected a text of at most 3 bytes");
+    assert_eq!(error("short", json!(1)), "field `short`: found 1, expected a text");
+}
+
+#[test]
 fn a_schema_that_is_none_is_refused() {
     for text in [
         "",
@@ -95,6 +118,11 @@ fn a_schema_that_is_none_is_refused() {
         r#"{"name":"A","fields":[{"name":"x","type":"int9"}]}"#,
         r#"{"name":"A","fields":[{"name":"x","type":{"enumeration":"float32","values":{}}}]}"#,
         r#"{"name":"A","fields":[{"name":"x","type":{"enumeration":"uint8","values":{"A":"1"}}}]}"#,
+        r#"{"name":"A","fields":[{"name":"x","type":{"array":"int8","length":0}}]}"#,
+        r#"{"name":"A","fields":[{"name":"x","type":{"array":"int8"}}]}"#,
+        r#"{"name":"A","fields":[{"name":"x","type":{"array":{"array":"int64","length":100000},"length":100000}}]}"#,
+        r#"{"name":"A","fields":[{"name":"x","type":{"bounded":"int8","most":3}}]}"#,
+        r#"{"name":"A","fields":[{"name":"x","type":{"bounded":"string","most":-3}}]}"#,
     ] {
         assert!(Schema::parse(text).is_err(), "{text}");
     }

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use expect_test::expect_file;
 use saoms_components as _;
-use saoms_lang::registry::{ClassTopic, Registry};
+use saoms_lang::registry::{ClassTopic, Registry, inner_type};
 use serde_json::Value;
 
 const HEAD: &str = "\
@@ -93,6 +93,10 @@ fn fields(schema: &Value, types: &mut BTreeMap<String, Value>) -> String {
     for field in schema["fields"].as_array().unwrap() {
         let _ = writeln!(table, "| `{}` | {} |", field["name"].as_str().unwrap(), type_name(&field["type"], types));
     }
+    for one in schema["constants"].as_array().into_iter().flatten() {
+        let (name, of) = (one["name"].as_str().unwrap(), type_name(&one["type"], types));
+        let _ = writeln!(table, "| constant `{name}` = `{}` | {of} |", one["value"]);
+    }
     table
 }
 
@@ -111,10 +115,15 @@ fn type_name(of: &Value, types: &mut BTreeMap<String, Value>) -> String {
         types.insert(name.to_owned(), of.clone());
         return format!("[{name}](#{})", name.to_lowercase());
     }
-    for (key, words) in [("sequence", "list of"), ("optional", "optional")] {
-        if let Some(inner) = of.get(key) {
-            return format!("{words} {}", type_name(inner, types));
-        }
+    let inner = inner_type(of).unwrap_or_else(|| panic!("a type without a name: {of}"));
+    if let (Some(most), Some(element)) = (of.get("most"), inner.get("sequence")) {
+        return format!("list of at most {most} {}", type_name(element, types));
     }
-    panic!("a type without a name: {of}")
+    let inner = type_name(inner, types);
+    match (of.get("optional"), of.get("length"), of.get("most")) {
+        (Some(_), ..) => format!("optional {inner}"),
+        (_, Some(length), _) => format!("array of {length} {inner}"),
+        (.., Some(most)) => format!("{inner} of at most {most} bytes"),
+        _ => format!("list of {inner}"),
+    }
 }

@@ -8,7 +8,8 @@
 //! | whole message | the header `00 01 00 00`, then its fields in order |
 //! | bool, integers, floats | little endian, aligned to their size, counted from after the header; padding is zero |
 //! | string | u32 length with the final NUL, the UTF-8 text, NUL |
-//! | sequence | u32 number of elements, the elements |
+//! | sequence, with a bound or without | u32 number of elements, the elements |
+//! | array | its elements |
 //! | nested message | its fields |
 //! | enumeration | the integer of its constant |
 //! | nothing: a message without fields, `()`, no arguments | one zero byte, as ROS 2 has it |

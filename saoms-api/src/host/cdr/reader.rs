@@ -71,6 +71,19 @@ impl<'a> Reader<'a> {
         Ok(bytes.as_chunks::<SIZE>().0.iter().map(|chunk| from_bytes(*chunk)).collect())
     }
 
+    /// Reads an array of numbers of one size.
+    ///
+    /// # Errors
+    /// There are not enough bytes.
+    pub fn array<const SIZE: usize, const COUNT: usize, T>(
+        &mut self,
+        from_bytes: impl Fn([u8; SIZE]) -> T,
+    ) -> Result<[T; COUNT], DecodeError> {
+        self.align(SIZE);
+        let chunks = self.take(SIZE.saturating_mul(COUNT))?.as_chunks::<SIZE>().0;
+        Ok(std::array::from_fn(|place| from_bytes(chunks[place])))
+    }
+
     /// Reads the length of a sequence whose elements have at least this size.
     ///
     /// # Errors

@@ -1,8 +1,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::Message;
 use crate::host::Arguments;
+use crate::{Bounded, Message};
 
 #[derive(Clone, Debug, PartialEq, Message)]
 struct Everything {
@@ -109,6 +109,17 @@ fn wrong_bytes_are_refused_with_their_place() {
     assert_eq!(
         refused::<Vec<Vec<Vec<u8>>>>(&[255; 40]),
         "byte 4: found the length 4294967295, but only 36 bytes are left"
+    );
+    assert_eq!(refused::<[u16; 3]>(&[1, 2, 3]), "byte 4: found 3 more bytes, expected 6");
+    assert_eq!(refused::<[Kind; 2]>(&[0, 0, 7, 0]), "byte 6: found 7, expected a constant of Kind");
+    assert_eq!(refused::<Vec<[u8; 9]>>(&[1, 0, 0, 0, 1]), "byte 4: found the length 1, but only 1 bytes are left");
+    assert_eq!(
+        refused::<Bounded<Vec<u8>, 2>>(&[3, 0, 0, 0, 1, 2, 3]),
+        "byte 4: found a length of 3, expected at most 2"
+    );
+    assert_eq!(
+        refused::<Bounded<String, 0>>(&[2, 0, 0, 0, b'x', 0]),
+        "byte 4: found a length of 1, expected at most 0"
     );
 }
 

@@ -93,12 +93,15 @@
 //!
 //! # A schema
 //! The schema of a message is `{"name", "fields": [{"name", "type"}]}`, with `"key"`, the name of a field, where a
-//! state topic keeps one message for each value of that field. A type is one of
+//! state topic keeps one message for each value of that field, and `"constants": [{"name", "type", "value"}]` where the
+//! message has such. A type is one of
 //!
 //! | type | meaning |
 //! | --- | --- |
 //! | `"bool"`, `"int8"` to `"int64"`, `"uint8"` to `"uint64"`, `"float32"`, `"float64"`, `"string"` | the types of ROS 2 interfaces |
 //! | `{"sequence": type}` | any number of these |
+//! | `{"array": type, "length": 36}` | as many of these |
+//! | `{"bounded": type, "most": 10}` | a string of at most so many bytes, or a sequence of at most so many elements |
 //! | `{"optional": type}` | one of these or none; encoded as a sequence of at most one |
 //! | `{"enumeration": "uint8", "values": {"LANDING": 0}}` | an integer with named constants |
 //! | `{"name", "fields"}` | a nested message |

@@ -7,6 +7,8 @@ pub enum ConstText {
     Plain(&'static str),
     /// As a JSON string: in quotation marks, with escapes.
     Quoted(&'static str),
+    /// As decimal digits.
+    Number(usize),
     /// One after the other.
     Joined(&'static [ConstText]),
 }
@@ -27,6 +29,7 @@ impl ConstText {
                 }
                 length
             }
+            ConstText::Number(number) => digits(number).1,
             ConstText::Joined(parts) => {
                 let (mut at, mut length) = (0, 0);
                 while at < parts.len() {
@@ -59,6 +62,10 @@ impl ConstText {
                 }
                 copy(b"\"", 1, bytes, end)
             }
+            ConstText::Number(number) => {
+                let (digits, length) = digits(number);
+                copy(digits.split_at(digits.len() - length).1, length, bytes, start)
+            }
             ConstText::Joined(parts) => {
                 let (mut at, mut end) = (0, start);
                 while at < parts.len() {
@@ -87,6 +94,7 @@ impl fmt::Display for ConstText {
                 }
                 formatter.write_str("\"")
             }
+            ConstText::Number(number) => number.fmt(formatter),
             ConstText::Joined(parts) => parts.iter().try_for_each(|part| part.fmt(formatter)),
         }
     }
@@ -104,6 +112,17 @@ pub const fn text(bytes: &'static [u8]) -> &'static str {
 const fn copy(from: &[u8], length: usize, to: &mut [u8], at: usize) -> usize {
     to.split_at_mut(at).1.split_at_mut(length).0.copy_from_slice(from.split_at(length).0);
     at + length
+}
+
+/// The digits of a number at the end of the buffer, and how many they are.
+const fn digits(mut number: usize) -> ([u8; 20], usize) {
+    let (mut digits, mut length) = ([b'0'; 20], 0);
+    while number > 0 || length == 0 {
+        length += 1;
+        digits[20 - length] = b'0' + (number % 10) as u8;
+        number /= 10;
+    }
+    (digits, length)
 }
 
 const fn escape(byte: u8) -> ([u8; 6], usize) {
