@@ -143,10 +143,10 @@ impl<L: LoopClass> DynLoop for L {
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
         let Some(symptom) = self.analyze(subject::<L>(knowledge)?, context)? else { return Ok(()) };
-        context.journal(Phase::Symptom, &symptom.record());
+        context.journal(Phase::Symptom, symptom.lend(&mut None));
         snapshot.take(knowledge);
         let Some(decision) = self.plan(symptom, subject::<L>(knowledge)?, context)? else { return Ok(()) };
-        context.journal(Phase::Decision, &decision.record());
+        context.journal(Phase::Decision, decision.lend(&mut None));
         let result = self.execute(decision, subject::<L>(knowledge)?, context);
         result.and(snapshot.record(knowledge, context))
     }

@@ -103,11 +103,7 @@ impl Batch {
 
     /// The record of a head of this batch.
     pub(super) fn record(&self, head: &Head) -> Record {
-        let mut values = [Value::Nothing; 6];
-        for (place, value) in values.iter_mut().zip(self.values_of(head)) {
-            *place = *value;
-        }
-        Record::new(head.record_id, head.text, head.names, values)
+        Record::new(head.record_id, head.text, head.names, self.values_of(head))
     }
 
     pub(crate) fn len(&self) -> usize {

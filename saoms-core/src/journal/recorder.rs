@@ -215,7 +215,7 @@ impl Recorder {
         }
         self.acted();
         let values = [Value::Word(entry), before, after];
-        let record = Record::new(entry, "{entry}: {before} -> {after}", "entry,before,after,", values);
+        let record = Record::new(entry, "{entry}: {before} -> {after}", "entry,before,after,", &values);
         let cause = self.chain().cause_of_effect();
         let fingerprint = fingerprint_of_change(entry, before, after);
         let id = self.push(stamp, Phase::Effect, fingerprint, cause, true, &record).id;

@@ -60,6 +60,6 @@ pub(in crate::boundary) unsafe fn read_record(view: &RecordView) -> Result<Recor
         }
         let text = view.text.get_text()?;
         let id = if view.id.length == 0 { text } else { view.id.get_text()? };
-        Ok(Record::new(id, text, view.names.get_text()?, values))
+        Ok(Record::new(id, text, view.names.get_text()?, &values[..view.count]))
     }
 }
