@@ -1,7 +1,7 @@
 //! Damage: where faults of the XML may hide parts of the model.
 
 use crate::diagnostic::{Diagnostics, HiddenNames};
-use crate::syntax::{Document, Element, ElementId};
+use crate::syntax::{Attribute, Document, Element, ElementId};
 
 /// Marks the children of the root with something damaged inside, or the whole file, in the diagnostics.
 pub(super) fn add(document: &Document, diagnostics: &mut Diagnostics) {
@@ -25,6 +25,8 @@ fn has_names(element: Element<'_>) -> bool {
     match element.local_name() {
         "property" => element.has_damaged_tag() && element.parent().is_some_and(|one| one.id() == ElementId::ROOT),
         "value" | "documentation" => false,
+        // Only its own name is in doubt, which is no other one.
+        "component" if !element.has_damaged_content() && names(element).nth(1).is_some() => false,
         name => !name.contains('.'),
     }
 }
@@ -40,11 +42,17 @@ fn may_hide_component(part: Element<'_>) -> bool {
     !is_known || part.is_unnamed() || part.descendants().skip(1).any(is_component)
 }
 
-/// True if the name of a component is read as it was meant, whatever else is wrong with the tag: it is given once, and
-/// ends with its quote.
+/// True if the name of a component is read as it was meant, whatever else is wrong with the tag: it ends with its quote.
 fn has_readable_name(component: Element<'_>) -> bool {
-    let mut names = component.written_attributes().filter(|one| one.name() == "name");
-    let (Some(name), None) = (names.next(), names.next()) else { return false };
-    let behind = &component.document().text()[name.span().end as usize..];
-    component.attribute("name").is_some() && name.is_closed() && behind.starts_with([' ', '\t', '\r', '\n', '/', '>'])
+    let text = component.document().text();
+    let ends = |name: Attribute<'_>| {
+        let behind = &text[name.span().end as usize..];
+        name.is_closed() && behind.starts_with([' ', '\t', '\r', '\n', '/', '>'])
+    };
+    component.attribute("name").is_some() && names(component).all(ends)
+}
+
+/// All that it gives as its name.
+fn names(element: Element<'_>) -> impl Iterator<Item = Attribute<'_>> {
+    element.written_attributes().filter(|one| one.name() == "name")
 }

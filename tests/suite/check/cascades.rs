@@ -93,9 +93,10 @@ fn one_slip_gives_few_diagnostics() {
     assert!(counts[&1] * 100 >= all * ONE, "{counts:?}");
 }
 
-/// An end tag too many takes nothing away: all else is judged, before it and behind it.
+/// An end tag too many takes nothing away, and a name given twice hides at most one name: all else is judged, before it
+/// and behind it.
 #[test]
-fn an_end_tag_too_many_hides_no_other_mistake() {
+fn a_tag_or_a_name_too_many_hides_no_other_mistake() {
     let hall = project("composites/hall.composite");
     let mistakes = [
         ("luggage (3,1)", "lugage (3,1)", "S3014"),
@@ -104,10 +105,14 @@ fn an_end_tag_too_many_hides_no_other_mistake() {
         ("<reference name=\"world\"", "<property name=\"dicharge\" value=\"1\"/><reference name=\"world\"", "S3004"),
         ("<reference name=\"world\"", "<property name=\"discharge\" source=\"$d\"/><reference name=\"world\"", "S2024"),
     ];
-    let slip = hall.replacen("<component name=\"Master\">", "</component>\n<component name=\"Master\">", 1);
-    for (right, wrong, code) in mistakes {
-        let found = Fleet::of_text(slip.replacen(right, wrong, 1)).diagnostics();
-        let codes: Vec<&str> = found.lines().filter_map(|line| line.split(' ').nth(1)).collect();
-        assert!(codes.contains(&"S0102") && codes.contains(&code), "{code}: {found}");
+    let master = "<component name=\"Master\"";
+    let slips = [(format!("</component>\n{master}"), "S0102"), (format!("{master} name=\"Mster\""), "S0106")];
+    for (slip, of_slip) in slips {
+        let slip = hall.replacen(master, &slip, 1);
+        for (right, wrong, code) in mistakes {
+            let found = Fleet::of_text(slip.replacen(right, wrong, 1)).diagnostics();
+            let codes: Vec<&str> = found.lines().filter_map(|line| line.split(' ').nth(1)).collect();
+            assert!(codes.contains(&of_slip) && codes.contains(&code), "{code}: {found}");
+        }
     }
 }

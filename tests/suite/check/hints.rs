@@ -207,6 +207,21 @@ fn one_fault_of_replicas_is_told_once() {
             "name the table with `saoms:overrides`",
         ),
         ("site", ["Robot02", "Robot04"], ["</composite>", B], TABLE, "site `B` has no robot 4", "replace `Robot04`"),
+        (
+            "one site twice",
+            ["World", "World"],
+            [
+                "</composite>",
+                &B.replace("name=\"B\" saoms:site=\"B\"", "name=\"B\" saoms:site=\"N\"").replace(
+                    "</composite>",
+                    "  <component name=\"C\" saoms:site=\"N\"><implementation.composite name=\"w:inner\"/></component>
+</composite>",
+                ),
+            ],
+            TABLE,
+            "`B` and `C` are both in the site `N`, and both have a component `World`",
+            "give each its own `saoms:site`",
+        ),
         ("zeros", ["Robot02", "Robot2"], ["A", "A"], TABLE, "S5005", "replace `Robot2` with `Robot02`"),
         (
             "minutes",

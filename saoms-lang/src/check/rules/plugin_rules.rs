@@ -63,7 +63,8 @@ pub(crate) fn check<'s>(
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate().filter(|(_, (one, _))| one.runs()) {
         let (site, class) = (sites.entry(&member.site).or_default(), fleet.class_of(place));
         // Which of two components of one name is meant is not known.
-        if member.repeated.is_some() || !check.is_sound() || class.is_none() {
+        let is_repeated = member.repeated.is_some() || repeated.has_inside(fleet, place);
+        if is_repeated || !check.is_sound() || class.is_none() {
             site.miss(class, true);
             if let Some(site) = outer(member).filter(|_| class.is_none()) {
                 sites.entry(site).or_default().miss(None, true);

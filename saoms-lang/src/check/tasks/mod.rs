@@ -189,5 +189,5 @@ pub(crate) fn check_all<'a>(
     }
     report.about_all();
     renames.finish(fleet, report);
-    unique.repeated
+    unique.repeated.finish(fleet, report)
 }

@@ -1,6 +1,6 @@
 //! Values that must not occur twice in a fleet.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
@@ -11,7 +11,7 @@ use crate::check::fleet::{Fleet, Member};
 use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::Report;
 use crate::check::unfolding::replica_plan::with_index;
-use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
@@ -43,20 +43,60 @@ pub(crate) struct Unique<'a> {
     pub(crate) repeated: RepeatedValues,
 }
 
-/// The places of values that components share and must not, which is reported: with whether replicas have them. Rules
-/// over them report nothing else.
+/// What components share and must not, which is reported. Rules over it report nothing else.
 #[derive(Default)]
-pub(crate) struct RepeatedValues(HashMap<Location, bool>);
+pub(crate) struct RepeatedValues {
+    /// The places of values, with whether replicas have them.
+    places: HashMap<Location, bool>,
+    /// The uses of a composite that have the site of an earlier use, and values of it.
+    sites: BTreeMap<usize, SameSite>,
+}
+
+/// An earlier use of a composite, the first value that both have, and how bad that is.
+type SameSite = (usize, SmolStr, Severity);
 
 impl RepeatedValues {
     /// True if the value at this place is one of them.
     pub(crate) fn contains(&self, at: Location) -> bool {
-        self.0.contains_key(&at)
+        self.places.contains_key(&at)
+    }
+
+    /// True if a component is inside such a use.
+    pub(crate) fn has_inside(&self, fleet: &Fleet<'_>, member: usize) -> bool {
+        !self.sites.is_empty() && around(fleet, member).any(|around| self.sites.contains_key(&around))
+    }
+
+    /// Notes that two components have a value. True if that comes of two uses of a composite in one site.
+    fn is_of_site(&mut self, fleet: &Fleet<'_>, value: &SmolStr, users: [User; 2], severity: Severity) -> bool {
+        let Some([first, other]) = apart(fleet, users) else { return false };
+        let [one, two] = [first, other].map(|user| &fleet.members[user]);
+        let is_named = [one, two].iter().all(|user| user.component.site.is_some());
+        if !is_named || one.site != two.site || users[0].place != users[1].place {
+            return false;
+        }
+        let (.., known) = self.sites.entry(other).or_insert_with(|| (first, value.clone(), severity));
+        *known = severity.max(*known);
+        true
+    }
+
+    /// Reports the uses of a composite in one site.
+    pub(crate) fn finish(self, fleet: &Fleet<'_>, report: &mut Report<'_>) -> Self {
+        for (other, (first, value, severity)) in &self.sites {
+            let [first, other] = [first, other].map(|user| &fleet.members[*user]);
+            let (Some(there), Some(here)) = (&first.component.site, &other.component.site) else { continue };
+            let [one, two] = [first, other].map(|user| quoted(user.path()));
+            let (site, value) = (quoted(&other.site), quoted(value));
+            let message = format!("{one} and {two} are both in the site {site}, and both have a component {value}");
+            let one = Diagnostic::new(&codes::NOT_UNIQUE, here.location, message).severity(*severity);
+            let one = one.help("give each its own `saoms:site`: IDs need to differ only within a site");
+            report.push(if there.location == here.location { one } else { one.label(there.location, "the first") });
+        }
+        self
     }
 
     /// True if replicas share the value at this place.
     pub(crate) fn is_of_replicas(&self, at: Location) -> bool {
-        self.0.get(&at) == Some(&true)
+        self.places.get(&at) == Some(&true)
     }
 }
 
@@ -84,15 +124,18 @@ impl<'a> Unique<'a> {
             let word = entry.main.unique.as_deref();
             if let Some(word) = word {
                 let first = *self.words.entry((site.clone(), word, value.clone())).or_insert(user);
-                if is_other(&first) {
-                    *self.repeated.0.entry(place).or_default() |= fleet.members[member].is_copy;
+                if is_other(&first) && !self.repeated.is_of_site(fleet, &value, [first, user], Severity::Error) {
+                    *self.repeated.places.entry(place).or_default() |= fleet.members[member].is_copy;
                     shared(&value, word, [first, user], entry.main, fleet, report);
                 }
             }
             if entry.is_task_id() {
                 let (first, of_first) = *self.tasks.entry((site.clone(), value.clone())).or_insert((user, word));
                 let is_reported = word.is_some() && word == of_first;
-                if is_other(&first) && !is_reported {
+                if is_other(&first)
+                    && !is_reported
+                    && !self.repeated.is_of_site(fleet, &value, [first, user], Severity::Warning)
+                {
                     task(&value, [first, user], fleet, report);
                 }
             }
@@ -137,12 +180,7 @@ fn shared(
 
 /// The same with the uses of composites that these two are in, which may be files of others: there people can act, too.
 fn in_uses(mut one: Diagnostic, users: [User; 2], fleet: &Fleet<'_>) -> Diagnostic {
-    let [first, other] = users.map(|user| {
-        let owner = |member: &usize| fleet.scopes[fleet.members[*member].scope].owner;
-        std::iter::successors(Some(user.member), owner).collect::<Vec<usize>>()
-    });
-    let apart = first.into_iter().rev().zip(other.into_iter().rev()).find(|(first, other)| first != other);
-    let uses = apart.into_iter().flat_map(<[usize; 2]>::from).filter(|member| fleet.inner(*member).is_some());
+    let uses = apart(fleet, users).into_iter().flatten().filter(|member| fleet.inner(*member).is_some());
     let mut names: Vec<String> = Vec::new();
     for component in uses.map(|member| fleet.members[member].component) {
         if one.labels.iter().all(|label| label.location != component.name.location) {
@@ -154,6 +192,18 @@ fn in_uses(mut one: Diagnostic, users: [User; 2], fleet: &Fleet<'_>) -> Diagnost
         true => one,
         false => one.help(format!("or make {} a site of its own with `saoms:site`", names.join(" or "))),
     }
+}
+
+/// A component and those that it is inside of.
+fn around(fleet: &Fleet<'_>, member: usize) -> impl Iterator<Item = usize> {
+    std::iter::successors(Some(member), |member| fleet.scopes[fleet.members[*member].scope].owner)
+}
+
+/// The outermost components around these two, or they themselves, that are different.
+fn apart(fleet: &Fleet<'_>, users: [User; 2]) -> Option<[usize; 2]> {
+    let [first, other] = users.map(|user| around(fleet, user.member).collect::<Vec<usize>>());
+    let mut both = first.into_iter().rev().zip(other.into_iter().rev());
+    both.find(|(first, other)| first != other).map(Into::into)
 }
 
 /// Tasks that share an ID run all the same, but people cannot tell them apart.
