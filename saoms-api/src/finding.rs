@@ -26,6 +26,11 @@ impl Place {
         Place { property: Some(name.into()), ..Place::default() }
     }
 
+    /// What gives a topic of the component another name: the new name in its `topicRename`, or else its site.
+    pub fn topic(name: &str) -> Place {
+        Place::property(format!("topicRename,{name}"))
+    }
+
     /// The same place in a component of a fleet.
     #[must_use]
     pub fn in_component(self, index: usize) -> Place {

@@ -5,6 +5,7 @@ use saoms_api::host::cdr;
 use saoms_api::{Chance, Time};
 
 use super::player::draw;
+use super::scenario::Before;
 use super::scenario::line::{read_outside, split};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
@@ -23,18 +24,19 @@ struct Reader {
     luggage: u32,
     /// The time of the last event of the line before.
     last: Time,
-    is_endless: bool,
+    before: Before,
 }
 
 impl Reader {
     fn new(seed: u64) -> Reader {
         let chance = Chance::for_component(seed, "(outside)");
-        Reader { chance, luggage: FIRST_LUGGAGE, last: Time::START, is_endless: false }
+        Reader { chance, luggage: FIRST_LUGGAGE, last: Time::START, before: Before::Start }
     }
 
     /// Reads one event of the line.
     fn part(&mut self, text: &str, now: Time) -> Result<Vec<TimedMessage>, TextFault> {
-        let (line, is_now) = read_outside(text, self.is_endless)?;
+        let (line, is_now) = read_outside(text, self.before)?;
+        self.before = Before::Event;
         place_is_known(&line)?;
         if line.times.is_none() && line.until.is_none() {
             let fault = TextFault::new(line.bytes, "found no last event, but a line from outside needs one");
@@ -197,7 +199,7 @@ mod tests {
                 "`random`: found `random`, expected a block such as `(3,1)`, or two corners such as `(1,0)..(10,10)`, None",
                 "`landing`: found no last event, but a line from outside needs one, None",
                 "`landing`: found more than 100000 events in a line from outside, None",
-                "`(3,1)..(3,1)`: found (3,1), where the luggage is already: expected another block, None",
+                "`(3,1)..(3,1)`: found (3,1), where the luggage starts: expected another block, None",
                 "`quickly`: found `quickly`, expected the end of the line, or `;` before the next event, None",
                 "`ü`: found `ü`, expected an event, `at`, `from` or `then` at the start of a line, None",
             ]

@@ -578,6 +578,18 @@ fn every_wrong_line_says_where_and_why() {
 }
 
 #[test]
+fn then_needs_a_line_before_it() {
+    for texts in [&["# early\nthen 6s landing 4"][..], &["", "then 6s landing 4"]] {
+        let findings = Scenario::read(texts).unwrap_err();
+        assert_eq!(
+            (findings[0].message(), findings[0].replacement()),
+            ("found `then` in the first line: there is no event before it to count from", Some("at"))
+        );
+    }
+    assert!(Scenario::read(&["at 1s landing 4", "then 6s landing 4"]).is_ok());
+}
+
+#[test]
 fn all_wrong_lines_are_found_at_once() {
     let (scenario, findings) =
         Scenario::read_partly(&["at 1s lading 1; at 2s landing 1", "then landing\nat 3s breakdown 1"]);
@@ -693,8 +705,9 @@ proptest! {
             line.push_str(value);
             line.push(' ');
         }
-        let read = Scenario::read(&[&line]).map(|scenario| scenario.lines().len());
-        prop_assert_eq!(read.map_err(|findings| format!("{line}: {findings:?}")), Ok(1));
+        // `then` needs a line before it.
+        let read = Scenario::read(&["at 0 end", &line]).map(|scenario| scenario.lines().len());
+        prop_assert_eq!(read.map_err(|findings| format!("{line}: {findings:?}")), Ok(2));
     }
 }
 

@@ -77,9 +77,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                     ),
                 };
                 findings.push(
-                    Finding::new(renamed(robot), message)
+                    Finding::new(Place::topic(topic).in_component(robot.index), message)
                         .severity(severity)
-                        .label(renamed(usual), "another robot of this world")
+                        .label(Place::topic(topic).in_component(usual.index), "another robot of this world")
                         .help(help),
                 );
             }
@@ -103,9 +103,4 @@ fn in_other_world(fleet: &FleetView<'_>, robot: &FleetRobot, world: usize, own: 
     Finding::new(Place::property("world").in_component(robot.index), message)
         .label(Place::component(own), "this world hears of the robot")
         .help(format!("wire the robot to `{own_path}`, or put it into the site of `{path}`"))
-}
-
-/// Place of the new names of a robot's topics.
-fn renamed(robot: &FleetRobot) -> Place {
-    Place::property("topicRename").in_component(robot.index)
 }

@@ -70,7 +70,7 @@ fn nothing_to_draw(
         format!("`random` needs an area to draw a block from, but no component publishes one on the topic `{heard}`");
     Finding::new(piece.place(spot), message)
         .label(
-            Place::property("topicRename").in_component(*index),
+            Place::topic(AREA.name()).in_component(*index),
             format!("this component publishes its area on the topic `{name}`"),
         )
         .help(together(AREA.name(), (fleet.components()[*index].path, name), ("the scenario", heard)))

@@ -12,8 +12,8 @@ mod environments;
 mod hearing;
 mod luggage;
 mod map;
-mod map_size;
 mod masters;
+mod motionless;
 mod number;
 mod robots;
 mod shifts;
@@ -38,7 +38,8 @@ saoms_api::fleet_rules!(
     environments::RULE,
     apart::RULE,
     shifts::RULE,
-    map_size::RULE,
+    map::size::RULE,
     broken_twice::RULE,
     worlds::RULE,
+    motionless::RULE,
 );

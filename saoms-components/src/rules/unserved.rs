@@ -8,7 +8,7 @@ use saoms_api::{Finding, Place};
 
 use super::hearing::{events, hearing, passed_on, site_of, together};
 use super::robots::{FleetRobot, may_be_others, publishers_beside_robots, robots, unless_elsewhere};
-use crate::environment::{Environment, EventSpec, Scenario};
+use crate::environment::{Environment, EnvironmentProperties, EventSpec, Scenario};
 use crate::master::{MasterEnvironment, MasterRobot};
 use crate::messages::{ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, ROBOT_STATE};
 use crate::robot::{Policy, Robot};
@@ -18,7 +18,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",
-        meaning: "A scenario has no effect: no component forwards its events, no robot or world receives them, or \
+        meaning: "A scenario has no effect: it has no events, no component forwards its events, no robot or world receives them, or \
             all robots are classic robots that sleep, and nothing wakes them. Components of other sites receive them \
             only on topics outside of sites.",
         severity: Severity::Warning,
@@ -30,9 +30,26 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
-    if may_be_others(fleet) {
-        return Vec::new();
+    let mut findings: Vec<Finding> = fleet.all::<Environment>().filter_map(|one| without_events(fleet, one)).collect();
+    if !may_be_others(fleet) {
+        findings.extend(without_effect(fleet));
     }
+    findings
+}
+
+/// A finding about a scenario that is given and has no line.
+fn without_events(fleet: &FleetView<'_>, (index, properties): (usize, EnvironmentProperties)) -> Option<Finding> {
+    let is_given = fleet.components()[index].values.iter().any(|(given, _)| given == "scenario");
+    let (scenario, faults) = Scenario::read_partly(&properties.scenario);
+    let is_empty = is_given && scenario.lines().is_empty() && faults.is_empty();
+    is_empty.then(|| {
+        Finding::new(Place::property("scenario").in_component(index), "this scenario has no events")
+            .help("write a line such as `at 6s luggage (3,1) to (3,10)`, or remove the property")
+    })
+}
+
+/// The findings about scenarios whose events do nothing.
+fn without_effect(fleet: &FleetView<'_>) -> Vec<Finding> {
     let scenarios = fleet.all::<Environment>();
     let scenarios: Vec<(usize, FirstEvents)> =
         scenarios.map(|(index, properties)| (index, FirstEvents::of(&properties.scenario))).collect();
@@ -45,19 +62,16 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         let served = known.entry(events).or_insert_with(|| Served::of(fleet, events, &woken));
         let (first, mistake) = served.find_mistake(has)?;
         let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
-        let finding = Finding::new(place, mistake.message).help(mistake.help.clone());
-        Some(match &mistake.other {
-            Some((other, label)) => {
-                let finding = finding.label(Place::property("topicRename").in_component(*other), label.clone());
-                match site_of(ENVIRONMENT.name(), events) {
-                    None | Some("") => finding,
-                    Some(site) => finding.label(
-                        Place::property("topicRename").in_component(*index),
-                        format!("the scenario is in the site `{site}`"),
-                    ),
-                }
-            }
-            None => finding,
+        let Some(other) = &mistake.other else {
+            return Some(Finding::new(place, mistake.message).help(mistake.help.clone()));
+        };
+        let finding = other.finding(fleet, mistake, place);
+        Some(match site_of(ENVIRONMENT.name(), events) {
+            None | Some("") => finding,
+            Some(site) => finding.label(
+                Place::topic(ENVIRONMENT.name()).in_component(*index),
+                format!("the scenario is in the site `{site}`"),
+            ),
         })
     });
     unless_elsewhere(fleet, judged.collect())
@@ -92,8 +106,35 @@ impl FirstEvents {
 struct Mistake {
     message: &'static str,
     help: String,
-    /// Another component, and what it says about it.
-    other: Option<(usize, String)>,
+    /// Another component that does not use the same topic.
+    other: Option<Other>,
+}
+
+/// A component that has another name of a topic than the scenario needs.
+struct Other {
+    index: usize,
+    topic: &'static str,
+    /// The name that the scenario needs.
+    needed: String,
+    label: String,
+}
+
+impl Other {
+    /// The finding at this component, if it gives the topic a new name or is in a site, or else at the scenario.
+    fn finding(&self, fleet: &FleetView<'_>, mistake: &Mistake, scenario: Place) -> Finding {
+        let Other { index, topic, needed, label } = self;
+        let (own, place) = (fleet.components()[*index].topic(topic), Place::topic(topic).in_component(*index));
+        if own == *topic {
+            return Finding::new(scenario, mistake.message).label(place, label.clone()).help(mistake.help.clone());
+        }
+        let finding =
+            Finding::new(place, format!("{}: {label}", mistake.message)).label(scenario, "the first such event");
+        match own.contains('/') || needed.contains('/') {
+            true => finding.help(mistake.help.clone()),
+            false if needed == topic => finding.help(format!("remove the pair `{topic},{own}`")),
+            false => finding.instead(needed),
+        }
+    }
 }
 
 /// What hinders the events of one name on the bus.
@@ -129,7 +170,11 @@ fn without_master(fleet: &FleetView<'_>, events: &str) -> Mistake {
     let own = fleet.components()[master].topic(ENVIRONMENT.name());
     let label = format!("this master forwards events of the topic `{own}`, but the scenario uses `{events}`");
     let help = together(ENVIRONMENT.name(), (fleet.components()[master].path, own), ("the scenario", events));
-    Mistake { message, help, other: Some((master, label)) }
+    Mistake {
+        message,
+        help,
+        other: Some(Other { index: master, topic: ENVIRONMENT.name(), needed: events.to_owned(), label }),
+    }
 }
 
 /// Where a component has to be to use a topic of this name on the bus.
@@ -157,7 +202,11 @@ fn not_brought(fleet: &FleetView<'_>, events: &str, luggage: &BTreeSet<&str>, wo
         let message = "no robot receives the luggage of this scenario";
         let own = (components[robot].path, topic(robot));
         let help = together(EVENT_LUGGAGE.name(), own, ("this luggage", told));
-        return Some(Mistake { message, help, other: Some((robot, label)) });
+        return Some(Mistake {
+            message,
+            help,
+            other: Some(Other { index: robot, topic: EVENT_LUGGAGE.name(), needed: (*told).to_owned(), label }),
+        });
     }
     let robots = robots(fleet);
     let hear: Vec<&FleetRobot> = robots.iter().filter(|robot| luggage.contains(topic(robot.index))).collect();
@@ -203,9 +252,13 @@ fn not_known<'r>(fleet: &FleetView<'_>, events: &str, robots: impl Iterator<Item
     let world = &fleet.components()[first?];
     let own = world.topic(ENVIRONMENT.name());
     let label = format!("this world receives luggage on the topic `{own}`, but this luggage is on `{events}`");
-    let message = "the world of the robots does not receive the luggage of this scenario: robots cannot collect it";
+    let message = "the world of the robots does not receive the luggage of this scenario, so robots cannot collect it";
     let help = together(ENVIRONMENT.name(), (world.path, own), ("this luggage", events));
-    Some(Mistake { message, help, other: Some((first?, label)) })
+    Some(Mistake {
+        message,
+        help,
+        other: Some(Other { index: first?, topic: ENVIRONMENT.name(), needed: events.to_owned(), label }),
+    })
 }
 
 /// Reason why landings and take-offs have no effect.
@@ -226,7 +279,11 @@ fn not_handled(fleet: &FleetView<'_>, events: &str) -> Option<Mistake> {
     let label = format!("this component receives them on the topic `{}`, but these are on `{told}`", topic(master));
     let own = (fleet.components()[master].path, topic(master));
     let help = together(EXCEPTIONAL_EVENT.name(), own, ("the scenario", told));
-    Some(Mistake { message, help, other: Some((master, label)) })
+    Some(Mistake {
+        message,
+        help,
+        other: Some(Other { index: master, topic: EXCEPTIONAL_EVENT.name(), needed: (*told).to_owned(), label }),
+    })
 }
 
 /// The names on the bus of the states that robots are told to take.

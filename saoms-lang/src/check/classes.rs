@@ -3,8 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use crate::check::fleet::class_index::ClassIndex;
-use crate::check::fleet::{Fleet, Kind};
+use crate::check::fleet::{Fleet, Kind, class_index::ClassIndex};
 use crate::check::options::Options;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, Severity, codes, nearest_few, quoted};

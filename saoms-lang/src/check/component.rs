@@ -5,9 +5,8 @@ use std::rc::Rc;
 use crate::assembly::TaskProperties;
 use crate::check::fleet::Member;
 use crate::check::loops;
-use crate::check::properties::findings::Subject;
+use crate::check::properties::findings::{Renamed, Subject};
 use crate::check::properties::given_values::PropertyValues;
-use crate::source::Location;
 
 /// Everything that is found out about one component.
 #[derive(Default)]
@@ -21,14 +20,6 @@ pub(crate) struct ComponentCheck<'a> {
     pub(crate) task: Option<TaskProperties>,
     /// The topics to which it gives new names.
     pub(crate) renamed: Rc<[Renamed]>,
-}
-
-/// A topic to which a component gives a new name.
-pub(crate) struct Renamed {
-    pub(crate) old: String,
-    pub(crate) old_at: Location,
-    pub(crate) new: String,
-    pub(crate) new_at: Location,
 }
 
 /// Soundness of a component.
@@ -57,7 +48,7 @@ impl<'a> ComponentCheck<'a> {
     /// The component as findings are about it.
     pub(crate) fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
         let (name, given) = (&member.component.name, &self.given);
-        let (values, places) = (given.own(), given.places());
-        Subject { what: "component", name, at: name.location, element: Some(member.component), values, places }
+        let (values, places, element) = (given.own(), given.places(), Some(member.component));
+        Subject { what: "component", name, at: name.location, element, renamed: &self.renamed, values, places }
     }
 }

@@ -1,8 +1,7 @@
 //! Tables of replicas whose names are expressions: which files they are is known when composites are unfolded.
 
 use crate::check::options::Options;
-use crate::check::report::Report;
-use crate::check::report::severities::Severities;
+use crate::check::report::{Report, severities::Severities};
 use crate::check::unfolding;
 use crate::check::unfolding::append_list::AppendList;
 use crate::diagnostic::Diagnostics;

@@ -42,7 +42,8 @@ fn may_hide_component(part: Element<'_>) -> bool {
     !is_known || part.is_unnamed() || part.descendants().skip(1).any(is_component)
 }
 
-/// True if the name of a component is read as it was meant, whatever else is wrong with the tag: it ends with its quote.
+/// True if the names of a component are read as they were meant, whatever else is wrong with the tag: they end with
+/// their quotes.
 fn has_readable_name(component: Element<'_>) -> bool {
     let text = component.document().text();
     let ends = |name: Attribute<'_>| {

@@ -380,7 +380,27 @@ fn components_in_different_sites_are_told_theirs() {
         ("world", "World", "S5008", "`World` is in the site `N`, but this luggage is in no site: remove"),
     ] {
         assert_hint(test, &told(test, &[("fleet.composite", &site(name))]), code, help);
+        // What topics have another name for it is no mistake of its own.
+        assert_hint(
+            test,
+            &told_of(test, &[("fleet.composite", &site(name))], &["--wiring", "fleet.composite"]),
+            code,
+            help,
+        );
     }
+    let renamed = hall(
+        "<component name=\"Master\">",
+        "<component name=\"Master\"><property name=\"topicRename\">ETOPIC,ETOPIC_2</property>",
+    );
+    let told_of = |test, files: &[(&str, &str)]| told_of(test, files, &["--wiring", "fleet.composite"]);
+    let all = told_of("one rename", &[("fleet.composite", &renamed)]);
+    assert_hint("one rename", &all, "S5008", "remove the pair `ETOPIC,ETOPIC_2`");
+    let both = ["World", "Environment"].iter().fold(renamed, |text, name| {
+        let component = format!("<component name=\"{name}\">");
+        text.replace(&component, &format!("{component}<property name=\"topicRename\">ETOPIC,E2</property>"))
+    });
+    let all = told_of("two renames", &[("fleet.composite", &both)]);
+    assert_hint("two renames", &all, "S5008", "replace `ETOPIC_2` with `E2`");
     let (robot, _) = parts();
     let other = robot.replace("name=\"Robot7\"", "name=\"Robot8\" xmlns:saoms=\"urn:saoms:1\" saoms:site=\"N\"");
     let other =

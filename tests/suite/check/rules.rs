@@ -317,6 +317,24 @@ fn only_what_no_full_battery_can_do_is_out_of_reach() {
     let range = with_scenario(&map, "at 1s luggage (0,0) to (1,0)..(30,2)");
     let part = "warning S5006 no robot can bring luggage to 32 of the 90 free blocks here: (20,0) is ";
     assert!(range.len() == 1 && range[0].starts_with(part), "{range:?}");
+    // A classic robot drives on with an empty battery, if it can go there.
+    let with_classic = |properties: &[(&str, &str)]| {
+        found(&[
+            ("World", "saoms.World", &[("map", &format!("{row}\n{}\n{row}", "@".repeat(60)))], false),
+            ("Environment", "saoms.Environment", &[("scenario", "at 1s luggage (40,2) to (30,2)")], false),
+            MASTER,
+            ("Robot1", "saoms.Robot", &[("chargeY", "2"), ("discharge", "2")], true),
+            ("Robot2", "saoms.Robot", &[&[("policy", "classic"), ("chargeX", "1")], properties].concat(), true),
+        ])
+    };
+    assert!(with_classic(&[("chargeY", "2")]).is_empty());
+    for properties in [&[("chargeY", "0")][..], &[("chargeY", "2"), ("asleep", "true")]] {
+        let told = with_classic(properties);
+        assert!(
+            told.len() == 1 && told[0].starts_with("error S5006 no robot can bring luggage from (40,2)"),
+            "{told:?}"
+        );
+    }
     let all = with_scenario(&map, "at 1s luggage (0,0) to (25,0)..(30,2)");
     assert!(all.len() == 1 && all[0].starts_with("error S5006 no robot can bring luggage to 18 of the 18"), "{all:?}");
     // Around a wall it is farther.
@@ -365,6 +383,11 @@ fn scenarios_of_which_nothing_comes_are_told() {
     );
     assert_eq!(with(&luggage, &[MASTER]), ["warning S5008 there is no robot to bring the luggage of this scenario"]);
     assert_eq!(with(&luggage, &[MASTER, KEEPER, SLEEPER]), [sleep]);
+    for empty in ["", "# later", " ;\n"] {
+        let nothing = [("scenario", empty)];
+        assert_eq!(with(&nothing, &[MASTER, robot]), ["warning S5008 this scenario has no events"], "{empty:?}");
+    }
+    assert!(with(&[], &[MASTER, robot]).is_empty());
     assert_eq!(with(&landing, &[MASTER, SLEEPER]), [sleep], "nobody listens to landings");
     assert_eq!(
         with(&landing, &[MASTER, robot]),
@@ -440,7 +463,7 @@ fn a_world_that_is_pasted_again_is_told_once() {
 #[test]
 fn luggage_that_is_there_already_is_told() {
     let found = with_scenario("...\n...", "at 1s luggage (2,0) to (2,0); at 1s luggage (2,0) to (0,0)..(2,0)");
-    let message = "error S3014 component `Environment`: property `scenario`: found (2,0), where the luggage is already: expected another block";
+    let message = "error S3014 component `Environment`: property `scenario`: found (2,0), where the luggage starts: expected another block";
     assert_eq!(found, [message]);
 }
 

@@ -23,7 +23,7 @@ pub(super) fn read(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
             if let (Some(start), Some(end)) = (from.value.block(), to.value.block())
                 && start == end
             {
-                let message = format!("found {end}, where the luggage is already: expected another block");
+                let message = format!("found {end}, where the luggage starts: expected another block");
                 return Err(words.fault(words.text(&to.bytes), message).help("write two different blocks"));
             }
             EventSpec::Luggage { from, to }

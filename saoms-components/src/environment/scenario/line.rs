@@ -5,7 +5,7 @@ use saoms_api::rule::nearest;
 
 use super::random::RandomRange;
 use super::tokenizer::Tokenizer;
-use super::{Line, event};
+use super::{Before, Line, event};
 use crate::text::TextFault;
 
 pub(super) const STARTS: [&str; 3] = ["at", "from", "then"];
@@ -27,11 +27,11 @@ pub(in crate::environment) fn split(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Reads a line that may start with its event: the event happens now then, and the flag is true.
-pub(in crate::environment) fn read_outside(line: &str, endless: bool) -> Result<(Line, bool), TextFault> {
+pub(in crate::environment) fn read_outside(line: &str, before: Before) -> Result<(Line, bool), TextFault> {
     let mut words = Tokenizer::of(line, line);
     let first = words.peek().unwrap_or_default();
     if STARTS.contains(&first) {
-        return read_line(line, line, endless).map(|line| (line, false));
+        return read_line(line, line, before).map(|line| (line, false));
     }
     if !event::KINDS.contains(&first) {
         let near = nearest(first, event::KINDS.into_iter().chain(STARTS));
@@ -48,9 +48,9 @@ pub(in crate::environment) fn read_outside(line: &str, endless: bool) -> Result<
     Ok((line, true))
 }
 
-/// Reads a line of the text of a scenario. `endless`: true if the line before has no last event.
-pub(super) fn read(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
-    read_line(text, line, endless).map_err(|fault| {
+/// Reads a line of the text of a scenario.
+pub(super) fn read(text: &str, line: &str, before: Before) -> Result<Line, TextFault> {
+    read_line(text, line, before).map_err(|fault| {
         let Some(site) = site(line) else { return fault };
         let message = format!("found the site `{site}`, which stands only before events from outside (`--events`)");
         let fault = Tokenizer::of(text, line).fault(site, message);
@@ -67,7 +67,7 @@ fn site(line: &str) -> Option<&str> {
     (!is_word).then(|| &line[start..=before.len()])
 }
 
-fn read_line(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
+fn read_line(text: &str, line: &str, before: Before) -> Result<Line, TextFault> {
     let mut words = Tokenizer::of(text, line);
     let start = words.next("`at`, `from` or `then`")?;
     if !STARTS.contains(&start) {
@@ -78,7 +78,11 @@ fn read_line(text: &str, line: &str, endless: bool) -> Result<Line, TextFault> {
         let fault = words.wrong(start, "`at`, `from` or `then` at the start of a line").instead(near);
         return Err(fault.help("write a line such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`"));
     }
-    if start == "then" && endless {
+    if start == "then" && before == Before::Start {
+        let message = "found `then` in the first line: there is no event before it to count from";
+        return Err(words.fault(start, message).instead(Some("at")));
+    }
+    if start == "then" && before == Before::Endless {
         let message = "the line before has no end, so nothing can follow it";
         return Err(words.fault(start, message).help("end it: `100 times`, or `until 60s`"));
     }

@@ -83,6 +83,17 @@ pub struct Spanned<T> {
     pub bytes: Range<usize>,
 }
 
+/// What is before a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::environment) enum Before {
+    /// Nothing.
+    Start,
+    /// A line with a last event.
+    Event,
+    /// A line without a last event.
+    Endless,
+}
+
 /// Maximum number of wrong lines that are reported.
 const MOST_WRONG: usize = 1000;
 
@@ -108,17 +119,17 @@ impl Scenario {
     /// The correct lines, and findings about the wrong ones. After [`MOST_WRONG`] wrong lines reading stops.
     pub(crate) fn read_partly<S: AsRef<str>>(texts: &[S]) -> (Scenario, Vec<Finding>) {
         let (mut lines, mut findings): (Vec<Line>, Vec<Finding>) = (Vec::new(), Vec::new());
-        // True if the line before has no last event, so that `then` has nothing to count from. A wrong line counts as
-        // one with a last event.
-        let mut endless = false;
+        // What `then` counts from. A wrong line counts as one with a last event.
+        let mut before = Before::Start;
         for (place, text) in texts.iter().enumerate() {
             if let Some(fault) = table(text.as_ref()) {
                 findings.push(fault.finding("scenario", place));
                 continue;
             }
             for part in line::split(text.as_ref()) {
-                let read = line::read(text.as_ref(), part, endless);
-                endless = read.as_ref().is_ok_and(|line| line.times.is_none() && line.until.is_none());
+                let read = line::read(text.as_ref(), part, before);
+                let is_endless = read.as_ref().is_ok_and(|line| line.times.is_none() && line.until.is_none());
+                before = if is_endless { Before::Endless } else { Before::Event };
                 match read {
                     Ok(line) => lines.push(Line { text: place, ..line }),
                     Err(_) if findings.len() == MOST_WRONG => return (Scenario { lines }, findings),

@@ -18,6 +18,7 @@ use super::hearing::passed_on;
 use super::map::{LuggageLine, WorldMap, area, by_events};
 use super::robots::{FleetRobot, may_be_others, robots, unless_elsewhere};
 use crate::grid::Block;
+use crate::master::MasterRobot;
 use crate::messages::EVENT_LUGGAGE;
 use crate::robot::safe::is_within;
 use crate::robot::{Battery, Policy};
@@ -57,11 +58,13 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
     let passed_on = passed_on(fleet, events, EVENT_LUGGAGE.name());
     let hears = |robot: &&FleetRobot| passed_on.contains(fleet.components()[robot.index].topic(EVENT_LUGGAGE.name()));
     let robots: Vec<&FleetRobot> = robots.iter().filter(|robot| passed_on.is_empty() || hears(robot)).collect();
-    // Classic robots move with an empty battery; robots of other classes and other loops are unknown.
-    let is_known = |robot: &FleetRobot| {
-        let loops = &fleet.components()[robot.index].class.loops;
-        robot.properties.policy == Policy::Safe && loops.iter().all(|name| name.starts_with("saoms."))
-    };
+    // Robots of other classes and other loops are unknown.
+    let is_known =
+        |robot: &FleetRobot| fleet.components()[robot.index].class.loops.iter().all(|name| name.starts_with("saoms."));
+    // Nothing wakes a classic robot but a master.
+    let has_master = fleet.indices::<MasterRobot>().next().is_some();
+    let comes = |robot: &&FleetRobot| robot.properties.policy == Policy::Safe || has_master || !robot.properties.asleep;
+    let robots: Vec<&FleetRobot> = robots.into_iter().filter(comes).collect();
     if robots.is_empty() || !robots.iter().all(|robot| is_known(robot)) || may_be_others(fleet) {
         return Vec::new();
     }
@@ -75,8 +78,8 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
         luggage.iter().filter_map(|piece| out_of_reach(&area, &ranges, missed, piece, &mut ways)).collect()
     };
     let mut findings: Vec<Finding> = missed.as_ref().map_or_else(Vec::new, told);
-    // Luggage that no robot can bring is no load.
-    if findings.is_empty() {
+    // Luggage that no robot can bring is no load. What a classic robot does in a time with an empty battery is unknown.
+    if findings.is_empty() && robots.iter().all(|robot| robot.properties.policy == Policy::Safe) {
         findings.extend(overloaded(&area, &ranges, luggage, &mut ways));
     }
     findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], &ranges[0])).collect()
@@ -132,10 +135,14 @@ impl Range {
         };
         let consumption = robot.properties.consumption().ok()?;
         let moving = executions(area.properties.move_time);
+        // A classic robot drives on with an empty battery.
+        let is_limited = robot.properties.policy == Policy::Safe;
+        let charge_factor = consumption.charge_factor(period, moving).filter(|_| is_limited);
+        let full = Battery::new(100.0, consumption).executions_when_full(period, moving);
         Some(Range {
             charger: robot.charger,
-            charge_factor: consumption.charge_factor(period, moving),
-            full: Battery::new(100.0, consumption).executions_when_full(period, moving),
+            charge_factor,
+            full: if is_limited { full } else { u32::MAX },
             moving,
             handling: executions(area.properties.handling_time),
             period: period.as_secs_f64(),

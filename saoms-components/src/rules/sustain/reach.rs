@@ -152,9 +152,10 @@ impl<'m> Ways<'m> {
         Some(!is_connected)
     }
 
-    /// Maximum number of moves from its charger of any robot.
+    /// Maximum number of moves from its charger of any robot with a battery that limits it.
     fn most(&mut self, ranges: &[Range]) -> u32 {
-        *self.most.get_or_insert_with(|| ranges.iter().map(Range::most).max().unwrap_or(0))
+        let limited = || ranges.iter().filter(|range| range.full < u32::MAX).map(Range::most);
+        *self.most.get_or_insert_with(|| limited().max().unwrap_or(0))
     }
 
     /// Number of moves. The outer `None` means that the budget is used up, the inner one that no way leads there.

@@ -8,8 +8,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::assembly::LoopSpec;
-use crate::check::fleet::property_table::PropertyTable;
-use crate::check::fleet::{Fleet, Kind, Member};
+use crate::check::fleet::{Fleet, Kind, Member, property_table::PropertyTable};
 use crate::check::options::Options;
 use crate::check::parameters::Parameters;
 use crate::check::properties::findings::Subject;
@@ -41,7 +40,9 @@ impl Resolved<'_> {
         self.changed.iter().map(|one| {
             let (spec, name) = (&self.specs[one.place], &one.element.name);
             let (values, places) = (&spec.values, &one.places);
-            (&*spec.class, Subject { what: "loop", name, at: name.location, element: None, values, places })
+            let subject =
+                Subject { what: "loop", name, at: name.location, element: None, renamed: &[], values, places };
+            (&*spec.class, subject)
         })
     }
 }

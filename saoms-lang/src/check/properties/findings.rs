@@ -8,8 +8,14 @@ use crate::check::properties::given_values::ValuePlace;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Severity, quoted};
 use crate::model::ComponentElement;
-use crate::source::Location;
+use crate::source::{Location, Text};
 use crate::syntax::escaped;
+
+/// A topic to which a component gives a new name.
+pub(crate) struct Renamed {
+    pub(crate) old: Text,
+    pub(crate) new: Text,
+}
 
 /// A component, or a loop of one, for findings about it.
 #[derive(Clone, Copy)]
@@ -21,6 +27,7 @@ pub(crate) struct Subject<'a> {
     pub(crate) at: Location,
     /// The component, but none of a loop.
     pub(crate) element: Option<&'a ComponentElement>,
+    pub(crate) renamed: &'a [Renamed],
     pub(crate) values: &'a [(SmolStr, PropertyValue)],
     /// The place of each value.
     pub(crate) places: &'a [ValuePlace],
@@ -98,14 +105,18 @@ struct Located {
 }
 
 /// The place in the files. For a property that the composite does not give it is that of the reference of this name, of
-/// the site where topics are not renamed otherwise, or the component's name.
+/// the new name of the topic or else the site, or the component's name.
 fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Located {
-    let beside = place.property_name().zip(subject.element).and_then(|(name, element)| match name {
-        "topicRename" => element.site.as_ref(),
-        name => element.reference(name)?.targets.first(),
+    let beside = place.property_name().zip(subject.element).and_then(|(name, element)| match name.split_once(',') {
+        Some((_, topic)) => {
+            let renamed = subject.renamed.iter().find(|one| *one.old == *topic).map(|one| &one.new);
+            renamed.or(element.site.as_ref())
+        }
+        None => element.reference(name)?.targets.first(),
     });
+    let at = beside.map_or(subject.at, |text| text.location);
     let nowhere =
-        Located { at: beside.map_or(subject.at, |text| text.location), source: None, text: None, is_xml: false };
+        Located { at, source: None, text: beside.map(|text| text.value.clone()), is_xml: report.is_xml(at.file) };
     let given = place.property_name().and_then(|name| subject.value(name));
     let Some((values, given)) = given else { return nowhere };
     let Some(&first) = given.places.first() else { return nowhere };

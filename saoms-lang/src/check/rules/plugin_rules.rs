@@ -9,8 +9,7 @@ use saoms_api::rule::{ClassView, ComponentView, FleetView};
 
 use crate::assembly::{LoopSpec, on_bus};
 use crate::check::component::ComponentCheck;
-use crate::check::fleet::class_index::ClassIndex;
-use crate::check::fleet::{Fleet, Member};
+use crate::check::fleet::{Fleet, Member, class_index::ClassIndex};
 use crate::check::properties::findings::{Subject, diagnostic};
 use crate::check::report::Report;
 use crate::check::tasks::unique_values::RepeatedValues;
@@ -181,18 +180,18 @@ impl<'s, 'f> Facts<'s, 'f> {
         };
         let Some(first) = subject(0) else { return };
         let all = || parts.iter().filter_map(part);
-        let wires = all().map(|(place, _, class)| {
-            let ends = class.references.iter().zip(&wiring[place]);
-            let known = ends.flat_map(|(reference, targets)| {
-                let known = targets.iter().flatten().filter_map(|provider| indices.get(&provider.member));
-                known.map(|index| (reference.name.as_str(), *index))
-            });
-            known.collect()
-        });
-        let wires: Vec<Vec<(&str, usize)>> = wires.collect();
+        let wires: Vec<Vec<(&str, usize)>> = all()
+            .map(|(place, _, class)| {
+                let ends = class.references.iter().zip(&wiring[place]);
+                let known = ends.flat_map(|(reference, targets)| {
+                    let known = targets.iter().flatten().filter_map(|provider| indices.get(&provider.member));
+                    known.map(|index| (reference.name.as_str(), *index))
+                });
+                known.collect()
+            })
+            .collect();
         let mut classes = ClassViews::new();
-        let renamed = all().map(|(place, check, class)| renamed(&fleet.members[place], check, class));
-        let renamed: Vec<Vec<(&str, Cow<'_, str>)>> = renamed.collect();
+        let renamed: Vec<_> = all().map(|(place, check, class)| renamed(&fleet.members[place], check, class)).collect();
         let pairs = renamed.iter().map(|all| all.iter().map(|(declared, on_bus)| (*declared, &**on_bus)).collect());
         let renamed: Vec<Vec<(&str, &str)>> = pairs.collect();
         let views =
@@ -206,18 +205,15 @@ impl<'s, 'f> Facts<'s, 'f> {
                 renamed,
                 wires,
             });
-        let views: Vec<ComponentView<'_>> = views.collect();
+        let views: Vec<_> = views.collect();
         let view = FleetView::new(&views).without(missing);
         for rule in rules {
-            let findings = match rule.check(&view) {
-                Ok(findings) => findings,
-                Err(failure) => {
-                    let message = format!("the rule {} failed: {failure}", rule.code().name);
-                    let one = Diagnostic::new(rule.code(), first.at, message).severity(Severity::Warning);
-                    report.push(one.help("this is a fault of the rule, not of the fleet"));
-                    continue;
-                }
-            };
+            let findings = rule.check(&view).unwrap_or_else(|failure| {
+                let message = format!("the rule {} failed: {failure}", rule.code().name);
+                let one = Diagnostic::new(rule.code(), first.at, message).severity(Severity::Warning);
+                report.push(one.help("this is a fault of the rule, not of the fleet"));
+                Vec::new()
+            });
             for finding in &findings {
                 let severity = finding.own_severity().unwrap_or(rule.code().severity);
                 let own = finding.place().component_index().and_then(subject).unwrap_or(first);
@@ -225,13 +221,9 @@ impl<'s, 'f> Facts<'s, 'f> {
                     Some(place) => report.about(&fleet.members[*place]),
                     None => report.about_all(),
                 }
-                let Some(one) = diagnostic(rule.code(), severity, finding, own, &subject, report) else {
-                    continue;
-                };
+                let one = diagnostic(rule.code(), severity, finding, own, &subject, report);
                 // A value that two components share is faulty already.
-                if !repeated.contains(one.location) {
-                    report.push(one);
-                }
+                one.filter(|one| !repeated.contains(one.location)).into_iter().for_each(|one| report.push(one));
             }
         }
     }

@@ -8,8 +8,9 @@ use std::time::Duration;
 use saoms_api::host::{TopicKind, format_duration};
 
 use crate::assembly::{Assembly, Loss, TopicEnd, Traffic, TrafficTopic, on_bus};
-use crate::check::component::{ComponentCheck, Renamed};
+use crate::check::component::ComponentCheck;
 use crate::check::fleet::{Fleet, Member};
+use crate::check::properties::findings::Renamed;
 use crate::check::report::Report;
 use crate::check::rules::similar_names::{Name, Similar};
 use crate::check::tasks::Task;
@@ -21,6 +22,7 @@ use crate::source::Location;
 pub(crate) struct ComponentPlaces {
     pub(crate) name: Location,
     pub(crate) renamed: Rc<[Renamed]>,
+    site: Option<Location>,
     /// The place of its `queue`.
     pub(crate) queue: Option<Location>,
 }
@@ -33,7 +35,13 @@ pub(crate) fn places(fleet: &Fleet<'_>, checks: &[ComponentCheck<'_>]) -> Vec<Co
         let renamed = Rc::clone(&check.renamed);
         let class = fleet.class_of(place).filter(|class| class.class.declaration().is_periodic());
         let task = class.map(|class| Task { component, class, given: &check.given });
-        ComponentPlaces { name: component.name.location, renamed, queue: task.and_then(|task| task.place("queue")) }
+        let site = component.site.as_ref().map(|site| site.location);
+        ComponentPlaces {
+            name: component.name.location,
+            renamed,
+            site,
+            queue: task.and_then(|task| task.place("queue")),
+        }
     };
     runs.map(place).collect()
 }
@@ -43,10 +51,11 @@ pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mu
     let traffic = Traffic::of(assembly);
     let all = All { assembly, places };
     let mut similar = Similar::of(&traffic, |topic| topic.ends().all(|end| all.is_renamed(end, topic)));
-    let is_lone = |topic: &&TrafficTopic| topic.writers.is_empty() || topic.readers.is_empty();
+    let mut reported: HashSet<&str> = all.known(&traffic, report);
+    let is_known = |topic: &TrafficTopic| reported.contains(topic.name.as_str());
+    let is_lone = |topic: &&TrafficTopic| (topic.writers.is_empty() || topic.readers.is_empty()) && !is_known(topic);
     let mut lone: HashMap<&str, &TrafficTopic> =
         traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
-    let mut reported: HashSet<&str> = HashSet::new();
     for topic in &traffic.topics {
         if lone.contains_key(topic.name.as_str())
             && let Some(meant) = meant(topic, &mut similar)
@@ -80,9 +89,29 @@ struct All<'a> {
 }
 
 impl All<'_> {
+    /// The topics with other names than in the rest of the fleet, for a `topicRename` or a site that a rule told of.
+    fn known<'t>(&self, traffic: &'t Traffic, report: &mut Report<'_>) -> HashSet<&'t str> {
+        let places = report
+            .diagnostics()
+            .iter()
+            .flat_map(|one| std::iter::once(one.location).chain(one.labels.iter().map(|label| label.location)));
+        let told: HashSet<Location> = places.collect();
+        let base = |topic: &'t TrafficTopic| topic.name.rsplit('/').next();
+        let bases = |topic: &'t TrafficTopic| {
+            topic.ends().find_map(|end| {
+                let renamed = self.renamed(end, topic);
+                let mut at = renamed.map(|one| one.new.location).into_iter().chain(self.places[end.component].site);
+                at.any(|at| told.contains(&at)).then(|| [base(topic), renamed.map(|one| one.old.as_str())])
+            })
+        };
+        let bases: HashSet<&str> = traffic.topics.iter().filter_map(bases).flatten().flatten().collect();
+        let all = traffic.topics.iter().filter(|topic| base(topic).is_some_and(|base| bases.contains(base)));
+        all.map(|topic| topic.name.as_str()).collect()
+    }
+
     /// The place from which a component has the name of a topic.
     fn at(&self, end: &TopicEnd, topic: &TrafficTopic) -> Location {
-        self.renamed(end, topic).map_or(self.places[end.component].name, |one| one.new_at)
+        self.renamed(end, topic).map_or(self.places[end.component].name, |one| one.new.location)
     }
 
     /// `component X`, or `component X and 3 others`.

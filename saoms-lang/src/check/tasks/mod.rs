@@ -13,10 +13,9 @@ use saoms_api::host::declaration::Scalar;
 use saoms_api::host::format_duration;
 
 use crate::assembly::{OF_RESTART, Restart, TaskProperties, TopicRenames};
-use crate::check::component::{ComponentCheck, ComponentState, Renamed};
-use crate::check::fleet::class_index::ClassIndex;
-use crate::check::fleet::{Fleet, Kind};
-use crate::check::properties::given_values::PropertyValues;
+use crate::check::component::{ComponentCheck, ComponentState};
+use crate::check::fleet::{Fleet, Kind, class_index::ClassIndex};
+use crate::check::properties::{findings::Renamed, given_values::PropertyValues};
 use crate::check::report::{Report, list};
 use crate::check::tasks::renames::Renames;
 use crate::check::tasks::unique_values::{RepeatedValues, Unique};
@@ -50,7 +49,7 @@ impl Task<'_, '_> {
         if !self.given.is_sound {
             return None;
         }
-        let renames = renamed.iter().map(|one| (one.old.clone(), one.new.clone())).collect();
+        let renames = renamed.iter().map(|one| (one.old.to_string(), one.new.to_string())).collect();
         match TaskProperties::read(self.given.of_task(&self.class.table), TopicRenames(renames)) {
             Ok(properties) => {
                 self.deadline(&properties, report);
@@ -189,5 +188,6 @@ pub(crate) fn check_all<'a>(
     }
     report.about_all();
     renames.finish(fleet, report);
-    unique.repeated.finish(fleet, report)
+    unique.repeated.sites.values().for_each(|one| report.push(one.clone()));
+    unique.repeated
 }

@@ -5,9 +5,8 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
 
 use crate::assembly::topic_rename::{self, RenameFault};
-use crate::check::component::Renamed;
-use crate::check::fleet::Fleet;
-use crate::check::fleet::class_index::ClassIndex;
+use crate::check::fleet::{Fleet, class_index::ClassIndex};
+use crate::check::properties::findings::Renamed;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::{Location, Text};
@@ -34,12 +33,8 @@ impl Renames {
         let parts = report.parts(text);
         faults.into_iter().for_each(|fault| report.push(wrong(fault, text, &parts)));
         let place = *self.places.entry((text.location, text.to_string())).or_insert_with(|| {
-            let renamed = pairs.into_iter().map(|pair| Renamed {
-                old: pair.old.text.to_owned(),
-                old_at: parts.part(pair.old.at),
-                new: pair.new.text.to_owned(),
-                new_at: parts.part(pair.new.at),
-            });
+            let name = |name: topic_rename::Name<'_>| Text::new(name.text.into(), parts.part(name.at));
+            let renamed = pairs.into_iter().map(|pair| Renamed { old: name(pair.old), new: name(pair.new) });
             self.all.push(List { renamed: renamed.collect(), members: Vec::new() });
             self.all.len() - 1
         });
@@ -56,7 +51,7 @@ impl Renames {
             let used: BTreeSet<&str> = classes.values().flat_map(|class| topics(class)).collect();
             let listed: HashSet<&str> = renamed.iter().map(|one| one.old.as_str()).collect();
             let others: Vec<&str> = used.iter().copied().filter(|topic| !listed.contains(topic)).collect();
-            for Renamed { old: name, old_at, .. } in renamed.iter().filter(|one| !used.contains(one.old.as_str())) {
+            for Renamed { old: name, .. } in renamed.iter().filter(|one| !used.contains(one.old.as_str())) {
                 let mut classes = classes.keys();
                 let whose = match (classes.next(), classes.len()) {
                     (Some(only), 0) => format!("class {} uses no topic", quoted(only)),
@@ -66,7 +61,8 @@ impl Renames {
                 let known = ("topics that keep their names are", others.iter().copied());
                 for member in members {
                     report.about(&fleet.members[*member]);
-                    let one = report.unknown(&codes::RENAME_UNUSED, *old_at, message.clone(), name, known.clone());
+                    let one =
+                        report.unknown(&codes::RENAME_UNUSED, name.location, message.clone(), name, known.clone());
                     report.push(match others.is_empty() {
                         true => one.help("remove the pair: all topics there have new names already"),
                         false => one,

@@ -6,9 +6,9 @@ use saoms_api::host::TopicKind;
 use smol_str::SmolStr;
 
 use crate::assembly::on_bus;
-use crate::check::component::Renamed;
 use crate::check::fleet::Member;
 use crate::check::fleet::class_index::ClassIndex;
+use crate::check::properties::findings::Renamed;
 use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::ClassTopic;
@@ -49,9 +49,9 @@ impl<'a> Topics<'a> {
         let subscribed = class.subscribes.iter().copied().filter(|topic| !class.publishes.contains(topic));
         let subscribed = subscribed.map(|topic| ("subscribes to", topic));
         for (verb, topic) in published.chain(subscribed) {
-            let renamed = renamed.iter().find(|one| one.old == topic.name);
+            let renamed = renamed.iter().find(|one| *one.old == *topic.name);
             let name = on_bus(&member.site, renamed.map_or(&topic.name, |renamed| &renamed.new));
-            let place = renamed.map_or(member.component.name.location, |renamed| renamed.new_at);
+            let place = renamed.map_or(member.component.name.location, |renamed| renamed.new.location);
             let end = End { component: member.path(), place, declaration: topic, verb };
             match self.ends.get(&*name) {
                 None => _ = self.ends.insert(name.into_owned(), end),

@@ -5,9 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
-use crate::check::fleet::class_index::ClassIndex;
-use crate::check::fleet::property_table::TableEntry;
-use crate::check::fleet::{Fleet, Member};
+use crate::check::fleet::{Fleet, Member, class_index::ClassIndex, property_table::TableEntry};
 use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::Report;
 use crate::check::unfolding::replica_plan::with_index;
@@ -48,12 +46,9 @@ pub(crate) struct Unique<'a> {
 pub(crate) struct RepeatedValues {
     /// The places of values, with whether replicas have them.
     places: HashMap<Location, bool>,
-    /// The uses of a composite that have the site of an earlier use, and values of it.
-    sites: BTreeMap<usize, SameSite>,
+    /// What is wrong with uses of a composite that have the site of an earlier use, and values of it.
+    pub(crate) sites: BTreeMap<usize, Diagnostic>,
 }
-
-/// An earlier use of a composite, the first value that both have, and how bad that is.
-type SameSite = (usize, SmolStr, Severity);
 
 impl RepeatedValues {
     /// True if the value at this place is one of them.
@@ -67,31 +62,21 @@ impl RepeatedValues {
     }
 
     /// Notes that two components have a value. True if that comes of two uses of a composite in one site.
-    fn is_of_site(&mut self, fleet: &Fleet<'_>, value: &SmolStr, users: [User; 2], severity: Severity) -> bool {
+    fn is_of_site(&mut self, fleet: &Fleet<'_>, value: &str, users: [User; 2], severity: Severity) -> bool {
         let Some([first, other]) = apart(fleet, users) else { return false };
         let [one, two] = [first, other].map(|user| &fleet.members[user]);
-        let is_named = [one, two].iter().all(|user| user.component.site.is_some());
-        if !is_named || one.site != two.site || users[0].place != users[1].place {
+        let (Some(there), Some(here)) = (&one.component.site, &two.component.site) else { return false };
+        if one.site != two.site || users[0].place != users[1].place {
             return false;
         }
-        let (.., known) = self.sites.entry(other).or_insert_with(|| (first, value.clone(), severity));
-        *known = severity.max(*known);
-        true
-    }
-
-    /// Reports the uses of a composite in one site.
-    pub(crate) fn finish(self, fleet: &Fleet<'_>, report: &mut Report<'_>) -> Self {
-        for (other, (first, value, severity)) in &self.sites {
-            let [first, other] = [first, other].map(|user| &fleet.members[*user]);
-            let (Some(there), Some(here)) = (&first.component.site, &other.component.site) else { continue };
-            let [one, two] = [first, other].map(|user| quoted(user.path()));
-            let (site, value) = (quoted(&other.site), quoted(value));
+        let known = self.sites.entry(other).or_insert_with(|| {
+            let [one, two, site, value] = [one.path(), two.path(), &two.site, value].map(quoted);
             let message = format!("{one} and {two} are both in the site {site}, and both have a component {value}");
-            let one = Diagnostic::new(&codes::NOT_UNIQUE, here.location, message).severity(*severity);
-            let one = one.help("give each its own `saoms:site`: IDs need to differ only within a site");
-            report.push(if there.location == here.location { one } else { one.label(there.location, "the first") });
-        }
-        self
+            let one = Diagnostic::new(&codes::NOT_UNIQUE, here.location, message).other(there.location, "the first");
+            one.help("give each its own `saoms:site`: IDs need to differ only within a site").severity(severity)
+        });
+        known.severity = severity.max(known.severity);
+        true
     }
 
     /// True if replicas share the value at this place.

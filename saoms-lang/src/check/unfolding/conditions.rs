@@ -174,11 +174,8 @@ impl<'a> Unfolding<'a, '_, '_> {
     pub(crate) fn complex(&mut self, component: &ComponentElement, instance: &Instance) -> bool {
         let Some(open) = self.open.last() else { return false };
         let texts = all_complex_texts(component, &open.composite.document).into_iter();
-        let faulty = texts.filter_map(|text| {
-            let faults = render(&text, &mut |name| instance.value(name)).err()?;
-            Some((text, faults))
-        });
-        let faulty: Vec<_> = faulty.collect();
+        let faulty = texts.filter_map(|text| Some((render(&text, &mut |name| instance.value(name)).err()?, text)));
+        let faulty: Vec<_> = faulty.map(|(faults, text)| (text, faults)).collect();
         self.faults(&instance.names, &faulty);
         !faulty.is_empty()
     }

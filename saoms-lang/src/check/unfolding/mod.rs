@@ -17,8 +17,7 @@ use crate::check::fleet::{Fleet, Scope, Unit};
 use crate::check::judged::Faulty;
 use crate::check::options::Options;
 use crate::check::parameters::Parameters;
-use crate::check::report::Report;
-use crate::check::report::severities::Severities;
+use crate::check::report::{Report, severities::Severities};
 use crate::check::unfolding::append_list::{AppendList, Appender};
 use crate::check::unfolding::replica_plan::Plan;
 use crate::check::values::replica::Replica;
@@ -183,6 +182,13 @@ impl<'a> Unfolding<'a, '_, '_> {
         if hidden.components {
             self.fault(unit);
         }
+        // The second name of a component may be the one that is meant.
+        let twice = composite.components.iter().flat_map(|one| {
+            let attributes = one.origin.element(&composite.document).written_attributes();
+            attributes.filter(|one| one.name() == "name").skip(1).map(|name| name.value().to_string())
+        });
+        let scope = self.fleet.units[unit].scope;
+        self.fleet.scopes[scope].missing.extend(twice);
         self.open.push(Open {
             place,
             composite,

@@ -1,5 +1,7 @@
 //! Map and luggage of a fleet, as rules use them.
 
+pub(super) mod size;
+
 use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::ops::Range;

@@ -3,9 +3,9 @@
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::map::areas;
+use super::areas;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5014",
         name: "map-size",
