@@ -14,7 +14,7 @@ pub(crate) struct FleetArguments {
     pub(crate) files: Vec<PathBuf>,
 
     /// Set the value of a composite property; may be repeated
-    #[arg(long = "set", value_name = "NAME=VALUE")]
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = setting)]
     pub(crate) settings: Vec<String>,
 
     /// Set the severity of a code to `allow`, `note`, `warning` or `error`, unless a composite sets it; may be repeated
@@ -60,4 +60,12 @@ pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
     };
     let size = digits.trim().parse::<u64>().ok().zip(scale).and_then(|(number, scale)| number.checked_mul(scale));
     size.ok_or_else(|| "expected a number of bytes, or a number with one of the units kB, MB, GB".to_owned())
+}
+
+/// A setting, which has to be one argument.
+fn setting(text: &str) -> Result<String, String> {
+    match text.contains('=') {
+        true => Ok(text.to_owned()),
+        false => Err(format!("found no `=`: write `--set {text}=VALUE`, without blanks around `=`")),
+    }
 }

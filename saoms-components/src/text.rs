@@ -29,6 +29,19 @@ impl TextFault {
         TextFault::new(bytes(text, part), message)
     }
 
+    /// The fault of a text that is the name of a file, where the contents are expected.
+    pub(crate) fn of_file_name(text: &str) -> Option<TextFault> {
+        let name = text.trim();
+        let (stem, ending) = name.rsplit_once('.').filter(|_| !name.contains(char::is_whitespace))?;
+        let is_name = !stem.is_empty()
+            && (3..=8).contains(&ending.len())
+            && ending.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit());
+        is_name.then(|| {
+            TextFault::of(text, name, format!("found the file name `{name}`, expected the contents of a file"))
+                .help(format!("write `file=\"{name}\"` in place of the value: the property is then read from the file"))
+        })
+    }
+
     /// Adds the probable correction.
     #[must_use]
     pub fn instead(self, meant: Option<impl Into<String>>) -> TextFault {

@@ -37,6 +37,9 @@ impl Map {
     /// # Errors
     /// The lines that do not fit, at most a thousand.
     pub fn read(text: &str) -> Result<Map, Vec<TextFault>> {
+        if let Some(fault) = TextFault::of_file_name(text) {
+            return Err(vec![fault]);
+        }
         let (mut header, mut faults) = (Header::default(), Vec::new());
         let mut rows: Vec<&str> = Vec::new();
         // The last empty line behind a row: only at the end of a map it means nothing.

@@ -65,6 +65,11 @@ impl MessageValidator {
             None => format!("component {sender}"),
         };
         let (sender, what, which) = (name(header.sender), M::WHAT, message.about());
+        let from = match sender.as_str() {
+            // No component has this name.
+            "`(outside)`" => "an event from outside (`--events`)".to_owned(),
+            _ => format!("what {sender} sent"),
+        };
         let problem = match problem {
             Problem::Foreign { robot, speaker } => {
                 format!("it is in the name of robot {robot}, for which {} speaks", name(speaker))
@@ -73,9 +78,7 @@ impl MessageValidator {
         };
         context.log(
             Level::Error,
-            format_args!(
-                "ignores what {sender} sent, {what} of {which}: {problem} (more of this kind is only counted)"
-            ),
+            format_args!("ignores {from}, {what} of {which}: {problem} (more of this kind is only counted)"),
         );
     }
 

@@ -143,9 +143,9 @@ fn pair<'a>(
         _ => {
             let piece = trimmed(text, whole);
             let message = match count {
-                0 => "a pair without names".to_owned(),
-                1 => format!("a pair with one name, `{}`", piece.text),
-                _ => format!("a pair has two names, found {count}"),
+                0 => "found no names, expected a pair `OLD,new`".to_owned(),
+                1 => format!("found one name in `{}`, expected a pair `OLD,new`", piece.text),
+                _ => format!("found {count} names, expected a pair `OLD,new`"),
             };
             faults.push(RenameFault { at: piece.at, message, other: None });
         }

@@ -218,12 +218,14 @@ impl Index {
     }
 
     /// The folders from one down, the upper ones first, as far as they are to be entered, and those that are not.
-    fn folders(&mut self, root: &Path, enters: impl Fn(&Path) -> bool) -> (Vec<PathBuf>, Vec<PathBuf>) {
+    pub(super) fn folders(&mut self, root: &Path, enters: impl Fn(&Path) -> bool) -> (Vec<PathBuf>, Vec<PathBuf>) {
         let (mut entered, mut others) = (Vec::new(), Vec::new());
         let mut waiting = VecDeque::from([root.to_owned()]);
         while let Some(next) = waiting.pop_front() {
             if next == root || enters(&next) {
-                waiting.extend(self.listing(&next).folders.iter().cloned());
+                // Below the root of the file system are the files of everybody.
+                let below = self.listing(&next);
+                waiting.extend(below.folders.iter().filter(|_| next != Path::new("/")).cloned());
                 entered.push(next);
             } else {
                 others.push(next);
@@ -337,11 +339,9 @@ fn may_be_read(kind: FileType, path: &Path) -> bool {
 /// [`load_named`](super::Finder::load_named) looks for them. Texts that count in place of files are among them.
 pub fn composites_near(folder: &Path, open: &OpenTexts) -> Vec<PathBuf> {
     let mut index = Index::new(open.clone());
-    let mut all = index.listing(folder).composites.clone();
-    for below in index.folders(&root(folder), |_| true).0.iter().filter(|below| *below != folder) {
-        all.extend_from_slice(&index.listing(below).composites);
-    }
-    all
+    let below = index.folders(&root(folder), |_| true).0.into_iter().filter(|below| below != folder);
+    let all = std::iter::once(folder.to_owned()).chain(below);
+    all.flat_map(|folder| index.listing(&folder).composites.clone()).collect()
 }
 
 /// The file that describes the contribution that a folder is in; `None` where there is none.

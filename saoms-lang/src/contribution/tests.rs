@@ -89,3 +89,9 @@ fn what_lies_beyond_the_entries_that_are_looked_at_is_said_to() {
         assert_eq!(index.names_around(folder.path()).len(), entries);
     }
 }
+
+#[test]
+fn below_the_root_of_the_file_system_nothing_is_searched() {
+    let mut index = Index::new(OpenTexts::default());
+    assert_eq!(index.folders(Path::new("/"), |_| true).0, [Path::new("/")]);
+}

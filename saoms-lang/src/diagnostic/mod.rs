@@ -134,7 +134,7 @@ impl Diagnostic {
     #[must_use]
     pub fn other(self, location: Location, text: impl Into<String>) -> Self {
         match location == self.location {
-            true => self.help("both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`"),
+            true => self.help("both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`"),
             false => self.label(location, text),
         }
     }

@@ -180,7 +180,7 @@ impl Failure {
             Self::Outside(real) => {
                 let message = "this file is outside the folder of the composite, and is not read".to_owned();
                 let help = format!(
-                    "it is {}: keep it in the folder of the composite or in its contribution, or allow it with `--allow-outside`",
+                    "move {} into the folder of the composite or its contribution, or allow it with `--allow-outside`",
                     quoted(&real.display().to_string())
                 );
                 (&codes::FILE_OUTSIDE, message, Some(help))

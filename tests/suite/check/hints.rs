@@ -44,6 +44,14 @@ fn assert_hint(test: &str, told: &[String], code: &str, help: &str) {
 fn what_was_probably_meant_is_proposed() {
     let map = |rows: &str| format!(r#""saoms.World"/><property name="map">{rows}</property>"#);
     for (test, from, to, code, help) in [
+        (
+            "scenario file",
+            "at 1s luggage (3,1) to (3,10)",
+            "scenario.txt",
+            "S3014",
+            "write `file=\"scenario.txt\"` in place of the value",
+        ),
+        ("map file", "\"saoms.World\"/>", &map("maps/map.txt"), "S3014", "write `file=\"maps/map.txt\"` in place of"),
         ("random", "(3,10)", "radnom", "S3014", "replace `radnom` with `random`"),
         ("on", "at 1s", "on 1s", "S3014", "replace `on` with `at`"),
         ("times", "1s luggage", "1s 10 luggage", "S3014", "replace `10` with `10 times`"),
@@ -242,7 +250,7 @@ fn one_fault_of_replicas_is_told_once() {
     ] {
         let told = told_of_replicas(test, &[inner], &[outer], table);
         assert_hint(test, &told, code, help);
-        assert!(told.iter().all(|line| !line.contains("both come from here")), "{test}: {told:#?}");
+        assert!(told.iter().all(|line| !line.contains("both take this value from here")), "{test}: {told:#?}");
     }
 }
 
@@ -286,11 +294,28 @@ fn a_robot_in_another_composite_than_the_world_is_not_given_a_target() {
     }
     let again = r#"<component name="B"><implementation.composite name="t:inner"/></component>"#;
     let all = told("twice", nested(&others, again));
-    assert!(all.iter().any(|line| line.contains("both come from here")), "{all:#?}");
+    assert!(all.iter().any(|line| line.contains("both take this value from here")), "{all:#?}");
     // Of two composites, both uses are where to act.
     let [(_, inner), (outer_name, outer)] = nested(&robot, &robot);
     let all = told("other", [("inner.composite", inner), (outer_name, outer)]);
     assert!(all.iter().any(|line| line.contains("or make `A` a site of its own with `saoms:site`")), "{all:#?}");
+}
+
+#[test]
+fn a_property_of_the_composite_in_the_wrong_form_is_told_once() {
+    let tick = "<property name=\"tick\">100ms</property>\n  <component name=\"World\"";
+    for (test, written, code, help) in [
+        ("value", "value=\"$tick\"", "S3007", "write `source=\"$tick\"`"),
+        ("braces", "source=\"${tick}\"", "S2023", "replace `${tick}` with `$tick`"),
+    ] {
+        let fleet = HANGAR.replace("<component name=\"World\"", tick);
+        let robots = fleet.find("saoms:count").unwrap();
+        let (before, robots) = fleet.split_at(robots);
+        let robots = robots.replacen("name=\"period\" value=\"500ms\"", &format!("name=\"period\" {written}"), 1);
+        let table = include_str!("../../../composites/hangar.csv");
+        let told = told(test, &[("fleet.composite", &format!("{before}{robots}")), ("hangar.csv", table)]);
+        assert_hint(test, &told, code, help);
+    }
 }
 
 #[test]

@@ -151,7 +151,7 @@ fn a_wrong_line_is_told_with_its_number_and_the_run_goes_on() {
                  `end`; did you mean `luggage`?\n    at 1s lugage (3,1) to (3,4)\n          ^^^^^^\n";
     assert!(text.contains(first), "{text}");
     assert!(text.contains("line 5 of the events is ignored: ") && !text.contains('\x1b'), "{text}");
-    assert!(text.contains("ignores what `(outside)` sent"), "{text}");
+    assert!(text.contains("ignores an event from outside (`--events`), "), "{text}");
     let report = yard.report();
     assert_eq!(report["events"], serde_json::json!({ "ignored": 3, "taken": 2 }));
     assert_eq!(report["luggage"]["delivered"], 1);

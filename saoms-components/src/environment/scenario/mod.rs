@@ -122,7 +122,7 @@ impl Scenario {
         // What `then` counts from. A wrong line counts as one with a last event.
         let mut before = Before::Start;
         for (place, text) in texts.iter().enumerate() {
-            if let Some(fault) = table(text.as_ref()) {
+            if let Some(fault) = table(text.as_ref()).or_else(|| TextFault::of_file_name(text.as_ref())) {
                 findings.push(fault.finding("scenario", place));
                 continue;
             }

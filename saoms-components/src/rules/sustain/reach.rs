@@ -38,8 +38,9 @@ pub(super) fn out_of_reach(
     of_spot.or_else(|| out_of_one_reach(area, ranges, piece, ways))
 }
 
-const HELP: &str = "put a charger closer to this block, or reduce the energy that the way needs; `discharge` is per \
-    execution, so slow moves (`moveTime`) and slow handling (`handlingTime`) need more energy; `dischargePerBlock` with `chargePerSecond` does not depend on the speed";
+const HELP: &str = "put a charger closer to this block, or let robots use less energy on the way: reduce `discharge`, \
+    which counts for each execution, or `moveTime` and `handlingTime`, which say how many executions a move and \
+    handling take; with `dischargePerBlock` and `chargePerSecond` the energy does not depend on these times";
 
 /// Finding for luggage whose ends are in the reach of some robot each, and of no robot both.
 fn out_of_one_reach(area: &WorldMap, ranges: &[Range], piece: &LuggageLine, ways: &mut Ways<'_>) -> Option<Finding> {

@@ -155,6 +155,9 @@ impl<'a> Parameters<'a> {
     fn no_path(&mut self, place: usize, source: &Text, report: &mut Report<'_>) -> Faulty {
         let unit = &mut self.units[place];
         unit.source = Some(Faulty);
+        // A replica has the value of an expression here.
+        let written = Text::new(report.written(source.location).into(), source.location);
+        let source = if braced(&written).is_some() { &written } else { source };
         if source.contains(['$', '(']) {
             let fault = braced(source).unwrap_or_else(|| {
                 PathFault::unknown(0..source.len(), format!("{} is not the path of a property", quoted(source)))

@@ -2,15 +2,12 @@
 
 use std::fmt;
 
-use saoms_api::host::PropertyValue;
-use saoms_api::host::declaration::{PropertyKind, Scalar};
+use saoms_api::host::{PropertyValue, declaration::PropertyKind, declaration::Scalar};
 use smol_str::SmolStr;
 
 use super::wrong_text;
 use crate::check::report::Report;
-use crate::check::values::faulty_values::FaultyValues;
-use crate::check::values::raw::{Piece, Raw};
-use crate::check::values::replica::Instance;
+use crate::check::values::{faulty_values::FaultyValues, raw::Piece, raw::Raw, replica::Instance};
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::registry::PropertyDeclaration;
 use crate::source::{Location, Text};
@@ -143,6 +140,8 @@ fn one_value(piece: &Piece<'_>, target: Target<'_>, report: &mut Report<'_>) -> 
 /// The value of a property that takes one text.
 fn text_value(text: &Text, target: Target<'_>, report: &mut Report<'_>) -> Option<Converted> {
     let wrong = |message: String| {
+        // It is meant to be used.
+        text.strip_prefix('$').into_iter().for_each(|name| report.diagnostics().add_meant(text.location.file, name));
         let one = wrong_text::diagnostic(text, target, &message, report.has_index());
         tell(one, target, report);
     };

@@ -236,9 +236,9 @@ impl<'a> Report<'a> {
         self.sources.get(file).text().trim_start_matches('\u{feff}').trim_start().starts_with('<')
     }
 
-    /// True if what is written at a place has expressions in it.
-    pub(crate) fn has_expression_at(&self, at: Location) -> bool {
-        has_expression(self.sources.snippet(at))
+    /// What is written at a place.
+    pub(crate) fn written(&self, at: Location) -> &'a str {
+        self.sources.snippet(at)
     }
 
     /// True if there are so many diagnostics of this code at this place's file that one more is counted and not shown.

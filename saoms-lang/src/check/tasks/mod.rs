@@ -9,8 +9,7 @@ pub(crate) mod unique_values;
 
 use std::collections::HashSet;
 
-use saoms_api::host::declaration::Scalar;
-use saoms_api::host::format_duration;
+use saoms_api::host::{declaration::Scalar, format_duration};
 
 use crate::assembly::{OF_RESTART, Restart, TaskProperties, TopicRenames};
 use crate::check::component::{ComponentCheck, ComponentState};

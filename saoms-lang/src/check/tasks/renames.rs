@@ -76,7 +76,7 @@ impl Renames {
 
 fn wrong(fault: RenameFault, text: &str, parts: &Parts) -> Diagnostic {
     let at = parts.part(fault.at.clone());
-    let one = Diagnostic::new(&codes::TOPIC_RENAME, at, format!("bad `topicRename`: {}", fault.message));
+    let one = Diagnostic::new(&codes::TOPIC_RENAME, at, format!("property `topicRename`: {}", fault.message));
     if let Some((other, what)) = fault.other {
         return one.label(parts.part(other), what);
     }

@@ -10,6 +10,7 @@ use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::Report;
 use crate::check::unfolding::replica_plan::with_index;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
+use crate::expression::has_expression;
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
@@ -151,7 +152,7 @@ fn shared(
     let is_own = earlier.scope == later.scope && own.clone().any(|text| text.location == user.place);
     report.push(match first.place == user.place {
         // Of replicas, whose expression is not different for each.
-        true if later.instance.is_some() && is_own && report.has_expression_at(user.place) => {
+        true if later.instance.is_some() && is_own && has_expression(report.written(user.place)) => {
             one.help("this value is the same for several replicas: `${index}` is different for each")
         }
         // Of replicas.

@@ -36,37 +36,37 @@ fn topic_renames() {
     .concat();
     expect![[r#"
         POSTOPIC
-        3:30-38 error S4002: bad `topicRename`: a pair with one name, `POSTOPIC`
+        3:30-38 error S4002: property `topicRename`: found one name in `POSTOPIC`, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,
-        3:30-39 error S4002: bad `topicRename`: a pair with one name, `POSTOPIC,`
+        3:30-39 error S4002: property `topicRename`: found one name in `POSTOPIC,`, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a,b
-        3:30-42 error S4002: bad `topicRename`: a pair has two names, found 3
+        3:30-42 error S4002: property `topicRename`: found 3 names, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a::ORDERS
-        3:42-48 error S4002: bad `topicRename`: a pair with one name, `ORDERS`
+        3:42-48 error S4002: property `topicRename`: found one name in `ORDERS`, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a::
-        3:42-42 error S4002: bad `topicRename`: a pair without names
+        3:42-42 error S4002: property `topicRename`: found no names, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
         A::B::C
-        3:30-37 error S4002: bad `topicRename`: a pair has two names, found 3
+        3:30-37 error S4002: property `topicRename`: found 3 names, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
         ,
-        3:30-31 error S4002: bad `topicRename`: a pair without names
+        3:30-31 error S4002: property `topicRename`: found no names, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a::POSTOPIC,b
-        3:42-50 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
+        3:42-50 error S4002: property `topicRename`: topic `POSTOPIC` is renamed twice
           3:30-38 first renamed here
         POSTOPIC,ORDERS::ORDERS,c
-        3:39-45 error S4002: bad `topicRename`: a chain: `POSTOPIC` is renamed to `ORDERS`, and `ORDERS` to `c`
+        3:39-45 error S4002: property `topicRename`: a chain: `POSTOPIC` is renamed to `ORDERS`, and `ORDERS` to `c`
           3:47-53 renamed again here
         POSTOPIC,POSTOPIC
-        3:39-47 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed to its own name
+        3:39-47 error S4002: property `topicRename`: topic `POSTOPIC` is renamed to its own name
           help: write `OLD,new` for each topic, and `::` between two of them
         POSTOPIC,a:ORDERS,b
-        3:30-49 error S4002: bad `topicRename`: a pair has two names, found 3
+        3:30-49 error S4002: property `topicRename`: found 3 names, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
           fix: replace `POSTOPIC,a:ORDERS,b` with `POSTOPIC,a::ORDERS,b` [3:30-49 "POSTOPIC,a::ORDERS,b"]
         POSTOPC, pos001::POS002, pos002
@@ -75,7 +75,7 @@ fn topic_renames() {
         3:47-53 warning S4003: class `example.Robot001` uses no topic `POS002`: nothing is renamed
           help: topics that keep their names are `ORDERS` and `POSTOPIC`
         &#80;OSTOPIC,a::POSTOPIC,b
-        3:46-54 error S4002: bad `topicRename`: topic `POSTOPIC` is renamed twice
+        3:46-54 error S4002: property `topicRename`: topic `POSTOPIC` is renamed twice
           3:30-42 first renamed here
     "#]]
     .assert_eq(&all);
@@ -146,7 +146,7 @@ fn faults_of_other_properties_hide_none_of_these() {
           help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         4:66-71 error S4004: `useJMS` is false, but component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
           help: set `useJMS` to true: without it a component cannot publish or subscribe
-        5:30-42 error S4002: bad `topicRename`: a pair has two names, found 3
+        5:30-42 error S4002: property `topicRename`: found 3 names, expected a pair `OLD,new`
           help: write `OLD,new` for each topic, and `::` between two of them
     "#]]
     .assert_eq(&robot(

@@ -362,8 +362,7 @@ fn slips_that_many_make_have_hints() {
         5 minutes => help: remove it, or use its value in a component with `source="$tick"`
         fix: replace `5 minutes` with `5min` [2:155-164 "5min"]
 
-        $tick => help: remove it, or use its value in a component with `source="$tick"`
-        help: write `source="$tick"` for the value of the property `tick` of the composite
+        $tick => help: write `source="$tick"` for the value of the property `tick` of the composite
 
         $(arg tick) => help: remove it, or use its value in a component with `source="$tick"`
         help: write `source="$tick"` for the value of the property `tick` of the composite

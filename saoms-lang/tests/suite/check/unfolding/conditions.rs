@@ -122,7 +122,7 @@ fn includes_and_composites_can_be_absent() {
         more:3:85-86 error S3013: components `N` and `In/N` have the same `ID` `N`
           3:18-20 used here
           help: give every robot its own `ID`
-          help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
+          help: both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`
     "#]]
     .assert_eq(&outcome(
         &[&fleet(inside), &more.replace("<wire source=\"M/other\" target=\"Nobody\"/>", "")],

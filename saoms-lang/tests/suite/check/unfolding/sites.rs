@@ -121,7 +121,7 @@ fn a_name_of_a_topic_has_no_empty_parts() {
     for name in ["/", "//", "//all", "/all//positions", "all/", "a//b"] {
         let renamed = hall("", &format!("<property name=\"topicRename\">POSTOPIC,{name}</property>"));
         let found = topics(&[&fleet, &renamed]);
-        assert!(found.contains(&format!("S4002: bad `topicRename`: `{name}` is not a topic name")), "{found}");
+        assert!(found.contains(&format!("S4002: property `topicRename`: `{name}` is not a topic name")), "{found}");
     }
 }
 

@@ -199,7 +199,7 @@ fn values_from_outside_are_of_the_type_of_the_property() {
           2:54-55 used here
           3:18-19 used here
           help: give every robot its own `ID`
-          help: both come from here: give each its own value from outside, or make each use of the composite a site with `saoms:site`
+          help: both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`
     "#]]
     .assert_eq(&outcome(&[&outer, &part("inner", "", &typed)], &[]));
 }
