@@ -94,12 +94,13 @@ fn between(robot: &str, world: &str) -> String {
     let ((robot, of_robot), (world, of_world)) = (ends(robot), ends(world));
     let promotes = |outer: &str, inner: &str, what: &str| match inner {
         "" => None,
-        inner => Some(format!("`{outer}` promotes the {what} of `{inner}`")),
+        inner => Some(format!("let `{outer}` promote the {what} of `{inner}` if it does not yet")),
     };
     let promotes =
         [promotes(&robot, &of_robot, "reference `world`"), promotes(&world, &of_world, "service `hardware`")];
     let promotes: Vec<String> = promotes.into_iter().flatten().collect();
-    format!("wire `{robot}` to `{world}`; for that, {}", promotes.join(", and "))
+    let target = &world[shared..];
+    format!("add `<reference name=\"world\" target=\"{target}\"/>` to `{robot}`, and {}", promotes.join(", and "))
 }
 
 /// A finding for a robot without a world if other robots in its composite have one; the innermost composite counts.

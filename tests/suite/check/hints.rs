@@ -281,12 +281,12 @@ fn a_robot_in_another_composite_than_the_world_is_not_given_a_target() {
         (
             "inner world",
             nested(&others, &robot),
-            "wire `Robot7` to `A`; for that, `A` promotes the service `hardware` of `World`",
+            "add `<reference name=\"world\" target=\"A\"/>` to `Robot7`, and let `A` promote the service `hardware` of `World`",
         ),
         (
             "inner robot",
             nested(&robot, &others),
-            "wire `A` to `World`; for that, `A` promotes the reference `world` of `Robot7`",
+            "add `<reference name=\"world\" target=\"World\"/>` to `A`, and let `A` promote the reference `world` of `Robot7`",
         ),
         ("both", nested(&format!("{others}{robot}"), ""), "<reference name=\"world\" target=\"World\"/>"),
     ] {
