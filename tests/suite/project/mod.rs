@@ -2,6 +2,7 @@
 
 mod architecture;
 mod comments;
+mod composites;
 mod editors;
 mod messages;
 mod pages;
