@@ -6,13 +6,13 @@ use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind, LOOP,
 };
-use crate::diagnostic::{Diagnostic, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Severity, codes, meant_boolean, nearest, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
     ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Origin, Replicas, SAOMS_NAMESPACE,
 };
 use crate::source::Text;
-use crate::syntax::Element;
+use crate::syntax::{Element, is_local_name};
 
 impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> ComponentElement {
@@ -164,16 +164,35 @@ impl Loader<'_> {
             }
             true
         });
+        let named = self.name_in_remove(element);
+        let (name, remove) = match named {
+            Some(name) => (name, None),
+            None => (self.name(element), self.boolean(element, "remove")),
+        };
         LoopElement {
             origin: Origin::of(element),
-            name: self.name(element),
+            name,
             class: self.optional(element, "class"),
             before: self.optional(element, "before"),
             after: self.optional(element, "after"),
-            remove: self.boolean(element, "remove"),
+            remove,
             properties,
             is_misread: self.diagnostics.len() > known || self.faults.iter().any(|one| element.span().contains(*one)),
         }
+    }
+
+    /// The name of a loop that is written in `remove`: one mistake, and not two attributes that are wrong.
+    fn name_in_remove(&mut self, element: Element<'_>) -> Option<Text> {
+        let attribute = element.attribute("remove").filter(|_| element.attribute("name").is_none())?;
+        let name = attribute.trimmed();
+        if !is_local_name(&name) || ["true", "false"].contains(&name.as_str()) || meant_boolean(&name).is_some() {
+            return None;
+        }
+        let message = format!("`remove` is {}, expected `true` or `false`", quoted(&name));
+        let meant = format!("name=\"{name}\" remove=\"true\"");
+        let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message);
+        self.report(one.suggest(format!("replace it with {}", quoted(&meant)), attribute.location(), meant));
+        Some(name)
     }
 
     /// Properties are of SCA, also in a loop.

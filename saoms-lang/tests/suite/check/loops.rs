@@ -74,6 +74,16 @@ fn a_loop_of_which_nothing_changes_is_told() {
 }
 
 #[test]
+fn the_name_of_a_loop_in_remove_is_told_once() {
+    assert_eq!(
+        faults("<saoms:loop remove=\"PathMS\"/>"),
+        "3:21-27 error S1011: `remove` is `PathMS`, expected `true` or `false`
+  fix: replace it with `name=\"PathMS\" remove=\"true\"` [3:13-28 \"name=\\\"PathMS\\\" remove=\\\"true\\\"\"]
+"
+    );
+}
+
+#[test]
 fn values_of_loops_come_from_properties_of_the_composite() {
     let text = cart("<saoms:loop name=\"CollisionMS\"><property name=\"patience\" source=\"$patience\"/></saoms:loop>")
         .replacen("<component", "<property name=\"patience\">9</property><component", 1);
