@@ -44,7 +44,7 @@ pub(super) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
         Some(_) => {
             format!("{} cannot follow `<`: the name of an element is expected", input.shown(start + 1))
         }
-        None => "the file ends behind `<`".to_owned(),
+        None => "the file ends after `<`".to_owned(),
     };
     input
         .fault(&codes::XML_NAME, start, start + 1, message)

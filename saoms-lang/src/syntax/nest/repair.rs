@@ -110,8 +110,10 @@ impl<'a> Nest<'_, 'a> {
                 one.mend("remove it", "")
             });
             let node = *self.node(same);
-            let is_twice =
-                node.after == self.count && input.slice(self.span(node.end).end, tag.start).trim().is_empty();
+            // An element that was broken off while it was typed may end at this very tag.
+            let is_twice = node.end < at
+                && node.after == self.count
+                && input.slice(self.span(node.end).end, tag.start).trim().is_empty();
             if is_early {
                 self.close_late(same, top, at);
             } else if is_twice {

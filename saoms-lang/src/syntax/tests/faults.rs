@@ -258,7 +258,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <xmlns:a/>
             1:2 [xmlns] S0112 the prefix `xmlns` is not declared
         <
-            1:1 [<] S0107 the file ends behind `<` | replace `<` with `&lt;`
+            1:1 [<] S0107 the file ends after `<` | replace `<` with `&lt;`
     "#]].assert_eq(&shown.collect::<String>().replace('\u{200b}', "\\u{200b}"));
 }
 
@@ -286,5 +286,14 @@ fn where_reading_stops_is_said() {
             checked"],
             "{text}"
         );
+    }
+}
+
+/// A start tag that is being typed, before the end tag of its own element, beside the root.
+#[test]
+fn the_end_tag_of_an_element_that_is_being_typed_is_one_fault_and_no_panic() {
+    for text in ["<x/><a</a><a", "<x/><a</a>", "<x/><a></a><a", "<x><a</a><a", "<x/><a </a> <a"] {
+        let faults = super::parse(super::FileId(0), &super::Arc::new(text.into())).faults;
+        assert!(!faults.is_empty(), "{text}");
     }
 }
