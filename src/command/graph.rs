@@ -15,7 +15,7 @@ use crate::fleet::{compiled, files_read};
 use crate::output::{Asked, Outputs, displayed, eprint, eprint_coloured};
 
 const EXIT_CODES: &str = "Exit codes:
-  0  drawn, also where the composite has mistakes: what is missing is drawn so
+  0  drawn; what a wrong composite lacks is marked in the picture
   1  the picture could not be written
   2  the file cannot be read or is not a composite, the format is missing, or the picture would overwrite a
      file that was read";

@@ -12,7 +12,7 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  written; the folder is on standard output
   1  a page could not be written
-  2  the folder is a file, or two pages would be one file";
+  2  the folder is a file, or two pages would have the same file name";
 
 /// Write manual pages of all commands
 #[derive(Debug, Args)]

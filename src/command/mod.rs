@@ -28,10 +28,10 @@ use crate::{Exit, guard};
 const EXIT_CODES: &str = "\
 Exit codes:
   0    done
-  1    failed, not as asked, or the output could not be written
+  1    failed, a check found a difference, or the output could not be written
   2    the input is wrong: a composite, a value, the command line; nothing was started
   130  ended by Ctrl-C, SIGTERM or SIGHUP
-The help of each command says what they mean for it.";
+The help of each command describes its own exit codes.";
 
 /// Deploys a fleet of self-adaptive robots from composite files.
 #[derive(Debug, Parser)]

@@ -18,7 +18,7 @@ Exit codes:
   1  standard output could not be written
   2  the input is wrong: a file without journal, or a report";
 
-/// Rebuild the report of a run that crashed or was killed, as far as its journal tells it
+/// Rebuild the report of a run that crashed or was killed, from its journal
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ReportArguments {

@@ -14,9 +14,9 @@ use crate::Exit;
 
 /// The signals of a crash, with what they mean.
 const CRASHES: [(c_int, &str); 5] = [
-    (libc::SIGSEGV, "SIGSEGV: it used memory that is not its own"),
-    (libc::SIGBUS, "SIGBUS: it used memory that is not there"),
-    (libc::SIGILL, "SIGILL: it ran what is no code, as `__builtin_trap` does"),
+    (libc::SIGSEGV, "SIGSEGV: it accessed memory that is not its own"),
+    (libc::SIGBUS, "SIGBUS: it accessed memory that does not exist"),
+    (libc::SIGILL, "SIGILL: it executed an invalid instruction, as `__builtin_trap` does"),
     (libc::SIGFPE, "SIGFPE: a division by zero"),
     (libc::SIGABRT, "SIGABRT: it called `abort`"),
 ];

@@ -9,7 +9,7 @@ macro_rules! reserved {
         pub const RESERVED: &[&str] = &[$($name),*];
 
         const MESSAGES: &[&str] = &[$(concat!(
-            "`", $name, "` is kept for the task of a periodic component, and cannot be a property of the class: rename the \
+            "`", $name, "` is reserved for the task of a periodic component, and cannot be a property of the class: rename the \
              field, or give the property another name with `#[property(name = \"...\")]`"
         )),*];
     };

@@ -132,7 +132,7 @@ impl Component for Environment {
         }
         let Some((_, player)) = &self.playing else {
             let waits = self.scenario.needs_area() && self.map.is_none();
-            return waits.then(|| "a `saoms.World`, which says how large the area is".to_owned());
+            return waits.then(|| "a `saoms.World`, which defines the area".to_owned());
         };
         let (first, passed_on) = self.open.first_key_value().filter(|_| player.is_over())?;
         let pieces = pieces(*first, self.open.len() - 1);
@@ -186,7 +186,7 @@ impl Environment {
     fn begin(&self, context: &mut Context<'_>) -> Option<(Time, Player)> {
         if self.scenario.needs_area() && self.map.is_none() {
             if context.execution() == 0 {
-                context.warn(format_args!("waits for a world to say how large the area is"));
+                context.warn(format_args!("waits for a world, which defines the area"));
             }
             return None;
         }
@@ -199,7 +199,7 @@ impl Environment {
         match event {
             None => {
                 context.count("luggage.ignored", 1);
-                context.log(Level::Error, format_args!("finds no free block for luggage where the scenario wants it"));
+                context.log(Level::Error, format_args!("finds no free block for luggage in the range of the scenario"));
                 Ok(())
             }
             Some(ScenarioEvent::Luggage { from, to }) => {

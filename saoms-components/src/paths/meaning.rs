@@ -61,7 +61,7 @@ fn signs(marks: &Marks<'_>, style: &Style, robots: &[Moved<'_>]) -> Vec<Entry> {
     let recording = marks.recording;
     let mut signs = Vec::new();
     if robots.is_empty() {
-        signs.push(Entry::Sign { sign: Sign::Note, text: "No robot said where it is.".to_owned() });
+        signs.push(Entry::Sign { sign: Sign::Note, text: "No robot published its position.".to_owned() });
     }
     let mut add = |is_there: bool, sign: Sign, text: &str| {
         if is_there {
@@ -82,7 +82,7 @@ fn signs(marks: &Marks<'_>, style: &Style, robots: &[Moved<'_>]) -> Vec<Entry> {
     add(readable && !recording.delivered.is_empty(), Sign::Deliver, &format!("luggage delivered{numbers}"));
     add(readable && !recording.open.is_empty(), Sign::Wait, "luggage from here is not delivered");
     let jumps = robots.iter().any(|(.., path)| path.legs.iter().any(|leg| leg.jump));
-    add(jumps, Sign::Unheard, "the robot did not say how it went");
+    add(jumps, Sign::Unheard, "the way of the robot is unknown");
     for (incident, text) in [
         (Incident::Collision, "collision"),
         (Incident::Stranded, "stands with an empty battery"),

@@ -35,7 +35,7 @@ impl RobotKnowledge {
         }
         let claims = self.variables.transporter || self.offers_help || self.untold.is_some();
         if claims || self.hardware.running().is_some() {
-            return Err("it is in the middle of something".into());
+            return Err("it is not idle".into());
         }
         let requests = self.lists.requests.open().iter().map(|request| request.job);
         let luggage = requests.map(|job| EventLuggage::request(job.luggage, job.from, job.to));

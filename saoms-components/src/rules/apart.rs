@@ -94,13 +94,13 @@ fn in_other_world(fleet: &FleetView<'_>, robot: &FleetRobot, world: usize, own: 
     let list = |index: usize| components[index].topic(topic);
     let [path, own_path] = [world, own].map(|index| components[index].path);
     let message = format!(
-        "robot {} is wired to `{path}`, which does not hear of it: it publishes on the topic `{}`, `{path}` listens \
+        "robot {} is wired to `{path}`, which does not receive its messages: it publishes on the topic `{}`, `{path}` listens \
         to `{}`",
         robot.number,
         list(robot.index),
         list(world)
     );
     Finding::new(Place::property("world").in_component(robot.index), message)
-        .label(Place::component(own), "this world hears of the robot")
+        .label(Place::component(own), "this world receives the messages of the robot")
         .help(format!("wire the robot to `{own_path}`, or put it into the site of `{path}`"))
 }

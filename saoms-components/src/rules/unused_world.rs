@@ -15,7 +15,7 @@ pub(super) static RULE: FleetRule = FleetRule {
         id: "S5009",
         name: "unused-world",
         meaning: "A fleet has a world, but some or all robots are not wired to it: the world does not check what \
-            they do. Of robots in other sites, those count that the world hears of.",
+            they do. A robot of another site counts if the world receives its messages.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -94,7 +94,7 @@ fn between(robot: &str, world: &str) -> String {
     let ((robot, of_robot), (world, of_world)) = (ends(robot), ends(world));
     let promotes = |outer: &str, inner: &str, what: &str| match inner {
         "" => None,
-        inner => Some(format!("let `{outer}` promote the {what} of `{inner}` if it does not yet")),
+        inner => Some(format!("let `{outer}` promote the {what} of `{inner}`, unless it does already")),
     };
     let promotes =
         [promotes(&robot, &of_robot, "reference `world`"), promotes(&world, &of_world, "service `hardware`")];

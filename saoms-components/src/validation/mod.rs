@@ -72,7 +72,7 @@ impl MessageValidator {
         };
         let problem = match problem {
             Problem::Foreign { robot, speaker } => {
-                format!("it is in the name of robot {robot}, for which {} speaks", name(speaker))
+                format!("it has the number of robot {robot}, which {} uses", name(speaker))
             }
             problem => problem.to_string(),
         };

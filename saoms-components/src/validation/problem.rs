@@ -63,10 +63,10 @@ impl fmt::Display for Problem {
         match *self {
             Problem::NoRobot => formatter.write_str("found robot 0, expected a number from 1 on"),
             Problem::Unknown { robot } => {
-                write!(formatter, "found robot {robot}, which did not say that it is there, expected one that did")
+                write!(formatter, "found robot {robot}, which has not announced itself, expected a robot that has")
             }
             Problem::Foreign { robot, speaker } => {
-                write!(formatter, "it is in the name of robot {robot}, for which component {speaker} speaks")
+                write!(formatter, "it has the number of robot {robot}, which component {speaker} uses")
             }
             Problem::Outside { block, area: Some((width, height)) } => write!(
                 formatter,
@@ -93,14 +93,12 @@ impl fmt::Display for Problem {
                 write!(formatter, "found a period of {micros} us, expected one of at most a day")
             }
             Problem::Response { robot } => {
-                write!(formatter, "found a response with robot {robot}, expected a request, which is of no robot")
+                write!(formatter, "found a response of robot {robot}, expected a request, which names no robot")
             }
             Problem::UnknownLuggage => {
-                formatter.write_str("nobody asked for it, expected the number of luggage that waits")
+                formatter.write_str("found a number that no request has, expected the number of waiting luggage")
             }
-            Problem::KnownLuggage => {
-                formatter.write_str("its number is known already, expected one of its own for each piece")
-            }
+            Problem::KnownLuggage => formatter.write_str("found a number that another piece has, expected a new one"),
             Problem::Area { width, height } => {
                 write!(formatter, "found another number of blocks than the expected {width} x {height}")
             }

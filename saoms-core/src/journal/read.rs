@@ -152,7 +152,7 @@ fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
         }
         let (read, what) = if line.starts_with("{\"end\"") {
             let last = serde_json::from_str(line).map(|EndLine { end: last }| end = Some(last));
-            (last, "this is not how a journal ends")
+            (last, "the end of the journal is malformed")
         } else if line.starts_with("{\"joined\"") {
             let joined = serde_json::from_str(line).map(|Joined { joined }| head.components.push(joined));
             (joined, "this is not a component of a journal")

@@ -128,10 +128,10 @@ impl fmt::Display for Occurrence {
             }
             Occurrence::Restarted { number } => write!(formatter, "restarted ({number})"),
             Occurrence::Replaced { continued: true } => {
-                formatter.write_str("is replaced by its new build, and goes on")
+                formatter.write_str("is replaced by its new build, and continues with the earlier state")
             }
             Occurrence::Replaced { continued: false } => {
-                formatter.write_str("is replaced by its new build, and begins anew")
+                formatter.write_str("is replaced by its new build, and starts without the earlier state")
             }
             Occurrence::Slow { budget } => write!(
                 formatter,
@@ -152,7 +152,7 @@ impl fmt::Display for Occurrence {
                 write!(formatter, "stopped, because executions could not start in time: {missed} would be left out")
             }
             Occurrence::Standstill(standstill) => standstill.fmt(formatter),
-            Occurrence::Abandoned => formatter.write_str("did not end in time and is left behind"),
+            Occurrence::Abandoned => formatter.write_str("did not end in time and is abandoned"),
         }
     }
 }

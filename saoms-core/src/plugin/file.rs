@@ -58,7 +58,7 @@ pub(super) fn read_section(path: &Path) -> Result<String, PluginError> {
     for segment in header.program_headers(endian, bytes).map_err(broken)? {
         let end = segment.p_offset(endian).checked_add(segment.p_filesz(endian));
         if end.is_none_or(|end| end > size) {
-            let message = "a part of it lies behind its end".to_owned();
+            let message = "a part of it lies beyond its end".to_owned();
             return Err(PluginError::Broken { path: path_of(), message });
         }
     }

@@ -45,7 +45,7 @@ table!(RuleTable: check;);
 pub(super) unsafe fn whole<T: Table>(table: *const T, of: &str) -> Result<*const T, String> {
     let name = T::NAME;
     if table.is_null() {
-        return Err(format!("its `{name}` of {of} is null: let its entry in the tables of the library lead to one"));
+        return Err(format!("its `{name}` of {of} is null: set it in the tables of the library"));
     }
     // SAFETY: as the caller promises; all tables begin with their size.
     let size = unsafe { *table.cast::<usize>() };

@@ -67,7 +67,7 @@ fn components_join_end_and_are_replaced_and_the_others_go_on() {
          [0.015 s] C: hears [b]
          [0.020 s] A: A 2 every 10ms
          [0.022 s] D: started
-         [0.022 s] C: is replaced by its new build, and begins anew
+         [0.022 s] C: is replaced by its new build, and starts without the earlier state
          [0.022 s] B: bye
          [0.022 s] B: has shut down
          [0.025 s] C: hears [b, d, bye]
@@ -135,8 +135,8 @@ fn new_components_call_each_other_and_those_that_are_replaced() {
          [0.005 s] P: new
          [0.005 s] Q: ready
          [0.005 s] Q: started
-         [0.005 s] P: is replaced by its new build, and begins anew
-         [0.005 s] A: is replaced by its new build, and begins anew
+         [0.005 s] P: is replaced by its new build, and starts without the earlier state
+         [0.005 s] A: is replaced by its new build, and starts without the earlier state
          [0.010 s] P: new
          [0.010 s] Q: asked
          [0.010 s] A: is told \"something from Q\"
@@ -166,7 +166,7 @@ fn a_component_of_another_class_begins_anew_and_its_callers_find_it() {
          [0.000 s] B: started
          [0.000 s] A: is told \"something from P\"
          [0.005 s] P: started
-         [0.005 s] A: is replaced by its new build, and begins anew
+         [0.005 s] A: is replaced by its new build, and starts without the earlier state
          [0.005 s] P: end of p
          [0.005 s] P: has shut down
          [0.010 s] A: is told \"something from P\"

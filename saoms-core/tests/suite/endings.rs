@@ -44,7 +44,7 @@ fn a_run_in_which_work_was_given_up_is_incomplete_whatever_ends_it() {
         "[0.020 s] A: failed: now
          Failed after 0.02 s
          - component `A` failed: now
-         - component `A`, which could say when the work is done, is gone",
+         - component `A` ended before it reported that its work is done",
     );
     let (report, _) = run("A actor period=10 each=[0: done; 0: gave-up]\nB actor", simulated(50));
     let votes = json!({"done": 1, "open": [], "given_up": ["A"]});
@@ -138,7 +138,7 @@ fn a_component_that_does_not_return_ends_a_virtual_run_and_is_named() {
     assert_eq!(outcome(&report), "Failed after 0.02 s\n- component `B` did not return within 60ms");
     assert_eq!(
         diary.lines(),
-        "[0.020 s] B: did not end in time and is left behind\n[0.020 s] C: last\n[0.020 s] A: last\n"
+        "[0.020 s] B: did not end in time and is abandoned\n[0.020 s] C: last\n[0.020 s] A: last\n"
     );
 }
 

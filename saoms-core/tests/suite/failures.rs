@@ -163,7 +163,7 @@ fn when_who_decides_about_the_end_is_gone_the_run_ends() {
         "[0.020 s] World: failed: earthquake
          Failed after 0.02 s
          - component `World` failed: earthquake
-         - component `World`, which could say when the work is done, is gone",
+         - component `World` ended before it reported that its work is done",
     );
 }
 

@@ -268,7 +268,7 @@ fn who_does_not_end_in_time_is_named_and_left_behind() {
     );
     assert_eq!(report.outcome.status, RunStatus::Interrupted);
     assert!(diary.lines().contains("C: last"), "{}", diary.lines());
-    assert!(diary.lines().contains("A: did not end in time and is left behind"));
+    assert!(diary.lines().contains("A: did not end in time and is abandoned"));
 }
 
 #[test]

@@ -107,9 +107,9 @@ pub fn composites_below(folder: &Path, sources: &mut Sources, diagnostics: &mut 
 fn unreadable(index: &mut Index, sources: &mut Sources, diagnostics: &mut Diagnostics) {
     for (folder, error) in index.unreadable.drain(..) {
         let file = sources.add(folder.display().to_string(), "");
-        let message = format!("the directory cannot be read: {error}");
+        let message = format!("the folder cannot be read: {error}");
         let one = Diagnostic::new(&codes::FILE_UNREADABLE, Span::empty(0).in_file(file), message);
-        diagnostics.push(one.help("make it readable, or name the other directories and files one by one"));
+        diagnostics.push(one.help("make it readable, or name the other folders and files one by one"));
     }
 }
 
@@ -117,8 +117,8 @@ fn unreadable(index: &mut Index, sources: &mut Sources, diagnostics: &mut Diagno
 fn unlisted(folder: &Path, is_empty: bool, index: &Index, sources: &mut Sources, diagnostics: &mut Diagnostics) {
     let (message, help) = match (index.is_cut, is_empty) {
         (false, false) => return,
-        (false, true) => ("a directory without composites", "the names of composites end with `.composite`"),
-        (true, _) => ("a directory with too many files in it and below", "name the directories in it one by one"),
+        (false, true) => ("the folder contains no composites", "the names of composites end with `.composite`"),
+        (true, _) => ("the folder contains too many files", "name the folders in it one by one"),
     };
     let file = sources.add(folder.display().to_string(), "");
     let one = Diagnostic::new(&codes::FILE_IS_DIRECTORY, Span::empty(0).in_file(file), message);

@@ -120,7 +120,7 @@ impl Imports {
                         quoted(&other.display().to_string())
                     ),
                     None => format!(
-                        "{own} imports the namespace {shown}, which no contribution that is known exports: name a composite of it beside this one, or write its folder as `location` of the `import`"
+                        "{own} imports the namespace {shown}, which no known contribution exports: name a composite of it beside this one, or write its folder as `location` of the `import`"
                     ),
                 }));
                 continue;

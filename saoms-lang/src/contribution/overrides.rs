@@ -175,7 +175,7 @@ fn cell(file: FileId, text: &str, at: usize, diagnostics: &mut Diagnostics) -> (
     let end = end_of(inside);
     let behind = Text::part_of(file, text, &text[inside..end]);
     if !behind.is_empty() {
-        let message = format!("{} behind a closing `\"`", quoted(&behind));
+        let message = format!("{} after a closing `\"`", quoted(&behind));
         let one = Diagnostic::new(&codes::OVERRIDES, behind.location, message);
         diagnostics.push(one.help("write a `\"` inside a quoted value twice"));
     }

@@ -58,8 +58,8 @@ macro_rules! codes {
 codes! {
     // S00: files.
     FILE_NOT_FOUND = "S0001" Error "file-not-found": "There is no file of this name.";
-    FILE_IS_DIRECTORY = "S0002" Error "file-is-directory": "A directory was found where a file was expected.";
-    FILE_UNREADABLE = "S0003" Error "file-unreadable": "The file exists and cannot be read.";
+    FILE_IS_DIRECTORY = "S0002" Error "file-is-directory": "A folder was found where a file was expected.";
+    FILE_UNREADABLE = "S0003" Error "file-unreadable": "The file exists, but cannot be read.";
     FILE_TOO_LARGE = "S0004" Error "file-too-large": "The file is larger than the size limit.";
     FILE_EMPTY = "S0005" Error "file-empty": "The file is empty, or has only white space.";
     FILE_BINARY = "S0006" Error "file-binary": "The file is not text.";
@@ -90,7 +90,7 @@ codes! {
     MISSING_ATTRIBUTE = "S1008" Error "missing-attribute" ("ASM13001"): "A required attribute is missing.";
     MISSING_TARGET_NAMESPACE = "S1009" Error "missing-target-namespace" ("ASM13001") [Judgement, OutlivesExpansion]: "A composite has no target namespace.";
     MISSING_IMPLEMENTATION = "S1010" Error "missing-implementation" ("ASM13001") [AbsentPart]: "A component has no implementation.";
-    ATTRIBUTE_VALUE = "S1011" Error "attribute-value" ("ASM13001"): "The value of an attribute is of the wrong form.";
+    ATTRIBUTE_VALUE = "S1011" Error "attribute-value" ("ASM13001"): "The value of an attribute has the wrong form.";
     MISPLACED_TEXT = "S1012" Error "misplaced-text" ("ASM13001") [Judgement]: "There is text in an element that contains elements only.";
     NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and its elements and attributes are ignored.";
     NEWER_ATTRIBUTE = "S1014" Warning "newer-attribute": "A file of SCA 1.0 has an attribute of SCA 1.1.";

@@ -127,7 +127,7 @@ impl Description {
         let root = document.root();
         let version = Version::from_namespace(root.namespace());
         let Some(version) = version.filter(|_| root.local_name() == CONTRIBUTION.name) else {
-            let help = "a file of this name says what a contribution runs, imports and exports";
+            let help = "a file of this name describes what a contribution runs, imports and exports";
             of_another_kind(root, CONTRIBUTION.name, help, faults, diagnostics);
             return made;
         };

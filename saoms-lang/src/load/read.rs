@@ -162,7 +162,7 @@ impl Failure {
         let not_there = "there is no such file".to_owned();
         let (code, message, help) = match self {
             Self::Directory => {
-                let message = "found a directory, expected a file".to_owned();
+                let message = "found a folder, expected a file".to_owned();
                 (&codes::FILE_IS_DIRECTORY, message, inside(path, expected.ending))
             }
             Self::Irregular => {
@@ -197,7 +197,7 @@ impl Failure {
                 Err(_) => (&codes::FILE_NOT_FOUND, not_there, near(path, expected.ending)),
             },
             Self::Io(error) if error.kind() == io::ErrorKind::NotADirectory => {
-                let help = "a part of its path is a file, not a directory".to_owned();
+                let help = "a part of its path is a file, not a folder".to_owned();
                 (&codes::FILE_NOT_FOUND, not_there, Some(help))
             }
             Self::Io(error) => (&codes::FILE_UNREADABLE, format!("the file cannot be read: {error}"), None),
@@ -298,8 +298,8 @@ fn near(path: &Path, ending: Option<&str>) -> Option<String> {
     if !folder.is_dir() {
         let shown = quoted(&folder.display().to_string());
         return Some(match folder.exists() {
-            true => format!("{shown} is not a directory"),
-            false => format!("there is no directory {shown}"),
+            true => format!("{shown} is not a folder"),
+            false => format!("there is no folder {shown}"),
         });
     }
     let wanted = path.file_name()?.to_string_lossy();

@@ -43,7 +43,7 @@ pub(super) fn one_fleet(
 
 fn unclear(folder: &Path, fleets: &[FolderFleet], sources: &mut Sources) -> Diagnostic {
     let file = sources.add(folder.display().to_string(), "");
-    let message = format!("a directory with {} fleets, and one is asked for", fleets.len());
+    let message = format!("found {} fleets in this folder, expected one", fleets.len());
     let firsts = fleets.iter().filter_map(|fleet| fleet.files.first());
     let mut names: Vec<String> = firsts.take(OFFERED).map(|path| quoted(&path.display().to_string())).collect();
     if fleets.len() > OFFERED {

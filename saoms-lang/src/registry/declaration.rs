@@ -259,7 +259,7 @@ impl InterfaceDeclaration {
         };
         match (own.get(place), others.get(place)) {
             (Some(own), None) => format!("it has no operation `{}`", signature(own)),
-            (None, Some(other)) => format!("it has an operation `{}` more", signature(other)),
+            (None, Some(other)) => format!("it also has the operation `{}`", signature(other)),
             (Some(own), Some(other)) if signature(own) != signature(other) => {
                 format!("its operation is `{}`, expected `{}`", signature(other), signature(own))
             }

@@ -17,7 +17,7 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
     properties(&class.properties)?;
     if let Some(taken) = class.properties.iter().find(|one| class.is_periodic() && RESERVED.contains(&&*one.name)) {
         return Err(format!(
-            "property `{}` has a name that is kept for the task of a periodic component: give it another one",
+            "property `{}` has a name that is reserved for the task of a periodic component: give it another one",
             taken.name
         ));
     }
@@ -28,7 +28,7 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
     loops(class)?;
     for alias in &class.also {
         if alias.name.trim().is_empty() {
-            return Err("a further name is empty".to_owned());
+            return Err("an alternative name is empty".to_owned());
         }
         for (name, value) in &alias.preset {
             let Some(property) = class.property(name) else {
@@ -46,7 +46,7 @@ fn loops(class: &ClassDeclaration) -> Result<(), String> {
     match &class.knowledge {
         Some(knowledge) => entries(&knowledge.entries)?,
         None if class.loops.all().any(|(_, list)| !list.is_empty()) => {
-            return Err("the class has loops and no knowledge".to_owned());
+            return Err("the class has loops but no knowledge".to_owned());
         }
         None => {}
     }

@@ -46,7 +46,7 @@ impl fmt::Display for Wiring<'_> {
         for topic in &traffic.topics {
             write!(out, "{}  {} topic of {}", one_line(&topic.name), topic.kind.name(), topic.message)?;
             if !topic.writers.is_empty() {
-                write!(out, ", {} messages/s at one an execution", rate(topic))?;
+                write!(out, ", {} messages/s if each execution sends one", rate(topic))?;
             }
             writeln!(out)?;
             for (does, ends) in [("published by", &topic.writers), ("read by", &topic.readers)] {

@@ -175,7 +175,7 @@ fn refused(site: &str, topic: &str, error: &InjectError) -> String {
             if !before.is_empty()
                 && let Some(meant) = meant =>
         {
-            format!("the site stands first: write `{meant}: {before} ...`")
+            format!("the site comes first: write `{meant}: {before} ...`")
         }
         ("", None) => error.to_string(),
         (site, None) => format!("this fleet has no sites: write the event without `{site}:`"),

@@ -86,8 +86,8 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) journal: Option<PathBuf>,
 
-    /// Let events happen, one scenario line each, from this file or, for `-`, from standard input as they come: `at 3s
-    /// luggage (3,1) to (3,10)`, or without `at 3s` for now. A wrong line is reported, and the run goes on
+    /// Read events from this file, or as they come from standard input (`-`): one scenario line each, such as `at 3s
+    /// luggage (3,1) to (3,10)`; an event without a time happens at once. A wrong line is reported and ignored
     #[arg(long, value_name = "FILE")]
     pub(crate) events: Option<PathBuf>,
 

@@ -133,12 +133,12 @@ impl Watcher {
         };
         let Some(assembly) = &compilation.output else {
             eprint_coloured(&DiagnosticReport::from(&compilation).human(Severity::Error));
-            return self.handle.note(Level::Error, kept("the composites do not fit to it"));
+            return self.handle.note(Level::Error, kept("the composites do not match it"));
         };
         if paths(assembly) != self.components {
             return self.handle.note(
                 Level::Error,
-                kept("the composites have other components than when the fleet started: start it anew"),
+                kept("the composites have other components than when the fleet started: restart it"),
             );
         }
         self.handle.note(Level::Info, format!("{names} changed: its components are replaced"));

@@ -21,7 +21,7 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  answered, also when the answer is that the robot did nothing
   1  standard output could not be written
-  2  the input is wrong: no such robot, a time after the end of the run, a file without journal or not whole; or the records that the whole
+  2  the input is wrong: no such robot, a time after the end of the run, a file that is incomplete or has no journal; or the records that the whole
      answer needs were overwritten, or left out by --short-report";
 
 /// Explain why a robot did something, from the report or the journal of a run

@@ -30,7 +30,7 @@ fn assert_told(output: &Output, does: &str, function: &str, expected: &str) {
 #[test]
 fn a_crash_is_told_with_component_library_and_function() {
     for (does, signal, expected) in [
-        ("segv", libc::SIGSEGV, "SIGSEGV: it used memory that is not its own"),
+        ("segv", libc::SIGSEGV, "SIGSEGV: it accessed memory that is not its own"),
         ("overflow", libc::SIGSEGV, "SIGSEGV: its stack overflowed"),
         ("bus", libc::SIGBUS, "SIGBUS"),
         ("ill", libc::SIGILL, "SIGILL"),

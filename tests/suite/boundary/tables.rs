@@ -45,7 +45,7 @@ fn a_null_function_is_refused_by_its_name() {
 #[test]
 fn a_null_or_short_table_is_refused_by_its_name() {
     for (definition, expected) in [
-        ("CLASS=NULL", "its `SaomsClassTable` of class `c.Actor` is null: let its entry in the tables"),
+        ("CLASS=NULL", "its `SaomsClassTable` of class `c.Actor` is null: set it in the tables"),
         ("CLASSES=NULL", "its list of `SaomsClassTable`s is null, expected 1 class"),
         ("COMPONENT=NULL", "`component` in its `SaomsClassTable` of class `c.Actor` is null"),
         ("LOOPING=NULL", "`looping` in its `SaomsLoopClassTable` of loop `c.Step` is null"),

@@ -228,7 +228,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)
              SMaster:MasterEnvironment:South
              SRobot1:Robot:South@NWorld",
-            &["S5012 robot 1 is wired to `NWorld`, which does not hear of it"],
+            &["S5012 robot 1 is wired to `NWorld`, which does not receive its messages"],
         ),
         (
             "S5008: a landing in one site wakes the robots of another",

@@ -77,7 +77,7 @@ fn what_runs_of_a_folder_is_what_it_calls_deployable() {
     let folder = contribution(&[]);
     let (code, _, stderr) = saoms(folder.path(), &["run", "--virtual", "."], "");
     assert_eq!(code, 2);
-    assert!(stderr.contains("error[S0002]: a directory with 3 fleets, and one is asked for"), "{stderr}");
+    assert!(stderr.contains("error[S0002]: found 3 fleets in this folder, expected one"), "{stderr}");
     assert!(stderr.contains("name one: `./fleet.composite`, `./hall.composite`, `./other.composite`"), "{stderr}");
     assert!(stderr.contains("`<deployable composite=\"...\"/>`"), "{stderr}");
 

@@ -130,8 +130,8 @@ fn an_event_says_its_site() {
         assert!(text.contains(&format!("line {line} of the events is ignored: {problem}\n")), "{text}");
     };
     told(5, "the fleet has no site `north`; did you mean `North`?");
-    told(6, "the site stands first: write `South: at 3s ...`");
-    told(7, "the site stands first: write `South: at 3s ...`");
+    told(6, "the site comes first: write `South: at 3s ...`");
+    told(7, "the site comes first: write `South: at 3s ...`");
     told(8, "the fleet has no site `Paris`; its sites are North, South");
     told(9, "the fleet has no site `Paris`; its sites are North, South");
     assert!(text.contains("    South: lugage (1,1)\n           ^^^^^^\n"), "{text}");

@@ -43,7 +43,7 @@ fn a_folder_stands_for_all_composites_in_it_and_below() {
     assert_eq!((twice.0, twice.1.as_str()), (1, "z/inner/one.composite\n"), "each file once");
     let (code, _, told) = fmt(folder.path(), &["none", "z"], b"");
     assert_eq!(code, 2);
-    assert!(told.starts_with("error[S0002]: a directory without composites\n--> none\n"), "{told}");
+    assert!(told.starts_with("error[S0002]: the folder contains no composites\n--> none\n"), "{told}");
     assert_eq!(
         fs::read_to_string(at("z/inner/one.composite")).unwrap(),
         RIGHT_LAYOUT,

@@ -31,7 +31,7 @@ fn the_command_line_counts_before_the_environment_and_that_before_the_file() {
 fn the_wiring_report_says_who_talks_to_whom() {
     let shown = stdout(&saoms(&["check", "--wiring", HANGAR]));
     let robots = "40 of saoms.Robot every 500ms: Robot01 to Robot40";
-    assert!(shown.contains(&format!("POSTOPIC  state topic of Position, 80 messages/s at one an execution\n  published by {robots}\n  read by {robots}\n")), "{shown}");
+    assert!(shown.contains(&format!("POSTOPIC  state topic of Position, 80 messages/s if each execution sends one\n  published by {robots}\n  read by {robots}\n")), "{shown}");
     assert!(shown.ends_with("44 components: 0 errors, 0 warnings\n"), "{shown}");
     let shown = stdout(&saoms(&["check", "--wiring", "--format", "json", HANGAR]));
     let value: Value = serde_json::from_str(&shown).unwrap();

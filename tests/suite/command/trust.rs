@@ -224,7 +224,7 @@ fn a_folder_that_cannot_be_read_is_an_error() {
     fs::rename(site.join("two"), chain("one").join("two")).unwrap();
     for arguments in [&["check", "."][..], &["run", "--virtual", "."], &["fmt", "--check", "."]] {
         let (code, stdout, stderr) = saoms(&site, arguments);
-        assert!(code == 2 && stderr.contains("error[S0003]: the directory cannot be read"), "{stdout}{stderr}");
+        assert!(code == 2 && stderr.contains("error[S0003]: the folder cannot be read"), "{stdout}{stderr}");
     }
     // Where a name is not found, it may be there.
     fs::write(site.join("other.composite"), composite("<include name=\"a:none\"/>")).unwrap();

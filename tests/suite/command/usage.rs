@@ -256,7 +256,7 @@ fn wrong_files_are_told_apart() {
     file(&folder, "airport.composite", ONE_ROBOT);
     let cases = [
         (folder.join("airpot.composite").to_str().unwrap().to_owned(), "airport.composite"),
-        (folder.to_str().unwrap().to_owned(), "directory"),
+        (folder.to_str().unwrap().to_owned(), "folder"),
         (file(&folder, "empty.composite", ""), "empty"),
         (file(&folder, "binary.composite", [0x7f, b'E', b'L', b'F', 0, 0, 1]), "text"),
     ];

@@ -223,7 +223,7 @@ fn ignored(topic: &str, readers: &[(&str, &[&str])]) {
 }
 
 const NO_ROBOT: &str = "found robot 0, expected a number from 1 on";
-const UNKNOWN: &str = "which did not say that it is there, expected one that did";
+const UNKNOWN: &str = "which has not announced itself, expected a robot that has";
 
 #[test]
 fn events_of_the_environment() {
@@ -231,7 +231,7 @@ fn events_of_the_environment() {
         "expected a block of the area from (0,0) to (4,3)",
         "found (2,2), which is blocked",
         "found (1,0) twice",
-        "found a response with robot 1, expected a request",
+        "found a response of robot 1, expected a request",
         NO_ROBOT,
         UNKNOWN,
     ];
@@ -246,7 +246,7 @@ fn luggage() {
         "(1,0) twice",
         NO_ROBOT,
         UNKNOWN,
-        "it is in the name of robot",
+        "it has the number of robot",
     ];
     let readers = ["Master", "World", "Environment", "Robot1", "Robot2"];
     ignored("ELMSTOPIC", &readers.map(|reader| (reader, all)));
@@ -260,7 +260,7 @@ fn calls() {
 
 #[test]
 fn critical_situations() {
-    let all: &[&str] = &[NO_ROBOT, UNKNOWN, "it is in the name of robot", "expected a block of the area"];
+    let all: &[&str] = &[NO_ROBOT, UNKNOWN, "it has the number of robot", "expected a block of the area"];
     ignored("CSMSTOPIC", &["Robot1", "Robot2"].map(|reader| (reader, all)));
 }
 
@@ -269,7 +269,7 @@ fn positions() {
     let all: &[&str] = &[
         "expected a block of the area",
         "found (4,3) after (1,0)",
-        "it is in the name of robot 1, for which `Robot1` speaks",
+        "it has the number of robot 1, which `Robot1` uses",
     ];
     ignored("POSTOPIC", &["Robot1", "Robot2"].map(|reader| (reader, all)));
 }
@@ -281,7 +281,7 @@ fn states_of_robots() {
         "found a period of 18446744073709551615 us",
         "expected a block of the area",
         NO_ROBOT,
-        "it is in the name of robot 1, for which `Robot1` speaks",
+        "it has the number of robot 1, which `Robot1` uses",
     ];
     ignored("RLMSTOPIC", &["Robot1", "Robot2", "Master", "Environment", "World", "Crew"].map(|reader| (reader, all)));
 }

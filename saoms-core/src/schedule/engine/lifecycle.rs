@@ -222,7 +222,7 @@ impl Engine {
         self.forget_vote(index, now);
         if voted && self.votes.voters == 0 {
             let name = &self.slots[index as usize].name;
-            self.reasons.push(format!("component `{name}`, which could say when the work is done, is gone"));
+            self.reasons.push(format!("component `{name}` ended before it reported that its work is done"));
             self.begin_stop(EndCause::Lost, now);
         } else if !self.slots.iter().any(|slot| slot.policy.periodic && slot.is_scheduled()) {
             self.begin_stop(EndCause::Lost, now);

@@ -91,7 +91,7 @@ impl<'a> Parameters<'a> {
         report.push(match unit.by_name.is_empty() {
             true => one.help("declare it: `<property name=\"...\">...</property>` in the composite"),
             false if one.suggestions.is_empty() && unit.owner.is_some() => one.help(format!(
-                "a value of the composite around comes in through a property: declare {} here, and give it in the component",
+                "properties of the outer composite are not visible here: declare {} here, and set it in the component",
                 quoted(name)
             )),
             false => one,

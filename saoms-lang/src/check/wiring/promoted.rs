@@ -4,7 +4,7 @@
 use crate::check::contracts::interface;
 use crate::check::contracts::offer::{Offer, ReferenceId, parts};
 use crate::check::fleet::{Fleet, Kind};
-use crate::check::report::{Report, list};
+use crate::check::report::Report;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::model::{Multiplicity, Part, ReferenceElement, ServiceElement};
 use crate::registry::InterfaceDeclaration;
@@ -181,11 +181,11 @@ fn widened(
     };
     let severity = narrower.iter().map(|one| one.severity).max().unwrap_or(Severity::Error);
     let fits = |one: &Multiplicity| narrower.iter().all(|inner| one.narrows(inner.takes));
-    let fitting: Vec<&str> = Multiplicity::ALL.into_iter().filter(fits).map(Multiplicity::name).collect();
+    let fitting: Vec<String> = Multiplicity::ALL.into_iter().filter(fits).map(|one| quoted(one.name())).collect();
     let one = Diagnostic::new(&codes::PROMOTED_MULTIPLICITY, at, message).severity(severity);
     match fitting[..] {
         [] => one.help("promote them with several references: no multiplicity fits all of them"),
-        _ => one.help(format!("it can be {}", list(fitting))),
+        _ => one.help(format!("it can be {}", fitting.join(" or "))),
     }
 }
 

@@ -86,9 +86,9 @@ fn a_file_that_is_not_there_has_neighbours() {
     );
     assert_eq!(shown("notes"), format!("{missing}there is `DIR/notes.txt`"));
     assert_eq!(shown("xyz"), format!("{missing}the folder has `DIR/airport.composite`, `DIR/airport2.composite`"));
-    assert_eq!(shown("sup/a"), format!("{missing}there is no directory `DIR/sup`"));
-    assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file, not a directory"));
-    let directory = "1:1 [] error S0002 found a directory, expected a file\n";
+    assert_eq!(shown("sup/a"), format!("{missing}there is no folder `DIR/sup`"));
+    assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file, not a folder"));
+    let directory = "1:1 [] error S0002 found a folder, expected a file\n";
     assert_eq!(shown("sub"), directory);
     assert_eq!(shown(""), format!("{directory}it has `DIR/airport.composite`, `DIR/airport2.composite`"));
 }

@@ -175,7 +175,7 @@ fn names_of_task_properties_are_kept() {
         registry().add_provided(&class("periodic"), Arc::new(Declared)).err().map(|error| error.to_string())
     };
     for name in TaskProperties::NAMES.iter().filter(|name| **name != "ID").chain(&["trigger", "minimum", "node"]) {
-        let expected = format!("property `{name}` has a name that is kept for the task of a periodic component");
+        let expected = format!("property `{name}` has a name that is reserved for the task of a periodic component");
         assert!(refused(name).is_some_and(|message| message.contains(&expected)), "{name}");
     }
     assert_eq!(refused("ID"), None);

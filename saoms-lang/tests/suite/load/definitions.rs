@@ -125,7 +125,7 @@ fn only_files_of_sca_are_definitions() {
     let foreign = "<definitions xmlns='http://schemas.xmlsoap.org/wsdl/'/>".to_owned();
     let wrong = definitions(OASIS, "<intent/>");
     expect![[r#"
-        FOLDER:1:1 [] error S0002 a directory without composites
+        FOLDER:1:1 [] error S0002 the folder contains no composites
           the names of composites end with `.composite`
     "#]]
     .assert_eq(&of_folder(&[("definitions.xml", foreign.clone())]));

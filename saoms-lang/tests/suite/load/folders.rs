@@ -108,7 +108,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
     expect![[r#"
         fleet.composite
         sca-contribution.xml:1:2 [contribution] error S1001 `contribution` is in the namespace `urn:c`, expected one of SCA
-          a file of this name says what a contribution runs, imports and exports
+          a file of this name describes what a contribution runs, imports and exports
           that is `http://docs.oasis-open.org/ns/opencsa/sca/200912` (SCA 1.1), `http://docs.oasis-open.org/ns/opencsa/sca/200903` (SCA 1.1 (draft)) or `http://www.osoa.org/xmlns/sca/1.0` (SCA 1.0)
         a/sca-contribution.xml:2:4 [</b>] error S0102 `</b>` found where `</a>` is expected
           replace it with `</a>`
@@ -124,7 +124,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
         "fleet.composite\n"
     );
     expect![[r#"
-        FOLDER:1:1 [] error S0002 a directory without composites
+        FOLDER:1:1 [] error S0002 the folder contains no composites
           the names of composites end with `.composite`
     "#]]
     .assert_eq(&fleets(&[("deep/readme.txt", String::new())]));

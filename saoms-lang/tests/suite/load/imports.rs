@@ -52,7 +52,7 @@ fn what_is_not_imported_says_what_is_lacking() {
         ("fleet.composite", composite("urn:c", "fleet", "<include name='a:hall'/><include name='b:hall'/>")),
     ];
     expect![[r#"
-        fleet.composite: a:hall is missing, near []; searched the files `*.composite` in `FOLDER` and below; `sca-contribution.xml` imports the namespace `urn:a`, which no contribution that is known exports: name a composite of it beside this one, or write its folder as `location` of the `import`
+        fleet.composite: a:hall is missing, near []; searched the files `*.composite` in `FOLDER` and below; `sca-contribution.xml` imports the namespace `urn:a`, which no known contribution exports: name a composite of it beside this one, or write its folder as `location` of the `import`
         fleet.composite: b:hall is missing, near []; searched the files `*.composite` in `FOLDER` and below
         sca-contribution.xml S1008
     "#]]

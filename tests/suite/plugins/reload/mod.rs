@@ -110,7 +110,7 @@ fn a_new_build_goes_on_where_the_earlier_one_was() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.build(&["-DBUILD=2", "-DDOC=\"Counts on.\""]);
     run.wait_for("is replaced later: it has not counted to 100 yet");
-    run.wait_for("is replaced by its new build, and goes on");
+    run.wait_for("is replaced by its new build, and continues with the earlier state");
     let first = counted(&run.wait_for("build 2 counts"));
     run.build(&["-DBUILD=3"]);
     let later = counted(&run.wait_for("build 3 counts"));
@@ -163,7 +163,7 @@ fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     run.build(&["-DBUILD=4", "-DFORGETS"]);
     run.wait_for("build 4 counts");
     run.build(&["-DBUILD=5"]);
-    run.wait_for("is replaced by its new build, and begins anew");
+    run.wait_for("is replaced by its new build, and starts without the earlier state");
     assert!(counted(&run.wait_for("build 5 counts")) <= 2);
     let (_, report, _) = run.end();
     assert_eq!(report["components"][0]["replaced"], 2);

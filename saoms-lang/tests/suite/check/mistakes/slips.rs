@@ -472,6 +472,7 @@ fn a_property_of_the_composite_around_is_handed_in() {
     expect![[r#"
         hall:3:34-38 error S2024: the composite has no property `tick`
           help: its properties are `first`
-          help: a value of the composite around comes in through a property: declare `tick` here, and give it in the component
-    "#]].assert_eq(&told);
+          help: properties of the outer composite are not visible here: declare `tick` here, and set it in the component
+    "#]]
+    .assert_eq(&told);
 }

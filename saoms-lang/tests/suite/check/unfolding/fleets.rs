@@ -324,7 +324,7 @@ fn tables_say_what_differs() {
           help: write a value that contains a comma between two `"`
         robots.csv:5:1-2 error S2047: there is no replica `x`
           help: use an index from 1 to 4
-        robots.csv:6:8-9 error S2047: `x` behind a closing `"`
+        robots.csv:6:8-9 error S2047: `x` after a closing `"`
           help: write a `"` inside a quoted value twice
         robots.csv:6:10-11 error S2047: a `"` without a closing `"`
           help: write a `"` inside a quoted value twice
@@ -340,7 +340,7 @@ fn tables_say_what_differs() {
         robots.csv:2:4-7 error S3009: property `colour`: `rde` is not allowed: expected `red` or `blue` (in `R01`, index 1)
           help: the default is `blue`
           fix: replace `rde` with `red` [robots.csv:2:4-7 "red"]
-        robots.csv:3:9-10 error S2047: `x` behind a closing `"`
+        robots.csv:3:9-10 error S2047: `x` after a closing `"`
           help: write a `"` inside a quoted value twice
         robots.csv:4:2-3 error S2047: there is no replica `x`
           help: use an index from 1 to 4

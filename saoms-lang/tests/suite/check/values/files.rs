@@ -89,7 +89,7 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
         3:30-38 error S0001: there is no such file
           help: the full path is `sped.txt`
           help: there is `speed.txt`
-        4:30-35 error S0002: found a directory, expected a file
+        4:30-35 error S0002: found a folder, expected a file
         5:31-37 error S0007: the byte 0xE9 is not valid UTF-8
           help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`; the file cannot be checked before
           help: it is in line 1, column 2 of `colour`
@@ -130,10 +130,10 @@ fn files_are_named_by_uris() {
           help: keep the file beside the composite, and name it by its path from there
         3:30-50 error S0001: there is no such file
           help: the full path is `/nowhere/yA`
-          help: there is no directory `/nowhere`
+          help: there is no folder `/nowhere`
         3:30-40 error S0001: there is no such file
           help: the full path is `no/%zz.txt`
-          help: there is no directory `no`
+          help: there is no folder `no`
         3:30-33 error S0001: there is no such file
           help: the full path is `%ff`
     "#]]
