@@ -147,8 +147,8 @@ fn every_wrong_line_says_where_and_why() {
         ("at -6 s landing 4", "-6 s", "found `-6 s`, which is before the start of the scenario: expected a time from 0s on".into(), Some("6 s")),
         ("at 6s luggage (3,1)", "", "found the end of the line, expected `to` and the block to bring it to".into(), None),
         ("at 6s luggage (3,1) too (3,10)", "too", "found `too`, expected `to` and the block to bring it to".into(), Some("to")),
-        ("at 6s luggage (3,1) to 3,10", "3,10", format!("found `3,10`, expected {block}"), None),
-        ("at 6s luggage (3;1) to (3,10)", "(3", format!("found `(3`, expected {block}"), None),
+        ("at 6s luggage (3,1) to 3,10", "3,10", format!("found `3,10`, expected {block}"), Some("(3,10)")),
+        ("at 6s luggage (3;1) to (3,10)", "(3;1)", format!("found `(3;1)`, expected {block}"), Some("(3,1)")),
         ("at 6s luggage (-3,1) to (3,10)", "(-3,1)", "found `(-3,1)`, but every area starts at (0,0)".into(), None),
         ("at 6s landing four", "four", format!("found `four`, expected {pieces}"), None),
         ("at 6s landing", "", format!("found the end of the line, expected {pieces}"), None),
@@ -156,408 +156,8 @@ fn every_wrong_line_says_where_and_why() {
         ("at 6s breakdown Gripper", "Gripper", format!("found `Gripper`, expected {robot}"), None),
         ("at 6s breakdown 0", "0", format!("found `0`, expected {robot}"), None),
         ("at 8s..2s landing 4", "8s..2s", "found `8s..2s`, expected the smaller value first".into(), Some("2s..8s")),
-        ("at 8s every 2s landing \
-            4", "at", "found `every` after `at`; an event that is repeated starts with `from`".into(), Some("from")),
-        ("from 8s landing \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            \
-            4", "from", "expected `every` after `from` and its time; an event that happens once starts with `at`".into(), Some("at")),
+        ("at 8s every 2s landing 4", "at", "found `every` after `at`; an event that is repeated starts with `from`".into(), Some("from")),
+        ("from 8s landing 4", "from", "expected `every` after `from` and its time; an event that happens once starts with `at`".into(), Some("at")),
         ("from 8s until 20s landing 4", "until", "found `until` without `every`, which says how often this happens".into(), None),
         ("from 8s until 20s every 2s landing 4", "until", "found `until` before `every`; `every` comes directly after the first time".into(), None),
         ("from 8s to 20s every 2s landing 4", "to", "found `to` before `every`; `every` comes directly after the first time".into(), None),
@@ -575,6 +175,46 @@ fn every_wrong_line_says_where_and_why() {
         assert_eq!((finding.message(), value), (message.as_str(), 1), "{line}");
         assert_eq!((&text[part], finding.replacement()), (at, instead), "{line}");
     }
+}
+
+#[test]
+fn a_slip_is_told_with_what_is_meant() {
+    for (line, meant) in [
+        ("at 1s luggage (3,1) -> (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s luggage (3,1) (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s luggage from (3,1) to (3,10)", "at 1s luggage  (3,1) to (3,10)"),
+        ("at 1s luggage [3,1] to (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s luggage [3,1] to [3,10]", "at 1s luggage (3,1) to [3,10]"),
+        ("at 1s luggage (3;1) to (3,10); at 2s end", "at 1s luggage (3,1) to (3,10); at 2s end"),
+        ("at 1s luggage (3,1 to (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s luggage (3,1) to (3,10", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s, luggage (3,1) to (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s: luggage (3,1) to (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s landing 4 at 2s landing 5", "at 1s landing 4 ; at 2s landing 5"),
+        ("at 1s landing 4, at 2s landing 5", "at 1s landing 4; at 2s landing 5"),
+        ("at 1s landing 4 // the first", "at 1s landing 4 # the first"),
+        ("-- nothing", "# nothing"),
+        ("every 5s landing 4", "from 5s every 5s landing 4"),
+        ("from 1s every 5s 3x landing 4", "from 1s every 5s 3 times landing 4"),
+        ("from 1s every 5s 3 time landing 4", "from 1s every 5s 3 times landing 4"),
+        ("at 1s break Robot7", "at 1s breakdown Robot7"),
+        ("at 1,5s landing 4", "at 1.5s landing 4"),
+        ("from 1s every 2s-8s 3 times landing 4", "from 1s every 2s..8s 3 times landing 4"),
+        ("from 1s every 2s.8s 3 times landing 4", "from 1s every 2s..8s 3 times landing 4"),
+        ("at 1s luggage (1,1)...(5,5) to (3,10)", "at 1s luggage (1,1)..(5,5) to (3,10)"),
+    ] {
+        let findings = Scenario::read(&[line]).unwrap_err();
+        let (_, part) = findings[0].place().value_part().unwrap();
+        let mut changed = line.to_owned();
+        changed.replace_range(part, findings[0].replacement().unwrap_or("?"));
+        assert_eq!((changed.as_str(), findings.len()), (meant, 1), "{findings:?}");
+    }
+    // What would lead to the same fault is not proposed.
+    for line in ["at 1s luggage 5 (3,1) to (3,10)", "at 00:10 landing 4", "at 1s repair Robot7", "at 1s landing -2"] {
+        assert_eq!(Scenario::read(&[line]).unwrap_err()[0].replacement(), None, "{line}");
+    }
+    let findings = Scenario::read(&["end 20s"]).unwrap_err();
+    assert_eq!(findings[0].helps(), ["write the time first, as in `at 6s end ...`"]);
 }
 
 #[test]

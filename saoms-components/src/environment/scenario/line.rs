@@ -5,7 +5,7 @@ use saoms_api::rule::nearest;
 
 use super::random::RandomRange;
 use super::tokenizer::Tokenizer;
-use super::{Before, Line, event};
+use super::{Before, Line, event, meant};
 use crate::text::TextFault;
 
 pub(super) const STARTS: [&str; 3] = ["at", "from", "then"];
@@ -23,7 +23,21 @@ const REPEATED: &str =
 /// The non-empty lines of a text, without comments. Lines end at a line end or `;`.
 pub(in crate::environment) fn split(text: &str) -> impl Iterator<Item = &str> {
     let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
-    lines.flat_map(|line| line.split(';')).filter(|line| !line.trim().is_empty())
+    lines.flat_map(parts).filter(|line| !line.trim().is_empty())
+}
+
+/// The parts of a text between `;`. One between the numbers of a block is a slip, and ends nothing.
+fn parts(line: &str) -> impl Iterator<Item = &str> {
+    let mut open = false;
+    line.split(move |sign: char| {
+        match sign {
+            '(' => open = true,
+            ';' if open => return false,
+            sign if !sign.is_ascii_digit() && sign != ' ' => open = false,
+            _ => {}
+        }
+        sign == ';'
+    })
 }
 
 /// Reads a line that may start with its event: the event happens now then, and the flag is true.
@@ -51,7 +65,7 @@ pub(in crate::environment) fn read_outside(line: &str, before: Before) -> Result
 /// Reads a line of the text of a scenario.
 pub(super) fn read(text: &str, line: &str, before: Before) -> Result<Line, TextFault> {
     read_line(text, line, before).map_err(|fault| {
-        let Some(site) = site(line) else { return fault };
+        let Some(site) = site(line) else { return meant::proposed(text, line, before, fault) };
         let message = format!("found the site `{site}`, which stands only before events from outside (`--events`)");
         let fault = Tokenizer::of(text, line).fault(site, message);
         fault.help("remove it: the events of a scenario are for the site in which its environment is")
@@ -67,7 +81,7 @@ fn site(line: &str) -> Option<&str> {
     (!is_word).then(|| &line[start..=before.len()])
 }
 
-fn read_line(text: &str, line: &str, before: Before) -> Result<Line, TextFault> {
+pub(super) fn read_line(text: &str, line: &str, before: Before) -> Result<Line, TextFault> {
     let mut words = Tokenizer::of(text, line);
     let start = words.next("`at`, `from` or `then`")?;
     if !STARTS.contains(&start) {
@@ -76,6 +90,9 @@ fn read_line(text: &str, line: &str, before: Before) -> Result<Line, TextFault> 
             _ => nearest(start, STARTS),
         };
         let fault = words.wrong(start, "`at`, `from` or `then` at the start of a line").instead(near);
+        if event::KINDS.contains(&start) {
+            return Err(fault.help(format!("write the time first, as in `at 6s {start} ...`")));
+        }
         return Err(fault.help("write a line such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`"));
     }
     if start == "then" && before == Before::Start {
@@ -110,6 +127,11 @@ fn read_line(text: &str, line: &str, before: Before) -> Result<Line, TextFault> 
     if words.peek_second() == Some("luggage") && first.parse::<u64>().is_ok() {
         let message = format!("found `{first}` before `luggage`, expected a number of times, such as `{first} times`");
         return Err(words.fault(first, message).instead(Some(format!("{first} times"))));
+    }
+    if let Some(other) =
+        words.peek_second().filter(|other| matches!(*other, "time" | "x") && first.parse::<u64>().is_ok())
+    {
+        return Err(words.wrong(other, "`times` after the number of times").instead(Some("times")));
     }
     let bytes = words.bytes(first);
     let event = event::read(&mut words)?;

@@ -4,6 +4,7 @@ mod complete;
 mod continuation;
 mod event;
 pub(super) mod line;
+mod meant;
 mod random;
 mod tokenizer;
 

@@ -1,0 +1,91 @@
+//! What is probably meant by a wrong word of a line.
+//!
+//! A proposal is made only where the line is read further with it: applying it never leads to the same fault again.
+
+use std::ops::Range;
+
+use super::{Before, line};
+use crate::text::TextFault;
+
+/// Words of other ways to say it, each with the word of a scenario.
+const OTHER_WORDS: [(&str, &str); 14] = [
+    ("->", "to"),
+    ("=>", "to"),
+    ("→", "to"),
+    ("into", "to"),
+    ("till", "until"),
+    ("break", "breakdown"),
+    ("breaks", "breakdown"),
+    ("fault", "breakdown"),
+    ("//", "#"),
+    ("--", "#"),
+    ("and", ";"),
+    (",", ";"),
+    ("from", ""),
+    (".", ""),
+];
+
+/// The fault with a proposal, if it has none and one makes sense.
+pub(super) fn proposed(text: &str, part: &str, before: Before, fault: TextFault) -> TextFault {
+    let start = crate::text::bytes(text, part).start;
+    let Some(bytes) = within(&fault.bytes, start, part.len()).filter(|_| fault.instead.is_none()) else { return fault };
+    let (word, behind) = (&part[bytes.clone()], &part[bytes.end..]);
+    let leads_on = |meant: &String| {
+        let is_comment = meant.starts_with('#');
+        // A comment hides the rest, and what follows a `;` is another line.
+        let end = meant.find(['#', ';']);
+        let (meant, rest) = end.map_or((meant.as_str(), behind), |end| (&meant[..end], ""));
+        let changed = format!("{}{meant}{rest}", &part[..bytes.start]);
+        match line::read_line(&changed, &changed, before) {
+            _ if changed.trim().is_empty() => is_comment,
+            Ok(_) => true,
+            Err(next) => next.bytes.start > bytes.start && next.bytes.start >= bytes.start + meant.len(),
+        }
+    };
+    let meant = candidates(word, behind.split_whitespace().next()).into_iter().find(leads_on);
+    match meant {
+        Some(meant) => fault.instead(Some(meant)),
+        None => fault,
+    }
+}
+
+/// The byte range within a part of the text, if it is a word of it.
+fn within(bytes: &Range<usize>, start: usize, length: usize) -> Option<Range<usize>> {
+    let range = bytes.start.checked_sub(start)?..bytes.end.checked_sub(start)?;
+    (range.end <= length && !range.is_empty()).then_some(range)
+}
+
+/// What may be meant by a word, which `next` follows.
+fn candidates(word: &str, next: Option<&str>) -> Vec<String> {
+    let other = OTHER_WORDS.iter().find(|(other, _)| *other == word).map(|(_, meant)| (*meant).to_owned());
+    let ended = word.trim_end_matches([',', ':', '.', ';']);
+    let ended = (ended.len() < word.len() && !ended.is_empty()).then(|| ended.to_owned());
+    let divided = ended.as_ref().filter(|_| next.is_some_and(|next| line::STARTS.contains(&next)));
+    let divided = divided.map(|ended| format!("{ended};"));
+    let counted = word.strip_suffix(['x', '×', '*']).filter(|number| is_number(number));
+    let counted = counted.map(|number| format!("{number} times"));
+    let repeated = next.filter(|_| word == "every").map(|time| format!("from {time} every"));
+    let line = line::STARTS.contains(&word).then(|| format!("; {word}"));
+    let decimal = word.contains(',').then(|| word.replacen(',', ".", 1));
+    let ranges = ["-", "–", "."].iter().filter_map(|sign| word.split_once(sign));
+    let ranges = ranges.map(|(least, most)| format!("{least}..{most}"));
+    let target = word.starts_with('(').then(|| format!("to {word}"));
+    let all = [other, divided, ended, counted, repeated, line, target, decimal].into_iter().flatten();
+    all.chain(blocks(word)).chain(ranges).filter(|meant| meant != word).collect()
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// The block that a word means: in other brackets, with another sign between its numbers, or without its end.
+fn blocks(word: &str) -> Vec<String> {
+    let block = |text: &str| {
+        let (x, y) = text.trim_matches(['(', '[', '{', ')', ']', '}', ',', '.']).split_once([',', ';', ':', '/'])?;
+        let (x, y) = (x.trim(), y.trim());
+        (is_number(x) && is_number(y)).then(|| format!("({x},{y})"))
+    };
+    let (first, rest) = word.split_at(word.find([' ', '\t']).unwrap_or(word.len()));
+    let unended = block(first).map(|block| format!("{block}{rest}"));
+    block(word).into_iter().chain(unended).collect()
+}
