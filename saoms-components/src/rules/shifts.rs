@@ -15,7 +15,8 @@ pub(super) static RULE: FleetRule = FleetRule {
         id: "S5013",
         name: "shift",
         meaning: "A shift schedules itself, a component that runs from the start of the fleet, or a component that \
-            another shift schedules at the same time; or nothing schedules one that waits for it.",
+            another shift schedules at the same time; it is shorter than the component's period; or nothing \
+            schedules one that waits for it.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -76,11 +77,29 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                         .help("set `runOnStartup` to `false`: the component then waits for its first shift"),
                 );
             }
+            findings.extend(too_short(fleet, index, &properties, task));
             first.insert(task, (index, properties.clone()));
         }
     }
     findings.extend(never_scheduled(fleet));
     findings
+}
+
+/// A finding about a shift that is over before its component executes again.
+fn too_short(fleet: &FleetView<'_>, shift: usize, properties: &ShiftProperties, task: usize) -> Option<Finding> {
+    let component = &fleet.components()[task];
+    let (work, period) = (properties.work, component.period?);
+    (work < period).then(|| {
+        let message = format!(
+            "a shift of {} is shorter than the period of `{}`, {}: the component executes only once in a shift",
+            format_duration(work),
+            component.path,
+            format_duration(period)
+        );
+        Finding::new(Place::property("work").in_component(shift), message)
+            .label(Place::property("period").in_component(task), "the period")
+            .help("write a longer time, with its unit, such as `15s`: a number without a unit is in milliseconds")
+    })
 }
 
 /// Findings about components of this crate that wait to be scheduled, and nothing does that.

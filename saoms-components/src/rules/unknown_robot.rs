@@ -11,6 +11,7 @@ use super::hearing::{events, passed_on, site_of};
 use super::robots::{FleetRobot, are_all_known, has_broker, may_be_others, robots};
 use crate::environment::{Environment, EventSpec, RandomRange, Scenario};
 use crate::messages::{ENVIRONMENT, FAULT};
+use crate::robot::Robot;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -25,6 +26,9 @@ pub(super) static RULE: FleetRule = FleetRule {
     check,
 };
 
+/// Maximum number of robots that a message lists.
+const LISTED: usize = 10;
+
 /// Cost of comparing two names, in comparisons of the budget.
 const NAME: usize = 50;
 
@@ -35,6 +39,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (index, properties) in fleet.all::<Environment>() {
         let (scenario, _) = Scenario::read_partly(&properties.scenario);
+        if is_told(fleet, &scenario) {
+            continue;
+        }
         // Built on demand, since most scenarios have no breakdowns.
         let mut known: Option<Names<'_>> = None;
         for line in scenario.lines() {
@@ -50,6 +57,16 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// True if the rule about scenarios without effect tells that there is no robot at all: which of them one event means
+/// says no more.
+fn is_told(fleet: &FleetView<'_>, scenario: &Scenario) -> bool {
+    let is_luggage = |event: &EventSpec| matches!(event, EventSpec::Luggage { .. });
+    fleet.indices::<Robot>().next().is_none()
+        && !fleet.misses::<Robot>()
+        && !may_be_others(fleet)
+        && scenario.lines().iter().any(|line| is_luggage(&line.event))
 }
 
 /// A robot as a scenario writes it.
@@ -109,6 +126,20 @@ impl<'r> Names<'r> {
         up_to(most).saturating_sub(self.numbers.partition_point(|number| *number < least))
     }
 
+    /// The robots that there are.
+    fn list(&self) -> String {
+        let mut robots: Vec<&FleetRobot> = self.robots.clone();
+        robots.sort_by_key(|robot| robot.number);
+        let id = |robot: &&FleetRobot| format!("`{}`", robot.properties.id);
+        match &robots[..] {
+            [one] => format!("the only robot is {}", id(one)),
+            [first, .., last] if robots.len() > LISTED => {
+                format!("there are {} robots, from {} to {}", robots.len(), id(first), id(last))
+            }
+            all => format!("the robots are {}", all.iter().map(id).collect::<Vec<String>>().join(", ")),
+        }
+    }
+
     fn ids(&self) -> impl Iterator<Item = &'r str> {
         self.robots.iter().map(|robot| robot.properties.id.as_str())
     }
@@ -162,12 +193,19 @@ fn check_name(
     };
     let is_name = !text.starts_with(|sign: char| sign.is_ascii_digit());
     let near = (is_name && budget.admit(NAME * names.robots.len())).then(|| nearest(text, names.ids())).flatten();
+    // Another number alone is another robot, and no slip, unless its digits are in another order.
+    let near = near.filter(|near| parted(near).0 != parted(text).0 || parted(near).1 == parted(text).1);
     Some(match near {
         Some(near) => finding(message).instead(near),
         None if names.robots.is_empty() => finding(message).help("add the robot to the composite, or remove the event"),
-        None => {
-            let all: Vec<String> = names.ids().take(30).map(|id| format!("`{id}`")).collect();
-            finding(message).help(format!("the robots of the fleet are {}", all.join(", ")))
-        }
+        None => finding(message).help(names.list()),
     })
+}
+
+/// The text before the digits at the end of a name, and these digits, sorted.
+fn parted(name: &str) -> (&str, Vec<u8>) {
+    let (text, digits) = name.split_at(name.trim_end_matches(|sign: char| sign.is_ascii_digit()).len());
+    let mut digits = digits.as_bytes().to_vec();
+    digits.sort_unstable();
+    (text, digits)
 }

@@ -66,20 +66,37 @@ fn composite(path: &str) -> &str {
     path.rfind('/').map_or("", |at| &path[..=at])
 }
 
+/// The finding at the first robot that is wired to no world; if there is none, at the world.
 fn without_robots(fleet: &FleetView<'_>, area: &WorldMap, robots: &[FleetRobot]) -> Finding {
-    let message = match area.map.is_open() {
-        true => "no robot is wired to this world, so the world sees no robots and no delivered luggage",
-        false => "no robot is wired to this world, so the robots ignore its blocked blocks",
+    let effect = match area.map.is_open() {
+        true => "the world sees no robots and no delivered luggage",
+        false => "the robots ignore its blocked blocks",
     };
     let path = fleet.components()[area.index].path;
     let around = composite(path);
+    let list = |index: usize| fleet.components()[index].topic(ROBOT_LIST.name());
+    let unwired = || robots.iter().filter(|robot| robot.world.is_none() && list(robot.index) == list(area.index));
     let is_beside = |robot: &FleetRobot| composite(fleet.components()[robot.index].path) == around;
     let help = match robots.iter().filter(|robot| robot.world.is_none()).find(|robot| !is_beside(robot)) {
         // A target leads to what is in the same composite.
         Some(robot) if !robots.iter().any(is_beside) => between(fleet.components()[robot.index].path, path),
-        _ => format!("add `<reference name=\"world\" target=\"{}\"/>` to each robot", &path[around.len()..]),
+        _ => format!("give each robot `<reference name=\"world\" target=\"{}\"/>`", &path[around.len()..]),
     };
-    Finding::new(Place::component(area.index), message).help(help)
+    let Some(robot) = unwired().next() else {
+        let message = format!("no robot is wired to this world, so {effect}");
+        return Finding::new(Place::component(area.index), message).help(help);
+    };
+    let robot_path = fleet.components()[robot.index].path;
+    let more: Vec<&FleetRobot> = unwired().skip(1).collect();
+    let who = match &more[..] {
+        [] => format!("robot `{robot_path}` is"),
+        [other] => format!("robots `{robot_path}` and `{}` are", fleet.components()[other.index].path),
+        more => format!("`{robot_path}` and {} other robots are", more.len()),
+    };
+    let message = format!("{who} not wired to the world, so {effect}");
+    Finding::new(Place::property("world").in_component(robot.index), message)
+        .label(Place::component(area.index), "the world")
+        .help(help)
 }
 
 /// How a wire leads from a robot to a world in another composite: the outermost components that differ are wired, and

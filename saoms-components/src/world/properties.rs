@@ -54,7 +54,9 @@ impl WorldProperties {
             let Some(problem) = problem else { continue };
             let fault = TextFault::new(0..text.len(), problem);
             let fault = if text.matches('(').count() > 1 { fault.help(SEVERAL) } else { fault };
-            findings.push(fault.finding("blocked", value));
+            let bracketed = format!("({})", text.trim().trim_matches(['(', '[', '{', ')', ']', '}']));
+            let meant = Some(bracketed).filter(|meant| meant != text && meant.parse::<Block>().is_ok());
+            findings.push(fault.instead(meant).finding("blocked", value));
         }
         map.filter(|_| findings.is_empty()).ok_or(findings)
     }

@@ -214,7 +214,14 @@ fn one_fault_of_replicas_is_told_once() {
             "S3014",
             "name the table with `saoms:overrides`",
         ),
-        ("site", ["Robot02", "Robot04"], ["</composite>", B], TABLE, "site `B` has no robot 4", "replace `Robot04`"),
+        (
+            "site",
+            ["Robot02", "Robot04"],
+            ["</composite>", B],
+            TABLE,
+            "site `B` has no robot 4",
+            "the robots are `Robot01`, `Robot02`",
+        ),
         (
             "one site twice",
             ["World", "World"],

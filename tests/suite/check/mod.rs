@@ -1,6 +1,7 @@
 //! Whole fleets and what is wrong with them.
 
 mod cascades;
+mod first_fleets;
 mod hints;
 mod mistakes;
 mod rules;

@@ -64,7 +64,7 @@ fn the_examples_have_the_faults_that_they_say() {
 pub(super) type Component<'a> = (&'a str, &'a str, &'a [(&'a str, &'a str)], bool);
 
 /// A composite of these components, from line 2 on, each in a line.
-fn fleet(components: &[Component<'_>]) -> String {
+pub(super) fn fleet(components: &[Component<'_>]) -> String {
     let mut text =
         "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:t\" name=\"t\">\n"
             .to_owned();
@@ -406,9 +406,10 @@ fn scenarios_of_which_nothing_comes_are_told() {
 fn a_world_that_no_robot_knows_is_told() {
     let blocked: &[(&str, &str)] = &[("blocked", "(3,1)")];
     let unwired = ("Robot1", "saoms.Robot", &[][..], false);
-    let message = "warning S5009 no robot is wired to this world, so the robots ignore its blocked blocks";
+    let message = "warning S5009 robot `Robot1` is not wired to the world, so the robots ignore its blocked blocks";
     assert_eq!(found(&[("World", "saoms.World", blocked, false), unwired]), [message]);
-    let message = "warning S5009 no robot is wired to this world, so the world sees no robots and no delivered luggage";
+    let message =
+        "warning S5009 robot `Robot1` is not wired to the world, so the world sees no robots and no delivered luggage";
     assert_eq!(found(&[("World", "saoms.World", &[], false), unwired]), [message]);
     assert!(found(&[("World", "saoms.World", blocked, false), ROBOT]).is_empty());
 }

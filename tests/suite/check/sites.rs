@@ -268,7 +268,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
             "S5009: a world hears of robots that are not wired to it",
             "NWorld:World:North topicRename=RLMSTOPIC,/robots
              SRobot1:Robot:South topicRename=RLMSTOPIC,/robots",
-            &["S5009 no robot is wired to this world"],
+            &["S5009 robot `SRobot1` is not wired to the world"],
         ),
         (
             "S5010: masters of two sites pass on the same events",

@@ -7,6 +7,7 @@
 mod load;
 mod missed;
 mod reach;
+mod useless;
 
 use std::time::Duration;
 
@@ -26,13 +27,14 @@ use crate::robot::{Battery, Policy};
 use load::overloaded;
 use missed::Missed;
 use reach::{Ways, out_of_reach};
+use useless::useless;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5006",
         name: "unsustainable",
-        meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or it \
-            comes, without end, faster than the robots can deliver it and charge.",
+        meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or all \
+            of it from that of one robot, or it comes, without end, faster than the robots can deliver it and charge.",
         severity: Severity::Error,
         rule: None,
     },
@@ -78,8 +80,15 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
         luggage.iter().filter_map(|piece| out_of_reach(&area, &ranges, missed, piece, &mut ways)).collect()
     };
     let mut findings: Vec<Finding> = missed.as_ref().map_or_else(Vec::new, told);
+    let is_safe = robots.iter().all(|robot| robot.properties.policy == Policy::Safe);
+    if findings.is_empty() && is_safe {
+        let useless = useless(fleet, &area, (&robots, &ranges), luggage);
+        if !useless.is_empty() {
+            return useless;
+        }
+    }
     // Luggage that no robot can bring is no load. What a classic robot does in a time with an empty battery is unknown.
-    if findings.is_empty() && robots.iter().all(|robot| robot.properties.policy == Policy::Safe) {
+    if findings.is_empty() && is_safe {
         findings.extend(overloaded(&area, &ranges, luggage, &mut ways));
     }
     findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], &ranges[0])).collect()
@@ -91,11 +100,16 @@ fn explained(fleet: &FleetView<'_>, finding: Finding, area: &WorldMap, robot: &F
         1 => None,
         count => Some(format!("{what} takes {count} executions")),
     };
-    let discharge = robot.properties.discharge.map(|percent| format!("each execution takes {percent} % of a battery"));
+    let (properties, takes) = (&robot.properties, "% of a battery");
+    let discharge = properties.discharge.map(|percent| format!("each execution takes {percent} {takes}"));
+    let of_block = properties.discharge_per_block.map(|percent| format!("each block takes {percent} {takes}"));
+    let of_second = properties.discharge_per_second.map(|percent| format!("each second takes {percent} {takes}"));
     let causes = [
         (area.index, "moveTime", executions(range.moving, "a move")),
         (area.index, "handlingTime", executions(range.handling, "collecting or depositing")),
         (robot.index, "discharge", discharge),
+        (robot.index, "dischargePerBlock", of_block),
+        (robot.index, "dischargePerSecond", of_second),
     ];
     let given = |index: usize, name: &str| fleet.components()[index].values.iter().any(|(given, _)| given == name);
     let causes = causes.into_iter().filter(|(index, name, _)| given(*index, name));
@@ -119,6 +133,8 @@ struct Range {
     handling: u32,
     /// Seconds from one execution to the next.
     period: f64,
+    /// The property that says what a move takes, where that is no execution.
+    physical: Option<&'static str>,
 }
 
 impl Range {
@@ -146,6 +162,11 @@ impl Range {
             moving,
             handling: executions(area.properties.handling_time),
             period: period.as_secs_f64(),
+            physical: match (robot.properties.discharge_per_block, robot.properties.discharge_per_second) {
+                (Some(_), _) => Some("dischargePerBlock"),
+                (None, Some(_)) => Some("dischargePerSecond"),
+                (None, None) => None,
+            },
         })
     }
 

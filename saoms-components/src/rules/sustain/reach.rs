@@ -23,7 +23,8 @@ pub(super) fn out_of_reach(
     let (from, to) = (&piece.from, &piece.to);
     let of_spot = [(from, "from"), (to, "to")].into_iter().find_map(|(spot, verb)| {
         let (cut, all, first) = missed.count(area, spot.value, &mut ways.budget)?;
-        let (nearest, most) = (ways.nearest(ranges, first)?, ways.most(ranges));
+        let (nearest, robot) = ways.nearest(ranges, first)?;
+        let most = ranges[robot].most();
         let where_to = match spot.value.block() {
             Some(block) => format!("{block}: it is "),
             None => format!("{cut} of the {all} free blocks here: {first} is "),
@@ -33,14 +34,21 @@ pub(super) fn out_of_reach(
              allows {most}, there and back"
         );
         let severity = if cut == all { Severity::Error } else { Severity::Warning };
-        Some(Finding::new(piece.place(spot), message).severity(severity).help(HELP))
+        Some(Finding::new(piece.place(spot), message).severity(severity).help(help(&ranges[robot])))
     });
     of_spot.or_else(|| out_of_one_reach(area, ranges, piece, ways))
 }
 
-const HELP: &str = "put a charger closer to this block, or let robots use less energy on the way: reduce `discharge`, \
-    which counts for each execution, or `moveTime` and `handlingTime`, which say how many executions a move and \
-    handling take; with `dischargePerBlock` and `chargePerSecond` the energy does not depend on these times";
+fn help(range: &Range) -> String {
+    let less = match range.physical {
+        Some(name) => format!("reduce `{name}`"),
+        None => "reduce `discharge`, which counts for each execution, or `moveTime` and `handlingTime`, which say how \
+            many executions a move and handling take; with `dischargePerBlock` and `chargePerSecond` the energy does \
+            not depend on these times"
+            .to_owned(),
+    };
+    format!("put a charger closer to this block, or let robots use less energy on the way: {less}")
+}
 
 /// Finding for luggage whose ends are in the reach of some robot each, and of no robot both.
 fn out_of_one_reach(area: &WorldMap, ranges: &[Range], piece: &LuggageLine, ways: &mut Ways<'_>) -> Option<Finding> {
@@ -88,8 +96,6 @@ pub(super) struct Ways<'m> {
     budget: Budget,
     /// Index of the robot that reached the last block.
     reached: usize,
-    /// Maximum number of moves from its charger of any robot, once it was needed.
-    most: Option<u32>,
 }
 
 /// Maximum number of blocks that are searched for all luggage together: a check must not take longer than the run.
@@ -115,18 +121,23 @@ impl<'m> Ways<'m> {
             starts.iter().for_each(|block| _ = marked.set_blocked(*block));
         }
         let known = HashMap::new();
-        Ways { map, starts, marked, known, left: SEARCHED, budget: Budget::default(), reached: 0, most: None }
+        Ways { map, starts, marked, known, left: SEARCHED, budget: Budget::default(), reached: 0 }
     }
 
-    /// Number of moves from the nearest charger; `None` if the budget is used up.
-    fn nearest(&mut self, ranges: &[Range], block: Block) -> Option<u32> {
-        let mut nearest = None;
-        for range in ranges {
+    /// Number of moves from the nearest charger, with the place of its robot; of two as near, the one whose robot gets
+    /// farther. `None` if the budget is used up, or no way leads there.
+    fn nearest(&mut self, ranges: &[Range], block: Block) -> Option<(u32, usize)> {
+        let mut nearest: Option<(u32, usize)> = None;
+        for (place, range) in ranges.iter().enumerate() {
             if !self.budget.admit(LOOK) {
                 return None;
             }
-            let moves = self.moves(range.charger, block)?;
-            nearest = nearest.into_iter().chain(moves).min();
+            let Some(moves) = self.moves(range.charger, block)? else { continue };
+            let is_better =
+                |(least, best): (u32, usize)| moves < least || moves == least && range.full > ranges[best].full;
+            if nearest.is_none_or(is_better) {
+                nearest = Some((moves, place));
+            }
         }
         nearest
     }
@@ -151,12 +162,6 @@ impl<'m> Ways<'m> {
             }
         }
         Some(!is_connected)
-    }
-
-    /// Maximum number of moves from its charger of any robot with a battery that limits it.
-    fn most(&mut self, ranges: &[Range]) -> u32 {
-        let limited = || ranges.iter().filter(|range| range.full < u32::MAX).map(Range::most);
-        *self.most.get_or_insert_with(|| limited().max().unwrap_or(0))
     }
 
     /// Number of moves. The outer `None` means that the budget is used up, the inner one that no way leads there.
