@@ -50,6 +50,22 @@ fn makespans_differ_by_two_percent_at_most_at_half_the_period() {
     }
 }
 
+/// A robot decides at other moments, by less than a period for each action; its choice does not depend on them.
+#[test]
+fn a_lone_robot_brings_waiting_luggage_in_the_same_order_at_any_period() {
+    const WORK: &str = "at 1s luggage (3,1) to (3,10)\nat 2s luggage (7,7) to (1,9)\nat 3s luggage (5,2) to (9,9)\n\
+         then 5s every 20s 10 times luggage (2,2) to (9,8)";
+    let [first, second, third] = ["20ms", "50ms", "100ms"].map(|period| {
+        let battery = PHYSICAL.replace("\"0.2\"", "\"0.02\"").replace("\"1\"", "\"0.5\"");
+        let run = fleet(1, period, "500ms", &battery, WORK).run(0, Duration::from_hours(1));
+        let taken = run.log_of("Robot1").into_iter().filter(|line| line.contains("takes luggage"));
+        taken.map(|line| line.split_once("takes ").unwrap().1.to_owned()).collect::<Vec<_>>()
+    });
+    assert_eq!(first.len(), 13);
+    assert_eq!(first, second);
+    assert_eq!(second, third);
+}
+
 #[test]
 fn a_job_costs_its_blocks_and_its_time() {
     // From (0,1) 4 moves to collect at (4,1), 3 to deposit at (7,1), 7 back: 14 %, and 0.2 % in each second off the

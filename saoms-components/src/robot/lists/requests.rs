@@ -180,6 +180,11 @@ impl Requests {
         self.open.iter_mut().for_each(|request| request.judged = false);
     }
 
+    /// Considers all requests again, also those for which the battery did not last.
+    pub fn consider_again(&mut self) {
+        self.open.iter_mut().for_each(|request| request.needs = 0);
+    }
+
     /// Refuses luggage for good.
     pub fn refuse(&mut self, luggage: u32) {
         self.open.retain(|open| open.job.luggage != luggage);

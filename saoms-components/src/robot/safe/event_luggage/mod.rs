@@ -40,6 +40,8 @@ pub struct SafeEventLuggage {
     warned: bool,
     /// Number of changes of the ways at the last check of its way, and the goal of that way.
     seen: (u32, Option<Block>),
+    /// True if the robot was at its charger in the last execution.
+    was_at_charger: bool,
     attempt: Attempt,
     idle: Idle,
     luggage: Publisher<EventLuggage>,
@@ -72,6 +74,11 @@ impl Loop for SafeEventLuggage {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<SafeLuggageSymptom>, Failure> {
+        let is_at_charger = knowledge.is_at_charger();
+        if !std::mem::replace(&mut self.was_at_charger, is_at_charger) && is_at_charger {
+            // What they need was found out elsewhere on the way, for each at another block.
+            knowledge.lists.requests.consider_again();
+        }
         if let Some(symptom) = self.look_at_way(knowledge) {
             return Ok(Some(symptom));
         }
@@ -285,12 +292,15 @@ fn judge(knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
 /// The request that suits this robot best, and its cause.
 fn look_for_luggage(knowledge: &RobotKnowledge, context: &Context<'_>) -> Option<(SafeLuggageSymptom, Cause)> {
     let moving = u128::from(knowledge.energy.executions_of_move());
-    let (now, period) = (context.now(), (context.period().as_nanos() * moving).max(1));
+    // In nanoseconds: which of two requests is better depends on neither the moment nor the period.
+    let for_a_block = (context.period().as_nanos() * moving).max(1) * u128::from(PATIENCE);
+    let for_a_block = i128::try_from(for_a_block).unwrap_or(i128::MAX);
+    let now = context.now();
     let (block, number) = (knowledge.block, knowledge.number);
     let left = knowledge.executions_left();
     let score = |request: &Request| {
-        let credit = now.since(request.since).as_nanos() / period / u128::from(PATIENCE);
-        i128::from(block.distance(request.job.from)) - i128::try_from(credit).unwrap_or(i128::MAX)
+        let waited = i128::try_from(now.since(request.since).as_nanos()).unwrap_or(i128::MAX);
+        i128::from(block.distance(request.job.from)).saturating_mul(for_a_block).saturating_sub(waited)
     };
     let suits = |request: &Request| request.needs <= left && closer_rival(request, block, number).is_none();
     let requests = knowledge.lists.requests.open().iter().enumerate();
