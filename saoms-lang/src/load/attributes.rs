@@ -146,6 +146,10 @@ impl Loader<'_> {
             None if kind.has(name, self.version) && element.attribute(name).is_some() => one.help(given_already(name)),
             None if kind.has(name, self.version) => one.mend("remove the prefix", name),
             None if name == "env" => one.help("only a property of the composite has it: take that with `source`"),
+            None if vocabulary::own_names(&vocabulary::COMPONENT).any(|known| known == name) => one.help(format!(
+                "write it in the start tag of a `component`: {} has no such attribute",
+                quoted(kind.name)
+            )),
             None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
             None => one.help(format!("its attributes of SAOMS are {}", names.join(", "))),
         });
@@ -198,7 +202,12 @@ impl Loader<'_> {
     }
 
     fn empty(&mut self, attribute: Attribute<'_>, name: &str) {
-        self.value_fault(attribute, format!("the attribute {} is empty", quoted(name)), None);
+        let message = format!("the attribute {} is empty", quoted(name));
+        let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), message);
+        self.report(one.help(match name {
+            "class" => "name a class: `saoms components` lists all",
+            _ => "write its value between the quotes",
+        }));
     }
 
     fn missing(&mut self, element: Element<'_>, name: &str) {
@@ -254,8 +263,9 @@ impl Loader<'_> {
             "false" | "0" => false,
             other => {
                 let message = format!("{} is {}, expected `true` or `false`", quoted(name), quoted(other));
-                self.value_fault(attribute, message, meant_boolean(other));
-                return None;
+                let meant = meant_boolean(other);
+                self.value_fault(attribute, message, meant);
+                meant? == "true"
             }
         };
         Some(Located::new(value, text.location))
@@ -429,11 +439,16 @@ fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
             matches!(written, "file" | "href" | "src" | "ref" | "location" | "composite" | "class")
         }
         ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
-        // In a component it may be the property that is called so.
-        ("property", "name") => written == "id" && element.parent().is_some_and(|around| around.parent().is_none()),
+        // In a component it may be the property that is called so, but where another attribute gives the value.
+        ("property", "name") => {
+            let is_of_composite = element.parent().is_some_and(|around| around.parent().is_none());
+            matches!(written, "id" | "key") && (is_of_composite || element.attribute("value").is_some())
+        }
         ("property", "value") => matches!(written, "val" | "default"),
-        ("wire", "source") => written == "from",
-        ("wire", "target") => written == "to",
+        ("wire", "source") => matches!(written, "from" | "src"),
+        ("wire", "target") => matches!(written, "to" | "dest" | "destination"),
+        ("reference", "target") => matches!(written, "to" | "value" | "ref" | "component" | "href"),
+        ("deployable", "composite") => matches!(written, "name" | "file" | "ref"),
         _ => false,
     }
 }

@@ -5,6 +5,7 @@ use smol_str::SmolStr;
 use super::Loader;
 use super::attributes::{is_attribute_as_element, own_prefix};
 use super::vocabulary::{self, Kind, OPERATION, OWN_ELEMENTS, POLICIES, SEVERITY, SEVERITY_PARENTS};
+use super::wrong_place::{as_property, as_tag, belongs_outside};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, list, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
@@ -20,6 +21,10 @@ const XINCLUDE: &str = "http://www.w3.org/2001/XInclude";
 
 /// Elements of SCA that the model does not keep.
 const NOT_KEPT: [&str; 5] = ["operation", "requires", "policySetAttachment", "documentation", "extensions"];
+
+/// Elements that a text may be the rest of.
+const KINDS_IN_TEXT: [&str; 7] =
+    ["property", "reference", "service", "wire", "include", "implementation.rust", "implementation.java"];
 
 /// The vocabulary that an element belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +90,14 @@ impl Loader<'_> {
                 Family::Sca if NOT_KEPT.contains(&name) && kind.children.contains(&name) => self.check_not_kept(child),
                 Family::Own if name == SEVERITY.name && SEVERITY_PARENTS.contains(&kind.name) => {
                     self.severity(child, parent);
+                }
+                Family::Sca if self.is_wrapper(child, kind) => {
+                    // By reference, for what is in it may be a wrapper again.
+                    let read: &mut dyn FnMut(&mut Self, Element<'_>, Family, &str) -> bool = &mut read;
+                    for inner in child.children() {
+                        let (family, name) = (self.family(inner), meant_name(inner));
+                        read(self, inner, family, name);
+                    }
                 }
                 _ => {
                     let meant = self.unexpected(child, kind, family).filter(|meant| *meant != name);
@@ -171,9 +184,19 @@ impl Loader<'_> {
                 self.report(renamed(one, element, "include"));
                 return Some("include");
             }
+            let is_implementation = |child: Element<'_>| child.local_name().starts_with("implementation.");
+            let around = element.parent();
+            if name == "include" && parent.name == "component" {
+                let is_only = !around.is_some_and(|around| around.children().any(is_implementation));
+                if is_only {
+                    self.report(renamed(one, element, "implementation.composite"));
+                    return Some("implementation.composite");
+                }
+                self.hide_components(element);
+            }
             self.report(match is_own {
                 true => one.help(format!("it is allowed in {}", list(vocabulary::own_parents(name).iter().copied()))),
-                false => one.help(holds()),
+                false => one.help(belongs_outside(name, parent).unwrap_or_else(holds)),
             });
             return None;
         }
@@ -195,12 +218,20 @@ impl Loader<'_> {
         self.report(match word.or(slip) {
             None if parent.has(name, self.version) && is_attribute_as_element(element) => as_attribute(one, element),
             Some(meant) => renamed(one, element, meant),
+            None if name.starts_with("implementation.") => one
+                .help("if it is an extension, write it with a prefix of its own namespace")
+                .help("`implementation.rust` and `implementation.java` name a class, `implementation.composite` a composite"),
             None if name.contains('.') => {
                 one.help("if it is an extension, write it with a prefix of its own namespace").help(holds())
             }
+            None if parent.name == "component" => as_property(one, element).help(holds()),
             None => one.help(holds()),
         });
-        slip.filter(|_| word.is_none())
+        match word {
+            // What it is called elsewhere has the same parts.
+            Some(meant) => Some(meant).filter(|meant| !meant.contains('.')),
+            None => slip,
+        }
     }
 
     /// Checks an element of SCA that the model does not keep: its version, and the names in it.
@@ -273,6 +304,8 @@ impl Loader<'_> {
             one.help("name the class with the attribute `class`")
         } else if is_of("reference") && element.attribute("target").is_none() {
             one.help("name the component that it calls with the attribute `target`")
+        } else if let Some(one) = as_tag(one.clone(), element, span, &KINDS_IN_TEXT) {
+            one
         } else {
             as_comment(one, element, span)
         });
@@ -347,6 +380,7 @@ fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
 fn word(name: &str) -> Option<&'static str> {
     Some(match name {
         "implementation" => "implementation.java",
+        "implementation.component" | "implementation.sca" => "implementation.composite",
         "interface" => "interface.java",
         "binding" => "binding.sca",
         "param" | "parameter" | "arg" | "argument" => "property",

@@ -20,6 +20,7 @@ mod root;
 #[cfg(test)]
 mod tests;
 pub mod vocabulary;
+mod wrong_place;
 
 use std::sync::Arc;
 
@@ -27,6 +28,7 @@ pub(crate) use children::renaming;
 pub use component_type::load_component_type;
 pub(crate) use read::ReadContext;
 pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
+pub(crate) use wrong_place::is_given_otherwise;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::model::{Composite, SeverityRule, Version};

@@ -87,6 +87,7 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
         (true, "contribution") => "this describes a contribution; name a composite in it",
         (true, "definitions") => "this holds policies; name a composite",
         (true, "component") => "put the component into a `composite`",
+        (true, _) => return renamed(one, root, "composite"),
         _ => return one,
     };
     one.help(hint)

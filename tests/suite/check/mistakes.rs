@@ -118,3 +118,22 @@ fn in_a_composite_with_policies() {
     let mistakes = include_str!("../../mistakes/guarded/mistakes.txt");
     hold(&files, mistakes, &expect_file!["../../mistakes/guarded/mistakes.txt"]);
 }
+
+macro_rules! shipped {
+    ($folder:literal: $($name:literal)*) => {
+        vec![$(($name, include_str!(concat!("../../../composites/", $folder, $name)).to_owned())),*]
+    };
+}
+
+#[test]
+fn in_the_fleet_of_the_readme() {
+    let mistakes = include_str!("../../mistakes/hall/mistakes.txt");
+    hold(&shipped!("": "hall.composite"), mistakes, &expect_file!["../../mistakes/hall/mistakes.txt"]);
+}
+
+#[test]
+fn in_a_fleet_of_teams() {
+    let files = shipped!("teams/": "teams.composite" "area.composite" "team.composite");
+    let mistakes = include_str!("../../mistakes/teams/mistakes.txt");
+    hold(&files, mistakes, &expect_file!["../../mistakes/teams/mistakes.txt"]);
+}

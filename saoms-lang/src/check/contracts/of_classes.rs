@@ -1,18 +1,21 @@
 //! Services and references of components, held against their classes.
 
+use std::collections::HashSet;
+
 use super::repeated_names::Owner;
 use super::{interface, multiplicity};
-use crate::check::contracts::offer::Offer;
+use crate::check::contracts::offer::{Offer, parts};
 use crate::check::fleet::Fleet;
-use crate::check::report::{Report, replacing};
+use crate::check::report::Report;
+use crate::check::report::swapped::swapped;
 use crate::diagnostic::{Code, Diagnostic, Severity, codes, quoted};
-use crate::load::renaming;
-use crate::model::{Binding, Multiplicity, Part, ServiceElement};
-use crate::source::Text;
-use crate::syntax::{Document, escaped};
+use crate::model::{Binding, Multiplicity, Part};
+use crate::source::{Location, Text};
+use crate::syntax::escaped;
 
 /// Checks the services and references of every component.
 pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
+    let mut told = Told::new();
     for (place, member) in fleet.members.iter().enumerate() {
         report.about(member);
         let component = member.component;
@@ -25,7 +28,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         owner.check("services", "ASM50002", component.services.iter().map(|one| &one.name), report);
         services(place, fleet, report);
         owner.check("references", "ASM50007", component.references.iter().map(|one| &one.name), report);
-        references(place, fleet, report);
+        references(place, fleet, &mut told, report);
     }
     report.about_all();
 }
@@ -55,7 +58,10 @@ fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
             Offer::Missing => {
                 let is_reference = fleet.reference_names(member).is_some_and(|names| names.contains(&name.as_str()));
                 if is_reference {
-                    swapped(service, &whose, &fleet.members[member].composite.document, report);
+                    let document = &fleet.members[member].composite.document;
+                    let written = (service.origin.element(document), &**document);
+                    let kinds = ("service", "reference");
+                    swapped((&codes::UNKNOWN_SERVICE, name), written, kinds, &whose, report);
                     continue;
                 }
                 let names = fleet.service_names(member).unwrap_or_default();
@@ -68,7 +74,10 @@ fn services(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
     }
 }
 
-fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
+/// References of composites that are reported as missing.
+type Told<'f> = HashSet<(Location, &'f str)>;
+
+fn references<'f>(member: usize, fleet: &'f Fleet<'_>, told: &mut Told<'f>, report: &mut Report<'_>) {
     let class = fleet.class_of(member);
     for reference in &fleet.members[member].component.references {
         let name = &reference.name;
@@ -87,9 +96,24 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
             let own = inner.multiplicity.map_or(Multiplicity::One, |own| own.value);
             multiplicity::check(reference, own, &whose, report);
         } else {
+            if class.is_some_and(|class| class.table.place(name).is_some()) {
+                let document = &fleet.members[member].composite.document;
+                let written = (reference.origin.element(document), &**document);
+                let kinds = ("reference", "property");
+                swapped((&codes::UNKNOWN_REFERENCE, name), written, kinds, &whose, report);
+                continue;
+            }
             let names = fleet.reference_names(member).unwrap_or_default();
+            // A service of this name that promotes a reference is reported.
+            if promotes_reference(member, name, fleet) {
+                continue;
+            }
             let inner = fleet.inner(member).filter(|_| names.is_empty() && !name.is_empty());
             if let Some(inner) = inner {
+                // One line in the composite mends it for all of its uses.
+                if !told.insert((inner.main().name.location, name.as_str())) {
+                    continue;
+                }
                 let message = format!("{whose} has no reference {}", quoted(name));
                 let one = Diagnostic::new(&codes::UNKNOWN_REFERENCE, name.location, message);
                 let promoting = format!("`<reference name=\"{}\" promote=\"COMPONENT/reference\"/>`", escaped(name));
@@ -102,17 +126,14 @@ fn references(member: usize, fleet: &Fleet<'_>, report: &mut Report<'_>) {
     }
 }
 
-/// Reports a service that is a reference, for which its `target` is no further mistake.
-fn swapped(service: &ServiceElement, whose: &str, document: &Document, report: &mut Report<'_>) {
-    let element = service.origin.element(document);
-    if let Some(target) = element.attribute("target") {
-        report.withdraw(&codes::UNKNOWN_ATTRIBUTE, target.name_span().in_file(document.file()));
-    }
-    let tag = element.prefix().map_or_else(|| "reference".to_owned(), |prefix| format!("{prefix}:reference"));
-    let edits = renaming(element, element.prefix(), "reference");
-    let message = format!("{} of {whose} is a reference, not a service", quoted(&service.name));
-    let one = Diagnostic::new(&codes::UNKNOWN_SERVICE, service.name.location, message);
-    report.push(one.suggest_edits(replacing(element.name(), &tag), edits));
+/// True if the composite of a component has a service of this name that promotes a reference.
+fn promotes_reference(member: usize, name: &str, fleet: &Fleet<'_>) -> bool {
+    let Some(inner) = fleet.inner(member) else { return false };
+    let of_service = inner.services().find(|one| one.name == name).and_then(|one| one.promote.as_ref());
+    let (component, Some(part)) = of_service.map_or(("", None), |promote| parts(promote)) else { return false };
+    let first = || fleet.group(inner.scope, component).and_then(|group| group.first().copied());
+    let promoted = fleet.find(inner.scope, component).or_else(first);
+    promoted.and_then(|promoted| fleet.reference_names(promoted)).is_some_and(|names| names.contains(&part))
 }
 
 /// Reports the name of a part that is not among those of a kind, which are called `all`.

@@ -27,6 +27,8 @@ pub(crate) struct PropertyTable<'r> {
     pub(crate) presets: &'r [(SmolStr, PropertyValue)],
     /// True if it is never executed, so that it has no task properties.
     pub(crate) is_passive: bool,
+    /// The names of its references.
+    pub(crate) references: Vec<&'r str>,
 }
 
 /// A property that components of a class can be given.
@@ -76,6 +78,7 @@ impl<'r> PropertyTable<'r> {
             name: class.name(),
             presets: class.presets(),
             is_passive: !declaration.is_periodic(),
+            references: declaration.references.iter().map(|one| one.name.as_str()).collect(),
             ..Self::own(&declaration.properties)
         };
         let task = if table.is_passive { &[] } else { TaskProperties::declarations() };
@@ -109,6 +112,7 @@ impl<'r> PropertyTable<'r> {
             required: Vec::new(),
             presets: &[],
             is_passive: false,
+            references: Vec::new(),
         }
     }
 

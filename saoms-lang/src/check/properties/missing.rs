@@ -2,9 +2,12 @@
 
 use super::Giver;
 use crate::assembly::TaskProperties;
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::fleet::property_table::PropertyTable;
 use crate::check::report::Report;
+use crate::check::report::swapped::swapped;
 use crate::diagnostic::{Diagnostic, codes, nearest, nearest_equal, quoted};
+use crate::load::is_given_otherwise;
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::syntax::Element;
@@ -13,6 +16,12 @@ use crate::syntax::Element;
 pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &PropertyTable<'_>, report: &mut Report<'_>) {
     let (name, at) = (&property.name, property.name.location);
     let of = quoted(table.name);
+    let document = &giver.member.composite.document;
+    if table.references.contains(&name.as_str()) && at.file == document.file() {
+        let (written, kinds) = ((property.origin.element(document), &**document), ("property", "reference"));
+        let whose = format!("{} {of}", table.what);
+        return swapped((&codes::UNKNOWN_PROPERTY, name), written, kinds, &whose, report);
+    }
     let is_task = table.is_passive && TaskProperties::declarations().iter().any(|task| task.name == name.as_str());
     let message = format!("{} {of} has no property {}", table.what, quoted(name));
     // What is given already is not meant a second time.
@@ -24,7 +33,11 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
             .help(format!("{} is given already: remove one of the two", quoted(given))),
         None => {
             let known = ("its properties are", table.names());
-            let mut one = report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known);
+            let elsewhere = if near.is_empty() { belongs_elsewhere(property, giver) } else { None };
+            let mut one = match elsewhere {
+                Some(help) => Diagnostic::new(&codes::UNKNOWN_PROPERTY, at, message).help(help),
+                None => report.unknown(&codes::UNKNOWN_PROPERTY, at, message, name, known),
+            };
             one.suggestions.retain(|one| !one.edits.iter().any(|edit| is_given(&edit.replacement)));
             one
         }
@@ -39,6 +52,18 @@ pub(crate) fn unknown(property: &Property, giver: &Giver<'_, '_>, table: &Proper
         false if table.names().next().is_none() => one.help(format!("{of} has no properties at all")),
         false => one,
     });
+}
+
+/// Where a property belongs that is one of another class of the fleet, or an attribute of SAOMS.
+fn belongs_elsewhere(property: &Property, giver: &Giver<'_, '_>) -> Option<String> {
+    let name = property.name.as_str();
+    if ["count", "from", "overrides", "site", "if"].contains(&name) {
+        let value = property.simple_value().map_or("...", |value| value.value.as_str());
+        return Some(format!("write it in the start tag of the component: `saoms:{name}=\"{value}\"`"));
+    }
+    let has_it = |class: &&ClassIndex<'_>| class.table.all.iter().any(|one| one.own().is_some() && one.name == name);
+    let class = giver.classes.iter().find(has_it)?;
+    Some(format!("class {} has this property: give it to a component of that class", quoted(class.table.name)))
 }
 
 /// The only property that has to be given and is not, where the only unknown one is probably meant for it.
@@ -90,7 +115,7 @@ pub(crate) fn missing(
             .chain(implementation.map(|implementation| implementation.origin.element(document)));
         giver.member.composite.version.is_1_1() && elements.any(|one| one.attribute(name).is_some())
     };
-    if stands_for(giver, table) == Some(name) {
+    if stands_for(giver, table) == Some(name) || is_given_otherwise(element, name) {
         return;
     }
     if giver.properties.iter().any(is_meant) || element.children().any(is_property) || is_attribute() {

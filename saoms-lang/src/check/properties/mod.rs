@@ -10,6 +10,7 @@ pub(crate) mod missing;
 pub(crate) mod unread;
 mod wrong_text;
 
+use crate::check::fleet::class_index::ClassIndex;
 use crate::check::fleet::{Fleet, Kind, Member};
 use crate::check::parameters::Parameters;
 use crate::check::report::Report;
@@ -33,18 +34,24 @@ pub(crate) struct Giver<'m, 'a> {
     pub(crate) member: &'m Member<'a>,
     /// The component type beside the class, whose values hold where the component gives none.
     described: Option<&'a ComponentType>,
+    /// The classes of the fleet, whose properties may be meant.
+    classes: &'m [ClassIndex<'a>],
 }
 
 impl<'m, 'a> Giver<'m, 'a> {
-    pub(crate) fn component(member: &'m Member<'a>, described: Option<&'a ComponentType>) -> Self {
+    pub(crate) fn component(
+        member: &'m Member<'a>,
+        described: Option<&'a ComponentType>,
+        classes: &'m [ClassIndex<'a>],
+    ) -> Self {
         let component = member.component;
         let (name, properties) = (&component.name, &component.properties);
-        Self { what: "component", name, origin: component.origin, properties, member, described }
+        Self { what: "component", name, origin: component.origin, properties, member, described, classes }
     }
 
     pub(crate) fn looping(one: &'a LoopElement, member: &'m Member<'a>) -> Self {
         let properties = &one.properties;
-        Self { what: "loop", name: &one.name, origin: one.origin, properties, member, described: None }
+        Self { what: "loop", name: &one.name, origin: one.origin, properties, member, described: None, classes: &[] }
     }
 
     /// The properties that a file beside the class gives values to, with its document.
@@ -69,7 +76,7 @@ pub(crate) fn check_all<'a>(
         parameters.types(member, report);
         let mut given = PropertyValues::default();
         if let Kind::Class(index) = member.kind {
-            let giver = Giver::component(member, fleet.component_type(place));
+            let giver = Giver::component(member, fleet.component_type(place), &fleet.classes);
             given = check(&giver, &fleet.classes[index].table, parameters, report);
         } else {
             composite_properties::repeated(member.component, report);

@@ -1,6 +1,7 @@
 //! The report: collects diagnostics, removes duplicates, and joins those of replicas.
 
 pub(crate) mod severities;
+pub(crate) mod swapped;
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;

@@ -43,8 +43,8 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
     }
     let places = text.char_indices().filter(|(_, character)| BEHIND.contains(character));
     let mut split = places.map(|(at, _)| (&text[..at], text[at..].trim_start_matches(BEHIND)));
-    let (component, behind) =
-        split.find(|(component, behind)| !behind.is_empty() && fleet.find(scope, component).is_some())?;
+    let is_known = |name: &str| fleet.find(scope, name).is_some() || fleet.group(scope, name).is_some();
+    let (component, behind) = split.find(|(component, behind)| !behind.is_empty() && is_known(component))?;
     let parts: Vec<&str> = behind.split(['/', '.']).collect();
     let promoted = fleet.find(scope, component).and_then(|member| inside(member, &parts, side, fleet));
     let plain = || {
@@ -96,12 +96,24 @@ pub(crate) fn unknown_component(
     report: &mut Report<'_>,
 ) -> Diagnostic {
     let own = own.map(|own| fleet.members[own].component.name.as_str());
+    let group = format!("{name}*");
+    if is_promoted && fleet.group(scope, &group).is_some() {
+        return Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).replace(name, at, &group);
+    }
     if let Some((meant, help)) = nearest_replica(name, scope, fleet) {
         let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help);
-        return match Some(meant) == own {
-            true => one,
-            false => one.replace(name, at, meant),
+        // Where the composite is used again, its replicas may have other numbers.
+        let pattern = pattern_of(name, scope, fleet).filter(|_| is_promoted);
+        return match (pattern, Some(meant) == own) {
+            (Some(pattern), _) => one.replace(name, at, pattern),
+            (None, true) => one,
+            (None, false) => one.replace(name, at, meant),
         };
+    }
+    if let Some(meant) = of_part(name, (scope, is_promoted), fleet) {
+        let what = if is_promoted { "reference" } else { "service" };
+        let help = format!("{} is a {what}: write the name of its component before it", quoted(name));
+        return Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help).replace(name, at, &meant);
     }
     // A reference of a composite can stand for those of all replicas.
     let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
@@ -109,6 +121,33 @@ pub(crate) fn unknown_component(
     let names = fleet.names(scope).filter(|name| Some(*name) != own && !name.contains(char::is_whitespace));
     let known = ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
     report.unknown(&codes::UNKNOWN_COMPONENT, at, message, name, known)
+}
+
+/// The name of the group of replicas of which one with another number is named.
+fn pattern_of<'f>(name: &str, scope: usize, fleet: &'f Fleet<'_>) -> Option<&'f str> {
+    let without = |name: &str| name.replace(|letter: char| letter.is_ascii_digit() || letter == '*', "");
+    fleet.group_names(scope).find(|group| without(group) == without(name))
+}
+
+/// What is meant by the name of a service, or of a reference that is promoted, without its component: the only one of
+/// that name in the scope.
+fn of_part(name: &str, (scope, is_promoted): (usize, bool), fleet: &Fleet<'_>) -> Option<String> {
+    let names = |member: usize| match is_promoted {
+        true => fleet.reference_names(member),
+        false => fleet.service_names(member),
+    };
+    let has_it = |member: usize| names(member).is_some_and(|names| names.contains(&name));
+    let mut groups = fleet.group_names(scope).filter(|_| is_promoted).filter_map(|group| {
+        let first = *fleet.group(scope, group)?.first()?;
+        has_it(first).then_some((group, fleet.group(scope, group)?.len()))
+    });
+    let members = fleet.scopes[scope].members.iter().copied();
+    let all: Vec<usize> = members.filter(|member| has_it(*member)).take(1000).collect();
+    match (groups.next(), &all[..]) {
+        (Some((group, count)), all) if all.len() == count => Some(format!("{group}/{name}")),
+        (_, [only]) => Some(format!("{}/{name}", fleet.members[*only].component.name)),
+        _ => None,
+    }
 }
 
 /// The replica of a scope with the number that is the nearest to that of a name which is like those of a group, and

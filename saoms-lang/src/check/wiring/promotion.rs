@@ -56,7 +56,7 @@ impl<'f> Promoted<'f> {
         owner.check("services", "ASM60003", unit.services().map(|one| &one.name), report);
         owner.check("references", "ASM60006", unit.references().map(|one| &one.name), report);
         for (service, promote) in unit.services().filter_map(|one| Some((one, one.promote.as_ref()?))) {
-            if let Some(found) = find(promote, Side::Service, unit, fleet, report) {
+            if let Some(found) = find((promote, promote), Side::Service, unit, fleet, report) {
                 promoted::service(service, found, fleet, report);
             }
         }
@@ -77,9 +77,13 @@ impl<'f> Promoted<'f> {
         let mut found: Vec<Found<'f>> = Vec::new();
         for promote in &reference.promote {
             for (text, _) in spread(promote, unit.scope, fleet) {
-                match find(&text, Side::Reference, unit, fleet, report) {
+                match find((&text, promote), Side::Reference, unit, fleet, report) {
                     Some(one) => found.push((one, text.location)),
-                    None => self.dangling.add(unit.scope, Some(promote), fleet),
+                    None => {
+                        // Replicas have the same references.
+                        self.dangling.add(unit.scope, Some(promote), fleet);
+                        break;
+                    }
                 }
             }
         }
@@ -182,15 +186,32 @@ fn find_given<'f>(
     }
 }
 
-/// The part that a URI promotes. Faults are reported.
+/// Reports a service that promotes a reference of replicas: it is to be one, too.
+fn is_of_replicas(uri: &Uri<'_>, (scope, written): (usize, &Text), fleet: &Fleet<'_>, report: &mut Report<'_>) -> bool {
+    let first = fleet.group(scope, uri.component).and_then(|group| group.first().copied());
+    let Some((first, (name, at))) = first.zip(uri.part.as_ref()) else { return false };
+    if !fleet.reference_names(first).is_some_and(|names| names.contains(name)) {
+        return false;
+    }
+    let message = format!("component {} has no service {}", quoted(uri.component), quoted(name));
+    let one = Diagnostic::new(&codes::UNKNOWN_PROMOTED, report.part(written, at.clone()), message);
+    let help = format!("{} is a reference: promote it with `<reference ...>`", quoted(name));
+    report.push(one.rule(Side::Service.rule()).help(help));
+    true
+}
+
+/// The part that a URI promotes, that of one of the replicas for which it is written. Faults are reported.
 fn find<'f>(
-    text: &Text,
+    (text, written): (&Text, &Text),
     side: Side,
     unit: &Unit<'_>,
     fleet: &'f Fleet<'_>,
     report: &mut Report<'_>,
 ) -> Option<ReferenceId<'f>> {
     let uri = Uri::of(text, (2, side), (unit.scope, fleet), report)?;
+    if side == Side::Service && is_of_replicas(&uri, (unit.scope, written), fleet, report) {
+        return None;
+    }
     let member = uri.member(text, (unit.scope, None), fleet, Some(side.rule()), report)?;
     let (services, references) = (fleet.service_names(member), fleet.reference_names(member));
     let (names, other, others) = match side {
@@ -200,7 +221,7 @@ fn find<'f>(
     let Some(names) = names else {
         return find_given(text, &uri, member, side, fleet, report).map(|name| (member, name));
     };
-    let (what, component) = (side.name(), quoted(uri.component));
+    let (what, component) = (side.name(), quoted(parts(written).0));
     let only = match side {
         Side::Service => fleet.only_service(member),
         Side::Reference => (names.len() == 1).then(|| names[0]),
@@ -213,7 +234,8 @@ fn find<'f>(
             }
             let message = format!("component {component} has no {what} {}", quoted(name));
             let known = (&*format!("its {what}s are"), names.iter().copied());
-            let at = report.part(text, at.clone());
+            // What is written of a group of replicas differs in its component alone.
+            let at = report.part(written, written.len().saturating_sub(text.len() - at.start)..written.len());
             let one = report.unknown(code, at, message, name, known);
             match others.is_some_and(|names| names.contains(name)) {
                 true => one.help(format!("{} is a {other}: promote it with `<{other} ...>`", quoted(name))),

@@ -61,6 +61,7 @@ impl Wires<'_, '_> {
             || own.repeated.is_some()
             || dangling.iter().any(|one| one.means(place, fleet))
             || is_misspelt(place, fleet)
+            || is_sought(place, fleet)
         {
             return true;
         }
@@ -93,6 +94,14 @@ impl Wires<'_, '_> {
         report.push(if is_1_1 { one } else { one.help("without a target, calls through it fail") });
         is_1_1 || is_unknown
     }
+}
+
+/// True if the component around gives its composite a reference of this name, which that does not promote, as is
+/// reported.
+fn is_sought((member, name): ReferenceId<'_>, fleet: &Fleet<'_>) -> bool {
+    let Some(owner) = fleet.scopes[fleet.members[member].scope].owner else { return false };
+    let promoted = || fleet.reference_names(owner).unwrap_or_default().contains(&name);
+    fleet.members[owner].component.reference(name).is_some() && !promoted()
 }
 
 /// The sources of wires and what references promote, where they lead nowhere, which is reported.

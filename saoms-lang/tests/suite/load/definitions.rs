@@ -93,6 +93,7 @@ fn what_the_schema_of_1_1_forbids_is_told_where_it_stands() {
         definitions.xml:5:48 [intentMap] error S1008 `intentMap` needs the attribute `provides`
           add `provides="..."` to it
         definitions.xml:5:81 [name=''] error S1011 the attribute `name` is empty
+          write its value between the quotes
         definitions.xml:5:103 [policySetReference] error S1008 `policySetReference` needs the attribute `name`
           add `name="..."` to it
         definitions.xml:6:10 [intentMap] error S1005 `intentMap` is not allowed in `definitions`

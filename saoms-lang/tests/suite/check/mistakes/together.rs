@@ -386,7 +386,7 @@ fn slips_that_many_make_have_hints() {
           fix: replace `${3}` with `3` [5:42-46 "3"]
         6:22-43 error S1004: SCA 1.1 has no element `implementation.python`
           help: if it is an extension, write it with a prefix of its own namespace
-          help: `component` can contain `implementation.*`, `property`, `service`, `reference`, `requires`, `policySetAttachment`, `documentation`, `extensions`
+          help: `implementation.rust` and `implementation.java` name a class, `implementation.composite` a composite
         7:22-40 error S1004: SCA 1.1 has no element `implementation.jva`
           fix: replace `implementation.jva` with `implementation.java` [7:22-40 "implementation.java"]
         8:53-65 error S2031: there is no composite `in.composite` in the namespace `urn:t`

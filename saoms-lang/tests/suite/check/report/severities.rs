@@ -251,6 +251,7 @@ fn what_is_wrong_with_severities_is_found() {
         3:46-60 error S1008: `saoms:severity` needs the attribute `code`
           help: add `code="..."` to it
         3:75-84 error S1011: the attribute `reason` is empty
+          help: write its value between the quotes
         4:118-126 error S1004: `severity` is an element of SAOMS: it has to be in the namespace `urn:saoms:1`
           help: write `<saoms:severity .../>`, and `xmlns:saoms="urn:saoms:1"` in the composite's start tag
           fix: replace `severity` with `saoms:severity` [4:118-126 "saoms:severity"]

@@ -53,6 +53,7 @@ fn conditions_take_away_what_is_checked_all_the_same() {
         7:31-36 error S2045: the composite has no property `index`
           help: give the component a `saoms:count`: `index` is the number of a replica
         8:21-32 error S1011: the attribute `saoms:if` is empty
+          help: write its value between the quotes
     "#]].assert_eq(&of(
         r#"<property name="site">north</property>
 <component name="A" saoms:if="site == 'south'"><implementation.java class="example.Robot"/><property name="ID">A</property><property name="number">100</property><property name="sped">1</property></component>
