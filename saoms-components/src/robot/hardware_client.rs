@@ -10,6 +10,8 @@ pub(crate) struct HardwareClient {
     hardware: HardwareReference,
     wired: bool,
     entered: bool,
+    /// True while the component behind the reference is not started.
+    absent: bool,
     running: Option<Action>,
 }
 
@@ -25,7 +27,7 @@ impl HardwareClient {
     pub(crate) fn new(context: &mut Context<'_>) -> Result<HardwareClient, Failure> {
         let hardware: HardwareReference = context.reference("world")?;
         let wired = context.is_wired(&hardware);
-        Ok(HardwareClient { hardware, wired, entered: !wired, running: None })
+        Ok(HardwareClient { hardware, wired, entered: !wired, absent: false, running: None })
     }
 
     /// True if there is hardware.
@@ -36,6 +38,11 @@ impl HardwareClient {
     /// True if the robot is registered with the hardware.
     pub(crate) fn has_entered(&self) -> bool {
         self.entered
+    }
+
+    /// True if the robot waits for the component behind its reference to be started.
+    pub(crate) fn is_absent(&self) -> bool {
+        self.absent
     }
 
     /// Registers the robot; the answer is its real position, and the area.
@@ -49,7 +56,9 @@ impl HardwareClient {
         if self.entered {
             return Ok(Reply::Answer((block, None)));
         }
-        let block = match reply(self.hardware.enter(context, robot, name.to_owned(), block))? {
+        let answer = self.hardware.enter(context, robot, name.to_owned(), block);
+        self.absent = matches!(answer, Err(CallError::NotRunning { .. }));
+        let block = match reply(answer)? {
             Reply::Answer(block) => block,
             Reply::Later => return Ok(Reply::Later),
         };

@@ -148,6 +148,9 @@ impl RobotKnowledge {
         if self.shut_down {
             return Some("assistance".to_owned());
         }
+        if self.hardware.is_absent() {
+            return Some("its world, which is not started".to_owned());
+        }
         let Variables { transporter, healer, critical, .. } = self.variables;
         let has_work = self.job.is_some() || self.untold.is_some() || transporter || healer || critical;
         let knows_work = !self.lists.requests.open().is_empty() || !self.lists.helps.open().is_empty();

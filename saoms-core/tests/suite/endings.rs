@@ -85,6 +85,19 @@ fn in_virtual_time_a_fleet_without_scheduled_components_ends() {
 }
 
 #[test]
+fn a_fleet_that_nobody_starts_is_not_done() {
+    let (fleet, _) = start(
+        "A actor startup=false\nB actor startup=false\nC callee\nD actor startup=false\nE actor startup=false",
+        saoms_core::schedule::Settings::simulated(1),
+    );
+    assert_eq!(
+        outcome(&fleet.unwrap().run_to_end()),
+        "Incomplete after 0 s\n- no component is scheduled, and in virtual time nothing else happens: nobody starts \
+         `A`, `B`, `D` and 1 more"
+    );
+}
+
+#[test]
 fn a_fleet_of_passive_components_lasts_until_it_is_stopped() {
     let (fleet, diary) = start("A callee last=[log last]", saoms_core::schedule::Settings::default());
     let fleet = fleet.unwrap();

@@ -67,3 +67,17 @@ fn who_has_not_heard_the_last_message_or_leaves_by_itself_may_act() {
     );
     assert_eq!(outcome, "Done after 130 s");
 }
+
+#[test]
+fn who_is_not_started_is_told_although_nobody_votes() {
+    let told = "nothing has happened since 0.000 s, and nothing more can: `B` is not started; `A` waits for news";
+    let (outcome, diary) = endless("A actor period=10 waits=[news]\nB actor startup=false");
+    assert_eq!((outcome.as_str(), diary.as_str()), (&*format!("Incomplete after 60 s\n- {told}"), ""));
+    // A says nothing of itself: it may still act, and an end is the user's.
+    check(
+        "A actor period=60000\nB actor startup=false",
+        7_200_000,
+        "[3600.000 s] nothing has happened since 0.000 s: `B` is not started
+         Elapsed after 7200 s",
+    );
+}

@@ -21,7 +21,8 @@ fn hall(name: &str, change: impl Fn(String) -> String, options: &[&str]) -> (Out
 
 /// The line that says how the run ended, and those below it up to the table.
 fn end(output: &Output) -> String {
-    let shown = stdout(output);
+    // Where nothing happened, it is the first that is shown.
+    let shown = format!("\n{}", stdout(output));
     let from = shown.find("\n\n").unwrap_or_else(|| panic!("{}", text(output))) + 2;
     shown[from..].split("\n\n").next().unwrap().to_owned()
 }
@@ -62,7 +63,11 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
     let id = "<property name=\"ID\" value=\"Robot7\"/>";
     let later = format!("{id}<property name=\"runOnStartup\" value=\"false\"/>");
     let needs_robot = "`World` waits for a robot with a reference `world` to it, to carry luggage 1";
-    let fleets: [(&str, Change<'_>, &str, &[&str]); 4] = [
+    let off = |hall: String, id: &str| {
+        let id = format!("<property name=\"ID\" value=\"{id}\"/>");
+        hall.replace(&id, &format!("{id}<property name=\"runOnStartup\" value=\"false\"/>"))
+    };
+    let fleets: [(&str, Change<'_>, &str, &[&str]); 6] = [
         (
             "robot",
             &|hall| hall.replace(&component("Robot7"), ""),
@@ -96,13 +101,29 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
                 "`Robot7` waits for luggage",
             ],
         ),
+        (
+            "running-world",
+            &|hall| off(hall, "World"),
+            "1.000 s",
+            &[
+                "`Environment` and 1 more wait for a robot to carry luggage 1",
+                "`World` is not started",
+                "`Robot7` waits for its world, which is not started",
+            ],
+        ),
+        (
+            "running-environment",
+            &|hall| off(hall, "Environment"),
+            "0.000 s",
+            &["`Environment` is not started", "`World` and 1 more wait for luggage", "`Master` waits for events"],
+        ),
     ];
     for (name, change, since, waits) in fleets {
         let (output, report) = hall(&format!("outcome-no-{name}"), change, &[]);
         assert_eq!(code(&output), 1, "{}", text(&output));
         let told = format!("nothing has happened since {since}, and nothing more can: {}", waits.join("; "));
         let (first, rest) = end(&output).split_once('\n').map(|(one, rest)| (one.to_owned(), rest.to_owned())).unwrap();
-        assert!(first.starts_with("incomplete after 6"), "{first}");
+        assert!(first.starts_with("incomplete after 6"), "{name}: {first}");
         assert_eq!(rest, format!("  {told}"), "{name}");
         assert_eq!(report["outcome"], serde_json::json!({"status": "incomplete", "reasons": [told]}));
         assert_eq!(report["standstill"]["ends"], true, "{name}");

@@ -53,7 +53,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
                 shared.clock.jump(now);
                 if now >= endless && engine.pause == NEVER {
                     endless = NEVER;
-                    if engine.votes.voters == 0 {
+                    if engine.votes.voters == 0 && engine.standstill.told.is_none() {
                         shared.note(Level::Warning, endless_warning());
                     }
                 }

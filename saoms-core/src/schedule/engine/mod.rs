@@ -203,7 +203,9 @@ impl Engine {
                         self.look_at = self.injections.earliest().map_or(quiet, |when| when.min(quiet));
                     }
                     let Some((when, index)) = self.queue.pop_due(now) else {
-                        return Next::Wait(self.earliest().unwrap_or(NEVER).min(self.limit));
+                        // Real time passes also where nobody executes: a standstill is told then, too.
+                        let look_at = if self.real { self.look_at } else { NEVER };
+                        return Next::Wait(self.earliest().unwrap_or(NEVER).min(look_at).min(self.limit));
                     };
                     let slot = &mut self.slots[index as usize];
                     if slot.entry != when {

@@ -69,12 +69,13 @@ impl Engine {
         }
     }
 
-    fn given_up_reason(&self) -> String {
-        let mut names = self.slots.iter().filter(|slot| slot.gave_up).map(|slot| format!("`{}`", slot.name));
+    /// The names of some components for a reason; `None` where there are none.
+    fn names(&self, are_meant: impl Fn(&Slot) -> bool) -> Option<String> {
+        let mut names = self.slots.iter().filter(|slot| are_meant(slot)).map(|slot| format!("`{}`", slot.name));
         let shown: Vec<String> = names.by_ref().take(REASON_NAMES).collect();
         let more = names.count();
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        format!("work was given up, reported by {}{more}", shown.join(", "))
+        (!shown.is_empty()).then(|| format!("{}{more}", shown.join(", ")))
     }
 
     fn outcome(&self) -> Outcome {
@@ -82,8 +83,8 @@ impl Engine {
         let status = match self.cause {
             Some(EndCause::Interrupted) => RunStatus::Interrupted,
             _ if !reasons.is_empty() => RunStatus::Failed,
-            _ if self.slots.iter().any(|slot| slot.gave_up) => {
-                reasons.push(self.given_up_reason());
+            _ if let Some(names) = self.names(|slot| slot.gave_up) => {
+                reasons.push(format!("work was given up, reported by {names}"));
                 RunStatus::Incomplete
             }
             Some(EndCause::Standstill) => {
@@ -92,8 +93,11 @@ impl Engine {
             }
             Some(EndCause::Elapsed) => RunStatus::Elapsed,
             Some(EndCause::Idle) => {
-                reasons.push("no component is scheduled, and in virtual time nothing else happens".to_owned());
-                RunStatus::Done
+                let has_run = self.slots.iter().any(|slot| slot.statistics.executions > 0);
+                let left_out = self.names(|slot| !has_run && slot.is_left_out());
+                let which = left_out.as_ref().map(|names| format!(": nobody starts {names}")).unwrap_or_default();
+                reasons.push(format!("no component is scheduled, and in virtual time nothing else happens{which}"));
+                if left_out.is_some() { RunStatus::Incomplete } else { RunStatus::Done }
             }
             Some(EndCause::Done | EndCause::Lost) | None => RunStatus::Done,
         };

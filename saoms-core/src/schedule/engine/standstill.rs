@@ -63,7 +63,8 @@ impl Engine {
     /// The next component to ask what it waits for, while nothing happens. When all were asked, the standstill is told,
     /// or ends the run if nothing can happen any more.
     pub(crate) fn next_to_ask(&mut self, now: u64) -> Option<u32> {
-        if self.votes.done == self.votes.voters {
+        let has_voters = self.votes.voters > 0;
+        if has_voters && self.votes.done == self.votes.voters {
             // No work is left: a fleet may be idle.
             return None;
         }
@@ -73,7 +74,10 @@ impl Engine {
         }
         let round = (detector.last_effect, detector.patience);
         if detector.round != round {
-            (detector.round, detector.next) = (round, 0);
+            detector.round = round;
+            // Without a vote there is work to tell of only where a component waits to be started.
+            let asks = has_voters || self.slots.iter().any(Slot::is_left_out);
+            detector.next = if asks { 0 } else { self.slots.len() + 1 };
         }
         while let Some(slot) = self.slots.get_mut(self.standstill.next) {
             self.standstill.next += 1;
@@ -129,6 +133,11 @@ impl Engine {
 }
 
 impl Slot {
+    /// True if the component executes once somebody schedules it.
+    pub(crate) fn is_left_out(&self) -> bool {
+        self.joined && self.policy.periodic && self.state == SlotState::Idle
+    }
+
     /// True unless the component waits, and knows all that happened up to a time.
     fn may_act(&self, since: u64) -> bool {
         match self.state {
