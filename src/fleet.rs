@@ -13,6 +13,7 @@ use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::FleetArguments;
+use crate::output::Outputs;
 use crate::plugins::{CommandClasses, search, usable};
 
 /// The project of a command line.
@@ -29,7 +30,7 @@ pub(crate) fn project(arguments: &FleetArguments) -> Project {
 /// Takes a step with a project and the classes of a command line.
 ///
 /// # Errors
-/// A plugin cannot be used, which was reported.
+/// A plugin cannot be used, or standard output is a file that was read: it was reported.
 pub(crate) fn compiled<T>(
     arguments: &FleetArguments,
     step: impl FnOnce(Project, &CommandClasses<'_>) -> Compilation<T>,
@@ -37,6 +38,7 @@ pub(crate) fn compiled<T>(
     let classes = CommandClasses::new(&arguments.plugins)?;
     let compilation = step(project(arguments), &classes);
     usable(&compilation.problems)?;
+    Outputs::beside(files_read(&compilation, arguments)).with_streams()?;
     Ok(compilation)
 }
 

@@ -12,7 +12,7 @@ use saoms_tools::format::Formatted;
 
 use crate::Exit;
 use crate::arguments::parse_size;
-use crate::output::{Place, displayed, eprint, eprint_coloured, print, print_as_is, replace};
+use crate::output::{Outputs, Place, displayed, eprint, eprint_coloured, print, print_as_is, replace};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -52,6 +52,9 @@ pub(crate) fn fmt(arguments: &FmtArguments) -> Exit {
     if let Some(refused) = refused {
         eprint_coloured(&shown(&refused));
         is_wrong = true;
+    }
+    if let Err(exit) = Outputs::beside(files.iter().cloned()).with_streams() {
+        return exit;
     }
     let mut seen = HashSet::with_capacity(files.len());
     files.retain(|path| seen.insert(path.clone()));

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::why::document;
 use crate::Exit;
-use crate::output::{eprint, print_json};
+use crate::output::{Outputs, eprint, print_json};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -40,6 +40,9 @@ const UNKNOWN: [&str; 7] = [
 
 pub(crate) fn report(arguments: &ReportArguments) -> Exit {
     let path = arguments.from_journal.as_path();
+    if let Err(exit) = Outputs::beside([path.to_owned()]).with_streams() {
+        return exit;
+    }
     let rebuilt = document(path).and_then(|document| match document.is_report {
         true => Err(format!("`{}` is a report already", path.display())),
         false => Ok(rebuilt(&document)),

@@ -10,7 +10,7 @@ use saoms_lang::project::INPUT;
 
 use super::displayed;
 use super::place::{Identity, Place};
-use super::standard::eprint;
+use super::standard::{eprint, print};
 use crate::Exit;
 
 /// An output that a command was asked for.
@@ -59,6 +59,23 @@ impl Outputs {
             }
         }
         outputs
+    }
+
+    /// Refuses standard output and standard error where they would be written over a file that is read, as in
+    /// `saoms expand site.composite >> site.composite`.
+    ///
+    /// # Errors
+    /// One of them is such a file, which was told on the other one.
+    pub(crate) fn with_streams(self) -> Result<Outputs, Exit> {
+        let read = |descriptor| self.read.get(&Place::Descriptor(descriptor).identity()?);
+        let told = |(stream, descriptor)| Some(stream_is_read(stream, read(descriptor)?));
+        match STREAMS.map(told) {
+            [None, None] => return Ok(self),
+            [Some(output), None] => eprint(&output),
+            [None, Some(errors)] => print(&errors),
+            [Some(_), Some(_)] => {}
+        }
+        Err(Exit::WrongInput)
     }
 
     /// Adds an output.
@@ -132,6 +149,14 @@ impl Asked<'_> {
             "error: {other} and the {what} cannot both be written to `{path}`\n  = help: give `{option}` another file\n"
         )
     }
+}
+
+fn stream_is_read(stream: &str, read: &Path) -> String {
+    let which = match () {
+        () if read == Path::new(INPUT) => "the file that standard input reads".to_owned(),
+        () => format!("`{}`, which is an input", displayed(read)),
+    };
+    format!("error: {stream} is {which}\n  = help: send {stream} to another file\n")
 }
 
 /// Writes texts into a folder, which is made if it is not there, beside files that are read. None is written where one

@@ -13,8 +13,8 @@ use serde::ser::Serializer;
 use crate::Exit;
 use crate::arguments::FleetArguments;
 use crate::fleet::{DiagnosticReport, project};
-use crate::output::{counted, displayed, eprint_coloured, print, print_json};
-use crate::plugins::{CommandClasses, usable};
+use crate::output::{Outputs, counted, displayed, eprint_coloured, print, print_json};
+use crate::plugins::{CommandClasses, search, usable};
 use wiring::Wiring;
 
 const EXIT_CODES: &str = "\
@@ -58,8 +58,11 @@ pub(crate) fn check(arguments: &CheckArguments) -> Exit {
     };
     let project = project(&arguments.fleet).assume_classes(arguments.assume_classes).wiring(arguments.wiring);
     let found = project.compile_each(&classes);
-    let Compilations { outputs, fleets, problems, .. } = &found;
-    if let Err(exit) = usable(problems) {
+    let Compilations { outputs, fleets, problems, sources, .. } = &found;
+    let files = &arguments.fleet.files;
+    let read = sources.open().files_read().into_iter().chain(files.iter().cloned());
+    let read = read.chain(search(&arguments.fleet.plugins, files).files());
+    if let Err(exit) = usable(problems).and_then(|()| Outputs::beside(read).with_streams()) {
         return exit;
     }
     let shown = DiagnosticReport::from(&found);

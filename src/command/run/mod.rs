@@ -27,7 +27,7 @@ use saoms_lang::project::INPUT;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
-use crate::output::{counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
+use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use console::Console;
 use ending::{Signalled, end_without_reader};
 use events::Events;
@@ -143,6 +143,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         return Exit::WrongInput;
     }
     let Some((assembly, read)) = assembly(arguments, files) else { return Exit::WrongInput };
+    if let Err(exit) = Outputs::beside(arguments.events.clone()).with_streams() {
+        return exit;
+    }
     let events = arguments.events.as_deref().map(|path| (path, Events::open(path, arguments.seed)));
     let events = match events {
         Some((path, Err(error))) => {

@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::Exit;
 use crate::arguments::Format;
-use crate::output::{eprint, print, print_as_is};
+use crate::output::{Outputs, eprint, print, print_as_is};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -47,6 +47,9 @@ pub(crate) struct WhyArguments {
 }
 
 pub(crate) fn why(arguments: &WhyArguments) -> Exit {
+    if let Err(exit) = Outputs::beside([arguments.report.clone()]).with_streams() {
+        return exit;
+    }
     let show = |text: &str| match arguments.format {
         Format::Human => print(text),
         Format::Json => print_as_is(text),

@@ -10,7 +10,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::plugins::library;
-use crate::support::{answer, code, command, saoms_in, stderr};
+use crate::support::{answer, code, command, saoms_in, stderr, stdout};
 
 const SITE: &str = r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:saoms="urn:saoms:1" xmlns:s="urn:site" name="site" targetNamespace="urn:site">
   <include name="s:yard"/>
@@ -117,6 +117,58 @@ fn what_a_run_reads_is_no_output_by_whatever_path() {
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("it is read from standard input"), "{}", stderr(&output));
     assert_eq!(site.text("yard.composite"), YARD);
+}
+
+/// The file, opened as a shell does for `>>`.
+fn appended(site: &Site, name: &str) -> File {
+    File::options().append(true).open(site.path().join(name)).unwrap()
+}
+
+#[test]
+fn standard_output_is_no_file_that_is_read() {
+    let site = Site::new();
+    assert_eq!(code(&site.run(&["--journal", "journal"])), 0);
+    symlink("robots.csv", site.path().join("link.csv")).unwrap();
+    let cases: [(&[&str], &str); 11] = [
+        (&["expand", "site.composite"], "site.composite"),
+        (&["check", "site.composite"], "south.scenario"),
+        (&["check", "site.composite", "--format", "json"], "link.csv"),
+        (&["check", ".", "--format", "sarif"], "yard.composite"),
+        (&["check", "site.composite"], "libhello.so"),
+        (&["graph", "site.composite"], "robots.csv"),
+        (&["run", "site.composite", "--virtual", "--for", "1s"], "robots.csv"),
+        (&["run", "site.composite", "--virtual", "--for", "1s", "--events", "later.events"], "later.events"),
+        (&["why", "Robot1", "--report", "journal"], "journal"),
+        (&["report", "--from-journal", "journal"], "journal"),
+        (&["fmt", "--check", "site.composite"], "site.composite"),
+    ];
+    for (arguments, name) in cases {
+        let before = fs::read(site.path().join(name)).unwrap();
+        let run = |arguments| {
+            let mut run = command(arguments);
+            run.current_dir(site.path());
+            run
+        };
+        let output = run(arguments).stdout(appended(&site, name)).output().unwrap();
+        let told = stderr(&output);
+        let read = if name == "link.csv" { "robots.csv" } else { name };
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert!(told.starts_with("error: standard output is `") && told.contains(read), "{arguments:?}: {told}");
+        assert!(told.ends_with("`, which is an input\n  = help: send standard output to another file\n"), "{told}");
+        let output = run(arguments).stderr(appended(&site, name)).output().unwrap();
+        let told = stdout(&output);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert!(told.starts_with("error: standard error is `"), "{arguments:?}: {told}");
+        let output = run(arguments).stdout(appended(&site, name)).stderr(appended(&site, name)).output().unwrap();
+        assert_eq!(code(&output), 2, "nobody can be told");
+        assert_eq!(fs::read(site.path().join(name)).unwrap(), before, "{arguments:?}");
+    }
+    let mut fmt = command(&["fmt", "-"]);
+    fmt.current_dir(site.path()).stdin(File::open(site.path().join("site.composite")).unwrap());
+    let output = fmt.stdout(appended(&site, "site.composite")).output().unwrap();
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("is the file that standard input reads"), "{}", stderr(&output));
+    assert_eq!(site.text("site.composite"), SITE);
 }
 
 #[test]
