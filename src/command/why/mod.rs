@@ -135,16 +135,8 @@ pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
         std::fs::read(path)
     };
     let bytes = bytes.map_err(|error| format!("{name} cannot be read: {error}"))?;
-    let text = match String::from_utf8(bytes) {
-        Ok(text) => text,
-        // A run that goes on, or was killed, may have written a part of its last character.
-        Err(error) if error.utf8_error().error_len().is_none() => {
-            String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]).into_owned()
-        }
-        Err(error) => {
-            return Err(format!("{name} is not text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1));
-        }
-    };
+    let text = String::from_utf8(whole_lines(bytes))
+        .map_err(|error| format!("{name} is not text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1))?;
     read(&text).map_err(|error| match error {
         JournalReadError::NoJournal => {
             format!("{name} contains no journal: write the report again with `saoms run --report FILE`")
@@ -152,6 +144,17 @@ pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
         JournalReadError::Other => format!("{name} cannot be read: {error}"),
         JournalReadError::Malformed { .. } => format!("{name}, {error}"),
     })
+}
+
+/// The bytes of a file without a last line that was not written whole: a run that goes on or was killed ends within a
+/// character, a machine that lost its power leaves zeros or what was on the disk before.
+fn whole_lines(mut bytes: Vec<u8>) -> Vec<u8> {
+    let tail = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+    let is_text = |tail: &[u8]| str::from_utf8(tail).is_ok() && !tail.contains(&0);
+    if tail > 0 && !is_text(&bytes[tail..]) {
+        bytes.truncate(tail);
+    }
+    bytes
 }
 
 /// The component with this path, ID, or unambiguous ending of its path.

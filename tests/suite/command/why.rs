@@ -78,15 +78,21 @@ fn what_several_reasons_have_in_common_is_told_once() {
     assert!(answer.contains("     ... and so on as above ...\n"), "{answer}");
 }
 
-/// The file of a run that was killed may end with a part of a character.
+/// The file of a run that was killed may end with a part of a character; that of a machine without power with anything.
 #[test]
 fn a_journal_that_is_cut_off_is_read_up_to_its_last_whole_record() {
     let folder = folder("cut");
     let whole = fs::read(folder.join("journal.jsonl")).unwrap();
     let (records, _end) = whole.split_at(whole[..whole.len() - 1].iter().rposition(|byte| *byte == b'\n').unwrap() + 1);
-    fs::write(folder.join("cut.jsonl"), [records, b"{\"id\":99999,\"text\":\"5 \xc2"].concat()).unwrap();
     let of = |file: &str| stdout(&saoms_in(&folder, &["why", "Robot7", "--at", "2s", "--report", file]));
-    assert_eq!(of("cut.jsonl"), of("journal.jsonl"));
+    let tails: [&[u8]; 5] =
+        [b"{\"id\":99999,\"text\":\"5 \xc2", b"{\"id\":9999", b"", &[0; 5000], b"{\"id\":\xff\xfe\xffx"];
+    for tail in tails {
+        fs::write(folder.join("cut.jsonl"), [records, tail].concat()).unwrap();
+        assert_eq!(of("cut.jsonl"), of("journal.jsonl"), "{tail:?}");
+    }
+    fs::write(folder.join("cut.jsonl"), [records, b"\xff\n", records].concat()).unwrap();
+    assert!(refused(&folder, &["Robot7", "--report", "cut.jsonl"]).contains("`cut.jsonl` is not text"));
 }
 
 #[test]
