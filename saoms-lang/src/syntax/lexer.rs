@@ -112,7 +112,13 @@ impl<'a> Lexer<'a> {
             Some(byte) => {
                 if is_nameless {
                     let message = "an end tag is `</`, the name of the element, and `>`";
-                    self.faults.add(|| input.fault(&codes::XML_NAME, start, start + 2, message));
+                    self.faults.add(|| {
+                        let one = input.fault(&codes::XML_NAME, start, start + 2, message);
+                        if name.is_empty() {
+                            return one;
+                        }
+                        one.suggest("remove the white space", input.at(start + 2, name.start), "")
+                    });
                 } else if byte != b'>' {
                     self.faults.add(|| {
                         let message = format!("{} is misplaced in an end tag", input.shown(close));

@@ -38,18 +38,28 @@ pub(super) fn conflict(input: Input<'_>, start: u32) -> Option<(Diagnostic, u32,
     Some((one.label(input.at(at, line_end(middle)), "the other version"), line_end(0), (at, line_end(last))))
 }
 
-/// The fault of a `<` without a name behind it.
-pub(super) fn nameless(input: Input<'_>, start: u32) -> Diagnostic {
+/// The fault of a `<` without a name behind it; `name` is where one begins after blanks.
+pub(super) fn nameless(input: Input<'_>, start: u32, name: Option<u32>) -> Diagnostic {
     let message = match input.byte(start + 1) {
         Some(_) => {
             format!("{} cannot follow `<`: the name of an element is expected", input.shown(start + 1))
         }
         None => "the file ends after `<`".to_owned(),
     };
+    if let Some(name) = name {
+        let one = input.fault(&codes::XML_NAME, start, start + 1, message);
+        return one.suggest("remove the white space", input.at(start + 1, name), "");
+    }
     input
         .fault(&codes::XML_NAME, start, start + 1, message)
         .help("write `&lt;` for the character itself")
         .mend("replace `<` with `&lt;`", "&lt;")
+}
+
+/// The fault of a `\` before the `>` of a start tag, where `/` is meant.
+pub(super) fn backslash(input: Input<'_>, at: u32) -> Diagnostic {
+    let message = "a tag without content ends with `/>`, not with `\\>`";
+    input.fault(&codes::XML_SYNTAX, at, at + 1, message).mend("replace `\\` with `/`", "/")
 }
 
 /// The fault of a name that is none; `what` it is of.

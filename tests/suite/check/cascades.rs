@@ -106,9 +106,20 @@ fn a_tag_or_a_name_too_many_hides_no_other_mistake() {
         ("<reference name=\"world\"", "<property name=\"discharge\" source=\"$d\"/><reference name=\"world\"", "S2024"),
     ];
     let master = "<component name=\"Master\"";
-    let slips = [(format!("</component>\n{master}"), "S0102"), (format!("{master} name=\"Mster\""), "S0106")];
-    for (slip, of_slip) in slips {
-        let slip = hall.replacen(master, &slip, 1);
+    let world = "<property name=\"ID\" value=\"World\"/>";
+    let late = "<component name=\"Late\"><implementation.rust class=\"saoms.MasterRobot\"/>\
+        <property name=\"ID\" value=\"Late\"/><property name=\"period\" value=\"100ms\"/></component>\n";
+    let slips = [
+        (master, format!("</component>\n{master}"), "S0102"),
+        (master, format!("{master} name=\"Mster\""), "S0106"),
+        (master, format!("</composite>\n{master}"), "S0104"),
+        (master, master.replace('<', "< "), "S0107"),
+        (world, world.replace('/', "\\"), "S0101"),
+        ("</composite>\n", format!("</composite>\n{late}"), "S0104"),
+    ];
+    for (place, slip, of_slip) in slips {
+        let slip = hall.replacen(place, &slip, 1);
+        assert_ne!(slip, hall, "{place}");
         for (right, wrong, code) in mistakes {
             let found = Fleet::of_text(slip.replacen(right, wrong, 1)).diagnostics();
             let codes: Vec<&str> = found.lines().filter_map(|line| line.split(' ').nth(1)).collect();

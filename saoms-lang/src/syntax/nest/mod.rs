@@ -268,8 +268,13 @@ impl<'a> Nest<'_, 'a> {
                 });
             }
         }
+        // A root that was opened again had its end tag.
+        let is_whole = self.has_second_root && self.lexer.elements.first().is_some_and(|root| !root.is_content_damaged);
         while !self.open.is_empty() {
             self.close(end, false);
+        }
+        if is_whole {
+            self.node_mut(0).is_content_damaged = false;
         }
         self.lexer.elements.truncate(self.count as usize);
         let is_nothing = self.lexer.elements.len() == 1 && self.node(0).name_len == 0;

@@ -47,13 +47,20 @@ impl<'a> Nest<'_, 'a> {
     pub(super) fn second_root(&mut self, named: Named<'a>) {
         let root = *self.node(0);
         let first = self.named(&root);
+        self.has_other_root |= first.name == named.name;
+        let end = (self.token(root.end).kind == TokenKind::EndTag).then(|| self.span(root.end));
+        let is_too_early = !self.has_other_root && self.count_of(first.name).ends > 0;
         if !self.has_second_root {
-            self.lexer.faults.add(|| tags::second_root(self.input, named, first));
+            self.lexer.faults.add(|| match end {
+                Some(end) if is_too_early => tags::too_early(self.input, end, named, first),
+                _ => tags::second_root(self.input, named, first, end.is_some() && !self.has_other_root),
+            });
             self.has_second_root = true;
         }
-        self.has_other_root |= first.name == named.name;
         if !self.has_other_root {
             self.reopen(0);
+            // Nothing is missing before or behind an end tag that is at the wrong place.
+            self.node_mut(0).is_content_damaged = root.is_content_damaged || end.is_none();
             self.open_element(0);
         }
     }

@@ -134,9 +134,18 @@ pub(super) fn outside(input: Input<'_>, place: Span, root: Option<Named<'_>>) ->
     }
 }
 
-/// The fault of a second element beside the root.
-pub(super) fn second_root(input: Input<'_>, second: Named<'_>, root: Named<'_>) -> Diagnostic {
+/// The fault of a second element beside the root; `is_part` if it is one of those that stand in the root.
+pub(super) fn second_root(input: Input<'_>, second: Named<'_>, root: Named<'_>, is_part: bool) -> Diagnostic {
     let message = "a second root element: a file has exactly one";
     let one = input.fault(&codes::XML_OUTSIDE_ROOT, second.at.start, second.at.end, message);
-    one.label(root.at.in_file(input.file), "the first root element")
+    let one = one.label(root.at.in_file(input.file), "the first root element");
+    if is_part { one.help(format!("move it before `</{}>`, the end of the first", root.name)) } else { one }
+}
+
+/// The fault of the end tag of the root, at `end`, which has another one behind this element.
+pub(super) fn too_early(input: Input<'_>, end: Span, next: Named<'_>, root: Named<'_>) -> Diagnostic {
+    let tag = quoted(input.piece(end));
+    let message = format!("{tag} is too early: more elements of {} follow, and its end", quoted(root.name));
+    let one = input.fault(&codes::XML_OUTSIDE_ROOT, end.start, end.end, message);
+    one.label(next.at.in_file(input.file), "the first that follows").mend("remove it", "")
 }

@@ -43,8 +43,9 @@ impl Lexer<'_> {
         let length_at = |from: u32| name_length(&input.bytes()[from as usize..]) as u32;
         let mut end = from + length_at(from);
         if end == from {
-            self.faults.add(|| slips::nameless(input, start));
-            let Some(behind) = name_behind_blank(input, start) else {
+            let behind = name_behind_blank(input, start);
+            self.faults.add(|| slips::nameless(input, start, behind));
+            let Some(behind) = behind else {
                 // Of two `<` one is too many, and no text.
                 let is_damaged = input.byte(start + 1) == Some(b'<');
                 self.tokens.push(Token { is_damaged, ..Token::new(start, TokenKind::Error) });
@@ -115,6 +116,11 @@ impl Tag<'_, '_> {
                     return false;
                 }
                 Some(b'/') if self.close == Some(at + 1) => {
+                    self.at += 2;
+                    return true;
+                }
+                Some(b'\\') if self.close == Some(at + 1) => {
+                    self.fault(|| slips::backslash(input, at));
                     self.at += 2;
                     return true;
                 }

@@ -37,6 +37,9 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         "<a b=c/>",
         "<a b='1'c='2'/>",
         "<a /b>",
+        "<a b='1'\\>",
+        "<a></a><b></b>",
+        "<a></a><b></b></a>",
         "<a =''/>",
         "<a <b/></a>",
         "<a>< b/></a>",
@@ -157,12 +160,18 @@ fn what_is_not_well_formed_is_found_at_its_place() {
             1:9 [c] S0105 white space is missing between two attributes | insert a blank
         <a /b>
             1:4 [/] S0101 `/` is misplaced in the start tag of `a`
+        <a b='1'\>
+            1:9 [\] S0101 a tag without content ends with `/>`, not with `\>` | replace `\` with `/`
+        <a></a><b></b>
+            1:9 [b] S0104 a second root element: a file has exactly one
+        <a></a><b></b></a>
+            1:4 [</a>] S0104 `</a>` is too early: more elements of `a` follow, and its end | remove it
         <a =''/>
             1:4 [=] S0101 `=` is misplaced in the start tag of `a`
         <a <b/></a>
             1:4 [<] S0103 the start tag of `a` has no `>` before the next `<`
         <a>< b/></a>
-            1:4 [<] S0107 white space cannot follow `<`: the name of an element is expected | replace `<` with `&lt;`
+            1:4 [<] S0107 white space cannot follow `<`: the name of an element is expected | remove the white space
         <1/>
             1:2 [1] S0107 `1` is not a valid name for an element
         <a:b:c/>
@@ -172,7 +181,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a -b=''/>
             1:4 [-b] S0107 `-b` is not a valid name for an attribute
         <a></ a>
-            1:4 [</] S0107 an end tag is `</`, the name of the element, and `>`
+            1:4 [</] S0107 an end tag is `</`, the name of the element, and `>` | remove the white space
         <a></a b=''>
             1:8 [b] S0101 `b` is misplaced in an end tag
         <a></a
