@@ -305,7 +305,7 @@ static SaomsStatus patrol_shutdown(void *component, const SaomsHostHandle *host,
 #define TOPIC(name, kind, message) "{\"topic\":\"" name "\",\"kind\":\"" kind "\",\"message\":\"" message "\",\"schema\":"
 
 SAOMS_METADATA static const char metadata[] =
-    JSON({"saoms": "plugin", "abi": 2, "package": "patrol", "version": "0.1.0", "entry": "patrol_plugin", "classes": [
+    JSON({"saoms": "plugin", "abi": 3, "package": "patrol", "version": "0.1.0", "entry": "patrol_plugin", "classes": [
         {"contract": 1, "class": "patrol.Robot", "kind": "periodic",
          "doc": "Patrols along the edge of a rectangle, and keeps clear of the others.",
          "properties": [

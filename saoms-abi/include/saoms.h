@@ -35,7 +35,7 @@ struct SaomsHostHandle;
 #define SAOMS_MAX_BYTES (64 << 20)
 
 // The version of the boundary. A program loads libraries of its own version alone.
-#define SAOMS_ABI_VERSION 2
+#define SAOMS_ABI_VERSION 3
 
 // Bytes that are lent for the time of a call.
 typedef struct SaomsBytes {
@@ -285,6 +285,22 @@ typedef struct SaomsRecordView {
     size_t count;
 } SaomsRecordView;
 
+// A function that stops the hardware of a component. The host calls it from any of its threads, at any time and any
+// number of times, also while another function of the component runs or hangs, and never after `release`.
+typedef struct SaomsStopView {
+    // The size of this structure in bytes.
+    size_t size;
+    // The library's own; the first argument of the functions.
+    void *state;
+    // Stops the hardware, and may wait for it. `FAILED`, with a text in `error`: it may still move.
+    SaomsStatus (*stop)(void *state, struct SaomsSink error);
+    // Tells the hardware that its component is alive: it stops by itself when it hears nothing for twice the period,
+    // which is in nanoseconds. Must not wait. May be null: there is no heartbeat.
+    void (*heartbeat)(void *state, uint64_t period);
+    // Frees the state. May be null: there is nothing to free.
+    void (*release)(void *state);
+} SaomsStopView;
+
 // The functions of a component's context. The first argument of each is the `state` of the handle that the present
 // call was lent.
 //
@@ -380,6 +396,9 @@ typedef struct SaomsHostFunctions {
                     struct SaomsBytes entry,
                     const struct SaomsValueView *before,
                     const struct SaomsValueView *after);
+    // Registers a function that stops the component's hardware from any thread, in `initialize` alone; the declaration
+    // of the class says `"stops": true`. The host frees its state with `release`, also when it refuses the function.
+    SaomsStatus (*register_stop)(void *state, const struct SaomsStopView *stop, struct SaomsSink error);
 } SaomsHostFunctions;
 
 // A message that arrived.

@@ -1,6 +1,8 @@
 use core::ffi::c_void;
 
-use crate::{Bytes, Inbox, LoopInstance, PropertyView, RecordView, ReportView, Sink, Status, TopicView, ValueView};
+use crate::{
+    Bytes, Inbox, LoopInstance, PropertyView, RecordView, ReportView, Sink, Status, StopView, TopicView, ValueView,
+};
 
 /// The context that a component is lent for the time of a call: its functions, and the messages that arrived.
 #[repr(C)]
@@ -121,6 +123,9 @@ pub struct HostFunctions {
     /// Writes to the journal that the present loop changed an entry; its name has to be part of the library.
     pub changed:
         unsafe extern "C" fn(state: *mut c_void, entry: Bytes, before: *const ValueView, after: *const ValueView),
+    /// Registers a function that stops the component's hardware from any thread, in `initialize` alone; the declaration
+    /// of the class says `"stops": true`. The host frees its state with `release`, also when it refuses the function.
+    pub register_stop: unsafe extern "C" fn(state: *mut c_void, stop: *const StopView, error: Sink) -> Status,
 }
 
 /// The visitor of a component's loops, called with a name, a class, values and their number.

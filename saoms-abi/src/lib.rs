@@ -32,6 +32,7 @@ mod message;
 mod plugin;
 mod rule;
 mod status;
+mod stop;
 mod value;
 
 pub use bytes::{Bytes, MAX_BYTES, Sink, list};
@@ -45,7 +46,8 @@ pub use message::{Inbox, MessageView, TopicView};
 pub use plugin::{EntryPoint, PluginTable, SECTION};
 pub use rule::{FleetList, MemberView, RenamedView, RuleTable, TextList, WireView};
 pub use status::Status;
+pub use stop::StopView;
 pub use value::{PropertyView, RecordView, ReportView, ValueView};
 
 /// The version of the boundary. A program loads libraries of its own version alone.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;

@@ -164,6 +164,7 @@ pub trait Component: Send + Sized + 'static {
 /// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
 /// | `service("move": Robot)` | a service with this [interface](crate::host::Interface), which the component implements |
 /// | `reference("gps": Gps)`, `reference("gps": Gps, optional)`, `reference("gps": Gps, many)` | a service of another component that this one calls |
+/// | `stops` | it registers a function that [stops its hardware](crate::StopFunction) |
 /// | `knowledge = RobotKnowledge` | the [knowledge](crate::host::KnowledgeClass) that its loops work on |
 /// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite says otherwise, in their order |
 /// | `loops(property = "policy", safe(A, B), classic(A, C))` | the same, one list for each value of a property |

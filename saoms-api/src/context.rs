@@ -4,8 +4,8 @@ use std::time::Duration;
 use crate::host::{Host, TARGET_SHIFT};
 use crate::host::{Phase, Reference, ServiceCall, SharedMessage};
 use crate::{
-    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Publisher, Record, ReportValue, Subscription,
-    Time, Topic, Value, Work,
+    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Publisher, Record, ReportValue, StopFunction,
+    Subscription, Time, Topic, Value, Work,
 };
 
 /// Severity of a log line.
@@ -185,6 +185,15 @@ impl<'a> Context<'a> {
         let first = self.host.reference(name, R::INTERFACE)?;
         let targets = self.host.targets(first);
         Ok((0..targets).map(|target| R::from_index(first | target << TARGET_SHIFT)).collect())
+    }
+
+    /// Registers a function that stops the component's hardware from any thread; the class says `stops`. Only in
+    /// `initialize`; each call adds one.
+    ///
+    /// # Errors
+    /// The class does not say `stops`, or `initialize` is over.
+    pub fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
+        self.host.register_stop(stop)
     }
 
     /// True if the reference leads to a service.

@@ -22,6 +22,7 @@ struct Declared {
     subscribes: Vec<Path>,
     services: Vec<(LitStr, Path)>,
     references: Vec<Reference>,
+    stops: bool,
     knowledge: Option<Path>,
     loops: Option<DefaultLoops>,
     also: Vec<Also>,
@@ -178,9 +179,10 @@ impl Declared {
                 self.services.push((name, interface));
             }
             "reference" => self.references.push(parts::parse_reference(meta.input, &self.references)?),
+            "stops" if !self.stops => self.stops = true,
             "knowledge" if self.knowledge.is_none() => self.knowledge = Some(meta.value()?.parse()?),
             "loops" if self.loops.is_none() => self.loops = Some(DefaultLoops::of(meta.input)?),
-            "knowledge" | "loops" => return Err(meta.error("this is given already")),
+            "stops" | "knowledge" | "loops" => return Err(meta.error("this is given already")),
             "also" => {
                 let list;
                 parenthesized!(list in meta.input);
@@ -189,7 +191,7 @@ impl Declared {
             _ => {
                 return Err(meta.error(
                     "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, \
-                     `reference`, `knowledge`, `loops`, `also`",
+                     `reference`, `stops`, `knowledge`, `loops`, `also`",
                 ));
             }
         }
@@ -220,6 +222,9 @@ impl Declared {
         });
         text.plain(",\"references\":");
         text.list(&self.references, parts::reference);
+        if self.stops {
+            text.plain(",\"stops\":true");
+        }
         if let Some(knowledge) = &self.knowledge {
             text.plain(",\"knowledge\":");
             text.json(

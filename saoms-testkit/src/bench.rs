@@ -175,9 +175,20 @@ impl Bench {
             self.stage.skipped(provider);
             self.waiting = messages;
             result = Ok(());
+        } else if result.is_ok() {
+            self.stage.beat(self.stage.period);
         }
         self.stage.end_of_execution();
         result
+    }
+
+    /// Stops the hardware of the component, and of those that it is wired to, with the functions that they
+    /// [registered](Context::register_stop), as a fleet does at any time. Executions send their heartbeats.
+    ///
+    /// # Errors
+    /// Hardware may still move.
+    pub fn stop_hardware(&self) -> Result<(), Failure> {
+        self.stage.stop_hardware()
     }
 
     /// Executes the component periodically until this time of the run.
@@ -214,6 +225,10 @@ impl Bench {
         self.stage.now = now;
         let mut invocation = Invocation { service, call };
         self.component.serve(&mut invocation, &mut Context::new(&mut self.stage, &[]))
+    }
+
+    pub(crate) fn stage(&self) -> &Stage {
+        &self.stage
     }
 
     fn header(&self) -> Header {

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use saoms_api::host::{Host, LoopVisit};
 use saoms_api::host::{NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration};
-use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
+use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
 use saoms_lang::registry::{ClassTopic, RegisteredClass, RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
 
@@ -57,6 +57,7 @@ pub(crate) struct Stage {
     pub(crate) actions: Vec<(Time, Action)>,
     /// The text of each record by loop, phase and id.
     texts: BTreeMap<(Option<u32>, &'static str, &'static str), &'static str>,
+    pub(crate) stops: Vec<StopFunction>,
     pub(crate) report: Vec<(String, ReportValue)>,
     pub(crate) work: Option<Work>,
     pub(crate) gave_up: bool,
@@ -97,6 +98,7 @@ impl Stage {
             wires: Vec::new(),
             actions: Vec::new(),
             texts: BTreeMap::new(),
+            stops: Vec::new(),
             report: Vec::new(),
             work: None,
             gave_up: false,
@@ -110,6 +112,17 @@ impl Stage {
     pub(crate) fn end_of_execution(&mut self) {
         self.execution += 1;
         self.now = self.now + self.period;
+    }
+
+    /// Tells the hardware of the component, and of those that it is wired to, that it is alive.
+    pub(crate) fn beat(&self, period: Duration) {
+        let wired = self.wires.iter().flat_map(|wire| &wire.provider.stage().stops);
+        self.stops.iter().chain(wired).for_each(|stop| stop.beat(period));
+    }
+
+    pub(crate) fn stop_hardware(&self) -> Result<(), Failure> {
+        let wired = self.wires.iter().flat_map(|wire| &wire.provider.stage().stops);
+        self.stops.iter().chain(wired).try_for_each(StopFunction::stop)
     }
 
     pub(crate) fn skipped(&mut self, provider: &str) {
@@ -264,6 +277,17 @@ impl Host for Stage {
         // A reference that is not wired has a handle, too.
         let wired = self.wires.iter().position(|wire| wire.reference == name);
         Ok(wired.unwrap_or(usize::from(u16::MAX)) as u32)
+    }
+
+    fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
+        if !self.initializing {
+            return Err(Failure::new("it registers a function that stops its hardware after `initialize`"));
+        }
+        match &self.class {
+            Some(class) if class.declaration().stops => self.stops.push(stop),
+            _ => return Err(Failure::new("it stops hardware, but its class does not say `stops` in `#[class(...)]`")),
+        }
+        Ok(())
     }
 
     fn is_wired(&self, reference: u32) -> bool {

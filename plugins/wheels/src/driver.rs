@@ -14,37 +14,55 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const LONGEST: u64 = 256;
 
 /// Progress of the newest order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum OrderState {
     Running,
+    #[default]
     Done,
     Failed,
 }
 
-/// Driver of one controller. It never waits, but in [`stop`](Driver::stop).
+/// A line for the controller.
+enum Line {
+    /// An order with its number.
+    Order(u64, String),
+    /// The driver is alive, and says so again within so many milliseconds.
+    Alive(u64),
+}
+
+/// Driver of one controller, which threads share. It never waits, but in [`stop`](Driver::stop).
 #[derive(Debug)]
 pub(crate) struct Driver {
-    orders: Sender<(u64, String)>,
+    lines: Sender<Line>,
     newest: Arc<Newest>,
-    number: u64,
 }
 
 impl Driver {
     /// Starts the threads; the connection is made with the first order.
     pub(crate) fn start(address: String) -> io::Result<Driver> {
-        let (orders, received) = channel();
-        let newest = Arc::new(Newest { order: Mutex::new((0, OrderState::Done)), answered: Condvar::new() });
+        let (lines, received) = channel();
+        let newest = Arc::<Newest>::default();
         let shared = Arc::clone(&newest);
-        thread::Builder::new().name("wheels".to_owned()).spawn(move || send_orders(&address, &received, &shared))?;
-        Ok(Driver { orders, newest, number: 0 })
+        thread::Builder::new().name("wheels".to_owned()).spawn(move || send_lines(&address, &received, &shared))?;
+        Ok(Driver { lines, newest })
     }
 
     /// Gives an order, whether or not the earlier one is answered: so `stop` overtakes a move.
-    pub(crate) fn order(&mut self, what: &str) {
-        self.number += 1;
-        self.newest.set(self.number, OrderState::Running);
-        if self.orders.send((self.number, format!("{} {what}\n", self.number))).is_err() {
-            self.newest.answer(self.number, OrderState::Failed);
+    pub(crate) fn order(&self, what: &str) {
+        // Under the lock, so that numbers go out in their order.
+        let mut newest = self.newest.lock();
+        let number = newest.0 + 1;
+        let sent = self.lines.send(Line::Order(number, format!("{number} {what}\n")));
+        *newest = (number, if sent.is_ok() { OrderState::Running } else { OrderState::Failed });
+    }
+
+    /// Tells the controller that the robot is alive; the next time is within `period`. Where the line before has not
+    /// gone out yet, this one is left out: what is late says nothing.
+    pub(crate) fn alive(&self, period: Duration) {
+        if !self.newest.beats.swap(true, Ordering::SeqCst) {
+            let milliseconds = u64::try_from(period.as_millis()).unwrap_or(u64::MAX).max(1);
+            // An order after it would fail.
+            let _ = self.lines.send(Line::Alive(milliseconds));
         }
     }
 
@@ -55,8 +73,8 @@ impl Driver {
 
     /// Orders a stop and waits until it is confirmed; false if it is not. Without an order before there is nothing to
     /// stop.
-    pub(crate) fn stop(&mut self, patience: Duration) -> bool {
-        if self.number == 0 {
+    pub(crate) fn stop(&self, patience: Duration) -> bool {
+        if self.newest.lock().0 == 0 {
             return true;
         }
         self.order("stop");
@@ -67,19 +85,17 @@ impl Driver {
 }
 
 /// The number of the newest order, and its state: answers to earlier orders do not count any more.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Newest {
     order: Mutex<(u64, OrderState)>,
     answered: Condvar,
+    /// True while a heartbeat waits to go out.
+    beats: AtomicBool,
 }
 
 impl Newest {
     fn lock(&self) -> std::sync::MutexGuard<'_, (u64, OrderState)> {
         self.order.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn set(&self, number: u64, state: OrderState) {
-        *self.lock() = (number, state);
     }
 
     /// Takes in an answer, if it is about the newest order, and the first one.
@@ -94,10 +110,18 @@ impl Newest {
 
 /// Sends orders until the driver is dropped. A connection that ended is made anew for the next order. No order is sent
 /// twice: one that may have reached the controller has failed, and the robot decides what comes next.
-fn send_orders(address: &str, orders: &Receiver<(u64, String)>, newest: &Arc<Newest>) {
+fn send_lines(address: &str, lines: &Receiver<Line>, newest: &Arc<Newest>) {
     let mut connection: Option<Connection> = None;
-    for (number, line) in orders {
+    for line in lines {
         connection = connection.filter(|connection| !connection.shared.has_ended.load(Ordering::SeqCst));
+        let (number, line) = match line {
+            Line::Order(number, line) => (number, line),
+            Line::Alive(period) => {
+                newest.beats.store(false, Ordering::SeqCst);
+                connection = connection.filter(|open| open.write(&format!("alive {period}\n")).is_ok());
+                continue;
+            }
+        };
         let sent = match connection.take().map_or_else(|| Connection::new(address, newest), Ok) {
             Ok(open) => connection.insert(open).send(number, &line),
             Err(error) => Err(error),
@@ -145,7 +169,11 @@ impl Connection {
         if self.shared.has_ended.load(Ordering::SeqCst) {
             return Err(io::ErrorKind::ConnectionReset.into());
         }
-        self.stream.write_all(line.as_bytes())
+        self.write(line)
+    }
+
+    fn write(&self, line: &str) -> io::Result<()> {
+        (&self.stream).write_all(line.as_bytes())
     }
 }
 

@@ -2,15 +2,16 @@
 
 mod driver;
 
+use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Properties, Time};
+use saoms_api::{Class, Component, Context, Failure, Properties, StopFunction, Time};
 use saoms_components::grid::{Block, Map};
 use saoms_components::hardware::{Action, ActionKind, Area, Hardware, Progress};
 
 use driver::{Driver, OrderState};
 
-/// Time in which the controller has to confirm that the wheels stand still, when the fleet ends.
+/// Time in which the controller has to confirm that the wheels stand still.
 const STOP_PATIENCE: Duration = Duration::from_secs(2);
 
 /// What a composite can set.
@@ -26,12 +27,12 @@ pub struct WheelsProperties {
 
 /// Wheels and an arm behind a controller in the network.
 #[derive(Debug, Class)]
-#[class(name = "wheels.Wheels", passive, service("hardware": Hardware))]
+#[class(name = "wheels.Wheels", passive, stops, service("hardware": Hardware))]
 pub struct Wheels {
     properties: WheelsProperties,
     block: Block,
     running: Option<(Action, Time)>,
-    driver: Option<Driver>,
+    driver: Option<Arc<Driver>>,
 }
 
 impl Component for Wheels {
@@ -42,28 +43,33 @@ impl Component for Wheels {
         Ok(Wheels { properties, block: Block::default(), running: None, driver: None })
     }
 
-    fn initialize(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
+    /// Starts the driver, and says how to stop the wheels from any thread, whatever this component does then.
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         let driver = Driver::start(self.properties.address.clone());
-        self.driver = Some(driver.map_err(|error| Failure::new(format!("no thread for the driver: {error}")))?);
-        Ok(())
+        let driver = Arc::new(driver.map_err(|error| Failure::new(format!("no thread for the driver: {error}")))?);
+        let (stopped, alive, address) = (Arc::clone(&driver), Arc::clone(&driver), self.properties.address.clone());
+        self.driver = Some(driver);
+        let stop = StopFunction::new(move || confirmed(stopped.stop(STOP_PATIENCE), &address));
+        context.register_stop(stop.with_heartbeat(move |period| alive.alive(period)))
     }
 
     /// Waits until the wheels stand still. That nobody confirmed it is a failure: somebody has to look.
     fn shutdown(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
-        let Some(mut driver) = self.driver.take() else { return Ok(()) };
-        if driver.stop(STOP_PATIENCE) {
-            return Ok(());
-        }
-        Err(Failure::new(format!(
-            "the wheels may still turn: the controller at `{}` did not confirm `stop`",
-            self.properties.address
-        )))
+        let Some(driver) = self.driver.take() else { return Ok(()) };
+        confirmed(driver.stop(STOP_PATIENCE), &self.properties.address)
     }
 }
 
+fn confirmed(stands_still: bool, address: &str) -> Result<(), Failure> {
+    if stands_still {
+        return Ok(());
+    }
+    Err(Failure::new(format!("the wheels may still turn: the controller at `{address}` did not confirm `stop`")))
+}
+
 impl Wheels {
-    fn driver(&mut self) -> Result<&mut Driver, Failure> {
-        self.driver.as_mut().ok_or_else(|| "the driver has ended".into())
+    fn driver(&self) -> Result<&Driver, Failure> {
+        self.driver.as_deref().ok_or_else(|| "the driver has ended".into())
     }
 }
 

@@ -27,6 +27,10 @@ fn controller(answer: impl Fn(u64, &str, usize) -> String + Send + 'static) -> (
             let mut stream = BufReader::new(stream);
             let mut line = String::new();
             while stream.read_line(&mut line).is_ok_and(|bytes| bytes > 0) {
+                if line.starts_with("alive ") {
+                    line.clear();
+                    continue;
+                }
                 let (number, order) = line.trim().split_once(' ').unwrap();
                 let reply = answer(number.parse().unwrap(), order, count);
                 if told.send(order.to_owned()).is_err() {
@@ -151,4 +155,79 @@ fn a_stop_overtakes_a_move() {
     }
     robot.shutdown().unwrap();
     assert_eq!(orders.recv_timeout(Duration::from_secs(10)).as_deref(), Ok("stop"));
+}
+
+/// A controller as it should be: it drives until it is told to stop, or has heard nothing for twice the period of the
+/// last heartbeat. Returns its address and what becomes of the wheels.
+fn careful_controller() -> (String, Receiver<&'static str>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    let (told, wheels) = channel();
+    thread::spawn(move || {
+        let mut stream = BufReader::new(listener.accept().unwrap().0);
+        let mut line = String::new();
+        loop {
+            line.clear();
+            match stream.read_line(&mut line) {
+                Ok(0) => return,
+                Ok(_) => {}
+                Err(_) => {
+                    let _ = told.send("stop by themselves");
+                    return;
+                }
+            }
+            let happens = match line.trim().split_once(' ').unwrap() {
+                ("alive", period) => {
+                    let limit = Duration::from_millis(2 * period.parse::<u64>().unwrap());
+                    stream.get_mut().set_read_timeout(Some(limit.max(Duration::from_millis(1)))).unwrap();
+                    "hear the robot"
+                }
+                (number, "stop") => {
+                    write(stream.get_mut(), &format!("{number} done\n")).unwrap();
+                    "are stopped"
+                }
+                _ => "turn",
+            };
+            if told.send(happens).is_err() {
+                return;
+            }
+        }
+    });
+    (address, wheels)
+}
+
+/// Waits until this happens to the wheels, for ten seconds at most.
+fn wait_for(wheels: &Receiver<&'static str>, expected: &str) {
+    while wheels.recv_timeout(Duration::from_secs(10)).unwrap() != expected {}
+}
+
+/// A robot whose wheels turn, with a period at which this process is never late for a heartbeat.
+fn driving(address: &str) -> Bench {
+    let mut wheels = Bench::of::<Wheels>(&[("address", address)]).unwrap();
+    wheels.start().unwrap();
+    let robot = Bench::of::<Robot>(&[("ID", "Robot1"), ("discharge", "0")]).unwrap();
+    let mut robot = robot.period(Duration::from_secs(1)).wire("world", wheels, "hardware");
+    robot.start().unwrap();
+    robot.deliver(&EVENT_LUGGAGE, EventLuggage::request(1, Block::new(1, 1), Block::new(2, 1)));
+    (0..10).for_each(|_| robot.execute().unwrap());
+    robot
+}
+
+#[test]
+fn wheels_are_stopped_from_outside_the_component() {
+    let (address, wheels) = careful_controller();
+    let robot = driving(&address);
+    wait_for(&wheels, "turn");
+    robot.stop_hardware().unwrap();
+    wait_for(&wheels, "are stopped");
+}
+
+#[test]
+fn wheels_whose_robot_is_silent_stop_by_themselves() {
+    let (address, wheels) = careful_controller();
+    let robot = driving(&address);
+    wait_for(&wheels, "turn");
+    wait_for(&wheels, "hear the robot");
+    wait_for(&wheels, "stop by themselves");
+    drop(robot);
 }

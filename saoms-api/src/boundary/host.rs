@@ -4,7 +4,8 @@ use std::ffi::c_void;
 use std::time::Duration;
 
 use saoms_abi::{
-    Bytes, HostFunctions, LoopInstance, LoopVisitor, RecordView, ReportView, Sink, Status, TopicView, ValueView,
+    Bytes, HostFunctions, LoopInstance, LoopVisitor, RecordView, ReportView, Sink, Status, StopView, TopicView,
+    ValueView,
 };
 
 use crate::host::Host;
@@ -17,6 +18,7 @@ use super::lease_cell::host;
 use super::looping::export_loop;
 use super::null::{self, given, place};
 use super::service::BytesCall;
+use super::stop;
 
 /// The levels of [`HostFunctions::log`] in their order; behind them comes the console.
 pub(super) const LEVELS: [Level; 4] = [Level::Error, Level::Warning, Level::Info, Level::Debug];
@@ -105,6 +107,16 @@ unsafe extern "C" fn reference(
         guarded(error, || {
             *place(index, INDEX)? = host(state)?.reference(name.get_text()?, interface.get_text()?)?;
             Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn register_stop(state: *mut c_void, view: *const StopView, error: Sink) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the view to this call.
+    unsafe {
+        guarded(error, || {
+            let view = given(view, "the function that stops the hardware")?;
+            host(state)?.register_stop(stop::import(view)?)
         })
     }
 }
@@ -304,6 +316,7 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     cause,
     journal,
     changed,
+    register_stop,
 };
 
 /// A time of the other side.

@@ -17,6 +17,7 @@ mod plugin;
 mod remote_host;
 mod rule;
 mod service;
+mod stop;
 
 pub use component::class_table;
 pub use convert::{Findings, PropertyViews};

@@ -76,7 +76,7 @@ macro_rules! plugin {
                 ConstText::Plain(if $rule.prevents_start { ",\"preventsStart\":true}" } else { ",\"preventsStart\":false}" }),
             )*];
             const TEXT: ConstText = ConstText::Joined(&[
-                ConstText::Plain("{\"saoms\":\"plugin\",\"abi\":2,\"api\":"),
+                ConstText::Plain("{\"saoms\":\"plugin\",\"abi\":3,\"api\":"),
                 ConstText::Quoted($crate::generated::API),
                 ConstText::Plain(",\"package\":"),
                 ConstText::Quoted(env!("CARGO_PKG_NAME")),

@@ -11,13 +11,14 @@ use crate::host::present;
 use crate::host::{
     DynLoop, LoopRegistration, NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
 };
-use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
+use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
 
 use super::buffer::{Buffer, sink};
 use super::convert::{read_properties, topic_view, value_view, with_report_view};
 use super::guard::{call_outcome, outcome};
 use super::host::{LEVELS, time};
 use super::looping::import_loop;
+use super::stop;
 
 /// The host on the other side of the boundary.
 pub(super) struct RemoteHost<'a> {
@@ -219,6 +220,12 @@ impl Host for RemoteHost<'_> {
         let (name, interface) = (Bytes::text(name), Bytes::text(interface));
         let status = get!(self.reference, name, interface, &raw mut index, sink(&mut error));
         outcome(status, &error.bytes).map(|()| index)
+    }
+
+    fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
+        let (view, mut error) = (stop::export(stop), Buffer::default());
+        let status = get!(self.register_stop, &raw const view, sink(&mut error));
+        outcome(status, &error.bytes)
     }
 
     fn is_wired(&self, reference: u32) -> bool {

@@ -31,7 +31,7 @@ pub use smol_str::SmolStr;
 pub use visible::{Visible, is_invisible, one_line, shorten};
 pub use xml::escaped;
 
-use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
+use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
 
 /// The lowest bit of the number of a target in the handle of a reference; the bits below are the place of the reference
 /// in its class.
@@ -99,6 +99,11 @@ pub trait Host {
     /// # Errors
     /// As [`CallError`] says.
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
+    /// See [`Context::register_stop`](crate::Context::register_stop).
+    ///
+    /// # Errors
+    /// As there.
+    fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure>;
     /// Constructs the component's loops. See [`Context::loops`](crate::Context::loops).
     ///
     /// # Errors

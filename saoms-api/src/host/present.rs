@@ -80,6 +80,10 @@ functions! {
     Restore "`restore`",
     /// `waits_for`.
     WaitsFor "`waits_for`",
+    /// The function that stops hardware.
+    Stop "the function that stops its hardware",
+    /// The heartbeat of hardware.
+    Heartbeat "the heartbeat of its hardware",
     /// The destructor of a component or a loop.
     Destroy "the destructor",
     /// A rule over whole fleets.

@@ -7,8 +7,8 @@ const NAMES: &[&str] = &[
     "Bounded", "CallError", "Cause", "Chance", "Class", "Component", "Context", "Effector", "Entries", "Entry",
     "Extras", "Failure", "Field", "Finding", "Header", "Knowledge", "Level", "Loop", "LoopClass", "Loops", "Message",
     "Messages", "Place", "Properties", "PropertyField", "Publisher", "Record", "Recordable", "ReportValue", "Saved",
-    "Subscription", "TaskInterface", "TaskInterfaceReference", "Time", "Topic", "Value", "Work", "builtin_interfaces",
-    "extension", "fleet_rules!", "host", "interface", "plugin!", "record!", "rule",
+    "StopFunction", "Subscription", "TaskInterface", "TaskInterfaceReference", "Time", "Topic", "Value", "Work",
+    "builtin_interfaces", "extension", "fleet_rules!", "host", "interface", "plugin!", "record!", "rule",
 ];
 
 /// The names that the text of `lib.rs` and the exported macros of the crate make public, without hidden ones.

@@ -324,6 +324,10 @@ impl Host for View<'_> {
         Ok(place as u32)
     }
 
+    fn register_stop(&mut self, _: saoms_api::StopFunction) -> Result<(), Failure> {
+        Ok(())
+    }
+
     fn is_wired(&self, reference: u32) -> bool {
         self.seat().references[reference as usize].1.is_some()
     }

@@ -81,6 +81,16 @@ pub enum Occurrence {
         /// The component that was called.
         provider: Arc<str>,
     },
+    /// The code of the component has not returned for two periods, and its hardware is stopped.
+    Hangs {
+        /// The time since its code was called.
+        time: Duration,
+    },
+    /// The hardware of the component could not be stopped.
+    NotStopped {
+        /// Message of the failure.
+        message: String,
+    },
     /// The component did not end in time and was abandoned.
     Abandoned,
     /// Nothing has happened for a long time, although work is left.
@@ -101,13 +111,15 @@ impl Occurrence {
             Occurrence::Log { level, .. } | Occurrence::Note { level, .. } => *level,
             Occurrence::Console { .. } | Occurrence::Replaced { .. } => Level::Info,
             Occurrence::Started | Occurrence::Left => Level::Debug,
-            Occurrence::Failed { restart: None, .. } | Occurrence::Overrun { .. } | Occurrence::Abandoned => {
-                Level::Error
-            }
+            Occurrence::Failed { restart: None, .. }
+            | Occurrence::Overrun { .. }
+            | Occurrence::Abandoned
+            | Occurrence::NotStopped { .. } => Level::Error,
             Occurrence::Failed { .. }
             | Occurrence::Restarted { .. }
             | Occurrence::Slow { .. }
             | Occurrence::Busy { .. }
+            | Occurrence::Hangs { .. }
             | Occurrence::Standstill(_)
             | Occurrence::Dropped { .. } => Level::Warning,
         }
@@ -151,6 +163,12 @@ impl fmt::Display for Occurrence {
             Occurrence::Overrun { missed } => {
                 write!(formatter, "stopped, because executions could not start in time: {missed} would be left out")
             }
+            Occurrence::Hangs { time } => write!(
+                formatter,
+                "has not returned for {}: its hardware is stopped",
+                saoms_api::host::format_duration(Duration::from_millis(time.as_millis() as u64))
+            ),
+            Occurrence::NotStopped { message } => write!(formatter, "its hardware may still move: {message}"),
             Occurrence::Standstill(standstill) => standstill.fmt(formatter),
             Occurrence::Abandoned => formatter.write_str("did not end in time and is abandoned"),
         }

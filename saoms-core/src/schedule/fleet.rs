@@ -102,6 +102,7 @@ impl RunningFleet {
         let awake = realtime.then(realtime::keep_awake).transpose();
         let clock = if simulated { Clock::simulated() } else { Clock::real() };
         let shared = Arc::new(Shared::new(settings, clock, observers));
+        shared.stops.serve(&shared);
         let components: Vec<ComponentName> = assembly.components.iter().map(ComponentName::of).collect();
         let (seed, is_virtual) = (shared.settings.seed, simulated);
         let beginning = Beginning { seed, is_virtual, components: &components };
@@ -155,6 +156,7 @@ impl RunningFleet {
     /// component is left that can run. Afterwards every component has shut down, or is named in the outcome.
     pub fn run_to_end(mut self) -> RunReport {
         self.wait_for_end();
+        self.wait_for_hardware();
         self.finish_journal();
         let shared = &self.handle.shared;
         let report = shared.lock().report(&shared.sections());
@@ -170,6 +172,15 @@ impl RunningFleet {
             self.resume(NEVER);
         }
         drive::wait_until(&self.handle.shared, |_| false);
+    }
+
+    /// Waits until the functions that stop hardware have returned, as long as components have to end.
+    fn wait_for_hardware(&self) {
+        let shared = &self.handle.shared;
+        for name in shared.stops.wait(shared.settings.grace) {
+            let message = "the function that stops it has not returned".to_owned();
+            shared.lock().reasons.push(format!("component `{name}` could not stop its hardware: {message}"));
+        }
     }
 
     /// Lets virtual time advance to this time.
@@ -237,6 +248,7 @@ impl Drop for RunningFleet {
             self.resume(NEVER);
             drive::wait_until(shared, |_| false);
         }
+        self.wait_for_hardware();
         self.finish();
     }
 }

@@ -19,6 +19,7 @@ mod names;
 mod os;
 mod settings;
 mod shared;
+mod stop;
 #[cfg(test)]
 mod tests;
 
@@ -27,3 +28,4 @@ pub use fleet::{Handle, Hold, RunningFleet, UnknownComponent};
 pub use inject::{InjectError, InjectedContent, Injection};
 pub use os::realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
+pub use stop::stop_hardware;

@@ -11,6 +11,7 @@ use super::names::SlotNames;
 use super::os::clock::Clock;
 use super::os::sys::Gate;
 use super::settings::Settings;
+use super::stop::Stops;
 use crate::journal::RecordQueue;
 use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunProgress};
 use crate::report::Sections;
@@ -22,6 +23,8 @@ pub(super) struct Shared {
     sections: Mutex<Sections>,
     /// The paths of components by their numbers.
     pub(super) names: SlotNames,
+    /// Functions that stop hardware.
+    pub(super) stops: Arc<Stops>,
     /// Lock of changes of the fleet: one at a time.
     changes: Mutex<()>,
     /// Signals that an awaited body has returned.
@@ -64,6 +67,7 @@ impl Shared {
         }
         let records = Arc::clone(&engine.record_ids);
         Shared {
+            stops: Arc::clone(&engine.stops),
             executions: Arc::clone(&engine.executions),
             engine: Mutex::new(engine),
             sections: Mutex::new(Sections::with_registered_counts()),

@@ -19,5 +19,6 @@ mod real_time;
 mod services;
 mod standstill;
 mod start;
+mod stop;
 mod tasks;
 mod trace;

@@ -41,6 +41,9 @@ pub struct ClassDeclaration {
     /// The references it can call through.
     #[serde(default)]
     pub references: Vec<ReferenceDeclaration>,
+    /// True if its components register functions that stop their hardware.
+    #[serde(default)]
+    pub stops: bool,
     /// The knowledge of its loops; `None` for a class without loops.
     pub knowledge: Option<KnowledgeDeclaration>,
     /// The loops that its components have unless a composite says otherwise.

@@ -164,6 +164,9 @@ fn described(class: &RegisteredClass) -> String {
         )
     });
     section(&mut text, "References", references.collect());
+    if declaration.stops {
+        text.push_str("\nRegisters functions that stop its hardware.\n");
+    }
     types::section_of(
         &mut text,
         declaration.publishes.iter().chain(&declaration.subscribes).collect(),

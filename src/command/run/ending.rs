@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Duration;
 
-use saoms_core::schedule::Handle;
+use saoms_core::schedule::{Handle, stop_hardware};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
@@ -88,10 +88,16 @@ impl State {
     }
 }
 
-/// Ends the process although something runs, and says what it is.
+/// Time for hardware to come to rest before the process ends at once.
+const STOP_PATIENCE: Duration = Duration::from_millis(500);
+
+/// Ends the process although something runs, and says what it is. Hardware is stopped before.
 fn end_now() -> ! {
     if let Some(waits) = guard::waited_for() {
         eprint(&format!("error: interrupted while {waits}\n"));
+    }
+    for name in stop_hardware(STOP_PATIENCE) {
+        eprint(&format!("error: the hardware of component `{name}` may still move: what stops it has not returned\n"));
     }
     guard::exit(Exit::Interrupted as i32)
 }

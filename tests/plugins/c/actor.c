@@ -13,6 +13,12 @@
 #define TEXT(...) JSON(__VA_ARGS__)
 #define WORD JSON({"name": "Word", "fields": [{"name": "text", "type": "string"}]})
 
+#ifdef STOPS
+#define SAYS_STOPS STOPS
+#else
+#define SAYS_STOPS false
+#endif
+
 #ifdef UNBOUND
 /* Nobody has it. */
 extern void turn_the_wheels(void);
@@ -89,10 +95,51 @@ static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void
     return SaomsStatus_OK;
 }
 
+/* The functions of a motor whose state is a text. */
+static SaomsStatus stop_motor(void *state, SaomsSink error) {
+    if (strcmp(state, "dead line") == 0) {
+        error.put(error.state, saoms_text("the line is dead"));
+        return SaomsStatus_FAILED;
+    }
+    fprintf(stderr, "the motor is stopped\n");
+    return SaomsStatus_OK;
+}
+
+static void beat_motor(void *state, uint64_t period) {
+    (void)state;
+    fprintf(stderr, "the motor hears: %llu\n", (unsigned long long)period);
+}
+
+static void release_motor(void *state) {
+    fprintf(stderr, "the motor is released\n");
+    free(state);
+}
+
+static SaomsStatus register_motor(const Actor *actor, const SaomsHostHandle *host, SaomsSink error) {
+    char *state = strcpy(malloc(sizeof actor->does), actor->does);
+    SaomsStopView view = {sizeof view, state, stop_motor, beat_motor, release_motor};
+    if (strcmp(actor->does, "null stop") == 0) {
+        view.stop = NULL;
+    }
+    if (strcmp(actor->does, "null motor") == 0) {
+        free(state);
+        return host->functions->register_stop(host->state, NULL, error);
+    }
+    return host->functions->register_stop(host->state, &view, error);
+}
+
 static SaomsStatus initialize(void *component, const SaomsHostHandle *host, SaomsSink error) {
     Actor *actor = component;
     SaomsTopicView topic = {saoms_text("WORDS"), saoms_text("Word"), saoms_text(WORD), 1};
     act(actor, "initialize");
+#ifdef STOPS
+    SaomsStatus registered = register_motor(actor, host, error);
+    if (registered != SaomsStatus_OK) {
+        return registered;
+    }
+#else
+    (void)register_motor;
+#endif
     if (strcmp(actor->does, "null topic") == 0) {
         return host->functions->publish(host->state, NULL, &actor->publisher, error);
     }
@@ -203,7 +250,7 @@ static SaomsStatus step(void *looping, const SaomsEntriesHandle *knowledge, cons
 
 SAOMS_METADATA static const char metadata[] =
     JSON({"saoms": "plugin", "abi":) TEXT(SAOMS_ABI_VERSION) JSON(, "package": "actor", "version": "0.1.0", "entry": "actor_plugin", "classes": [
-        {"contract": 1, "class": "c.Actor", "kind": "periodic",) PROPERTIES JSON(,
+        {"contract": 1, "class": "c.Actor", "kind": "periodic", "stops":) TEXT(SAYS_STOPS) JSON(,) PROPERTIES JSON(,
          "references": [{"name": "callee", "optional": true, "interface": {"name": "c.Callee", "operations": []}}],
          "publishes":) TOPICS JSON(, "subscribes":) TOPICS JSON(}], "loops": [
         {"contract": 1, "loop": "c.Step", "effects": ["brightness"],) PROPERTIES JSON(}]});

@@ -123,10 +123,10 @@ fn a_library_without_metadata_or_with_damaged_ones() {
 
 #[test]
 fn a_library_for_an_older_or_newer_boundary() {
-    let expected = ["this program has version 2", "build the plugin with saoms-api"];
-    let path = said("older.so", "\"abi\":2", b"\"abi\":1");
+    let expected = ["this program has version 3", "build the plugin with saoms-api"];
+    let path = said("older.so", "\"abi\":3", b"\"abi\":1");
     assert_says(&refused(&path), &[&["was built for the older version 1 of the boundary"], &expected[..]].concat());
-    let path = said("newer.so", "\"abi\":2", b"\"abi\":9");
+    let path = said("newer.so", "\"abi\":3", b"\"abi\":9");
     assert_says(&refused(&path), &[&["was built for the newer version 9 of the boundary"], &expected[..]].concat());
 }
 
@@ -170,7 +170,7 @@ fn a_constructor_that_fails() {
     assert_says(&said, &["S3014", "failed without a message"]);
 }
 
-const METADATA: &str = r#"{"saoms":"plugin","abi":2,"package":"from-c","entry":"enter","classes":[{"contract":1,"class":"good.Sender","kind":"periodic"}]}"#;
+const METADATA: &str = r#"{"saoms":"plugin","abi":3,"package":"from-c","entry":"enter","classes":[{"contract":1,"class":"good.Sender","kind":"periodic"}]}"#;
 
 #[test]
 fn a_library_that_lacks_another_library() {

@@ -116,3 +116,28 @@ fn a_record_has_the_id_that_it_was_given_or_its_text() {
     assert_eq!(shown(0), ["piece_waits", "1 piece waits"], "{}", run.text);
     assert_eq!(shown(1), ["{n} {n:piece waits|pieces wait}", "1 piece waits"], "{}", run.text);
 }
+
+#[test]
+fn a_motor_in_c_hears_heartbeats_is_stopped_and_released() {
+    let run = run(&["STOPS=true"], "");
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    assert_eq!(run.text.matches("the motor hears: 100000000\n").count(), 20, "{}", run.text);
+    assert_eq!(run.text.matches("the motor is released\n").count(), 2, "{}", run.text);
+    let (stopped, released) = (run.text.find("the motor is stopped"), run.text.find("the motor is released"));
+    assert!(stopped.is_some() && stopped < released, "{}", run.text);
+}
+
+#[test]
+fn a_motor_in_c_that_cannot_be_stopped_or_is_null_is_told_by_name() {
+    let run = |does| run(&["STOPS=true"], &property("does", does));
+    let dead = run("dead line");
+    assert_eq!(dead.code, Some(1), "{}", dead.text);
+    assert!(dead.text.contains("component `Bad` could not stop its hardware: the line is dead"), "{}", dead.text);
+    for does in ["null stop", "null motor"] {
+        let null = run(does);
+        let expected = "found null for the function that stops the hardware, expected ";
+        assert!(null.code == Some(1) && null.text.contains(expected) && null.text.contains("Bad"), "{}", null.text);
+    }
+    let undeclared = self::run(&["STOPS=false"], "");
+    assert!(undeclared.text.contains("does not declare that it stops hardware"), "{}", undeclared.text);
+}

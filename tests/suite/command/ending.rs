@@ -26,7 +26,20 @@ fn endless(folder: &Path, arguments: &[&str]) -> Command {
     fs::write(folder.join("one.composite"), ENDLESS).unwrap();
     let mut run = command(&[&["run", "one.composite", "--console", "classic"], arguments].concat());
     run.current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
+    // Who starts the tests may ignore hangups, as `nohup` does.
+    on_hangup(&mut run, libc::SIG_DFL);
     run
+}
+
+/// Sets what a process does on a hangup.
+fn on_hangup(run: &mut Command, action: libc::sighandler_t) {
+    // SAFETY: the call between fork and exec is one that signal handlers may make.
+    unsafe {
+        run.pre_exec(move || {
+            libc::signal(libc::SIGHUP, action);
+            Ok(())
+        });
+    }
 }
 
 /// Reads up to the first execution, so that the fleet runs.
@@ -143,13 +156,7 @@ fn a_hangup_ends_through_shutdown_and_writes_all_files() {
 fn a_hangup_ends_nothing_that_is_to_outlive_it() {
     let folder = empty_folder("nohup");
     let mut run = endless(&folder, &["--report", "report.json"]);
-    // SAFETY: the call between fork and exec is one that signal handlers may make.
-    unsafe {
-        run.pre_exec(|| {
-            libc::signal(libc::SIGHUP, libc::SIG_IGN);
-            Ok(())
-        });
-    }
+    on_hangup(&mut run, libc::SIG_IGN);
     let mut child = run.spawn().unwrap();
     let mut lines = running(&mut child);
     send(&child, libc::SIGHUP);

@@ -120,6 +120,10 @@ impl Host for FakeHost {
         Ok(0)
     }
 
+    fn register_stop(&mut self, _: saoms_api::StopFunction) -> Result<(), Failure> {
+        Ok(())
+    }
+
     fn is_wired(&self, reference: u32) -> bool {
         reference == 0 && self.provider.is_some()
     }

@@ -149,6 +149,9 @@ impl Engine {
         slot.renew(Arc::clone(&body.part.spec));
         body.part.period = slot.policy.period;
         slot.body = Some(body);
+        let heartbeats = self.heartbeats_of(number);
+        let slot = &mut self.slots[number as usize];
+        slot.body.iter_mut().for_each(|body| body.part.heartbeats.clone_from(&heartbeats));
         slot.held = false;
         slot.statistics.replaced += 1;
         self.emit(now, number, Occurrence::Replaced { continued: done == Takeover::Continued });

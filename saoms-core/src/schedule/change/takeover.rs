@@ -10,6 +10,7 @@ use crate::bus::{Bus, TopicId, TopicReader};
 use crate::journal::Recorder;
 use crate::schedule::component::body::{Body, Part};
 use crate::schedule::shared::Shared;
+use crate::schedule::stop::RegisteredStop;
 
 /// The outcome of a replacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +37,7 @@ pub(crate) enum Refusal {
 pub(crate) struct Predecessor {
     instance: Box<dyn DynComponent>,
     endpoints: Endpoints,
+    stops: Vec<Arc<RegisteredStop>>,
 }
 
 /// Topics and subscriptions of an instance.
@@ -84,14 +86,15 @@ impl Body {
         let begin = move |body: &mut Body, shared: &Arc<Shared>| body.begin_instead(shared, &saved);
         successor = successor.within(shared, "`initialize` or `restore`", begin).map_err(Refusal::Failed)?;
         let endpoints = Endpoints::take(&mut self.part, &mut successor.part);
-        let (Some(instance), successor) = (self.instance.take(), successor.instance.take()) else {
+        let (Some(instance), new) = (self.instance.take(), successor.instance.take()) else {
             return Err(Refusal::NotNow("it has just ended".to_owned()));
         };
-        self.instance = successor;
+        self.instance = new;
         self.inboxes.clear();
         self.inboxes.resize_with(self.part.subscriptions.len(), Vec::new);
         let takeover = if is_nothing { Takeover::Began } else { Takeover::Continued };
-        Ok((Predecessor { instance, endpoints }, takeover))
+        let stops = std::mem::replace(&mut self.part.stops, std::mem::take(&mut successor.part.stops));
+        Ok((Predecessor { instance, endpoints, stops }, takeover))
     }
 
     /// The body of a new instance, apart from that of the present one, which goes on if the new one never returns.
@@ -141,7 +144,8 @@ impl Body {
             if saved.is_nothing() { Ok(()) } else { instance.restore(saved) }
         });
         self.part.initializing = false;
-        result?
+        result??;
+        self.part.has_registered_stop()
     }
 
     /// Drops a new instance that takes nothing over, with its topics.
@@ -159,7 +163,8 @@ impl Body {
     /// Commits the takeover: the new instance gets the read positions of the earlier one; its other subscriptions are
     /// released. The earlier one is given back, to be dropped where nobody waits for it.
     pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
-        let Predecessor { instance, endpoints } = predecessor;
+        // The hardware goes on: it is the new instance that stops it from now on.
+        let Predecessor { instance, endpoints, stops: _ } = predecessor;
         let Endpoints { publishers, mut subscriptions, .. } = endpoints;
         let queue = self.part.spec.task.as_ref().map(|task| task.queue);
         for fresh in &mut self.part.subscriptions {
@@ -186,6 +191,7 @@ impl Body {
     pub(crate) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
         let outgoing = Outgoing(self.instance.replace(predecessor.instance));
         let part = &mut self.part;
+        part.stops = predecessor.stops;
         part.publishers.drain(..).for_each(|topic| bus.unpublish(topic));
         for subscription in part.subscriptions.drain(..).chain(part.kept.drain(..)) {
             bus.unsubscribe(subscription);
@@ -203,7 +209,6 @@ impl Body {
 }
 
 impl Endpoints {
-    /// Takes the endpoints of the present instance, and sets the specification of the new one.
     /// Takes the endpoints of the present instance, and sets those of its successor.
     fn take(part: &mut Part, successor: &mut Part) -> Endpoints {
         part.schemas.append(&mut successor.schemas);

@@ -1,5 +1,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use saoms_api::host::{DynComponent, Invocation, SharedMessage};
 use saoms_api::{CallError, Cause, Chance, Context, Failure};
@@ -10,6 +11,7 @@ use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
 use crate::schedule::engine::votes::Ballot;
 use crate::schedule::shared::Shared;
+use crate::schedule::stop::RegisteredStop;
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_lang::assembly::ComponentSpec;
@@ -28,6 +30,10 @@ pub(crate) struct Body {
 pub(crate) struct Part {
     pub(crate) index: u32,
     pub(crate) name: Arc<str>,
+    /// The functions of the instance that stop its hardware.
+    pub(crate) stops: Vec<Arc<RegisteredStop>>,
+    /// Components whose hardware hears of each of its executions.
+    pub(crate) heartbeats: Vec<u32>,
     pub(crate) publishers: Vec<TopicId>,
     /// Schemas of the topics on which messages were sent as bytes.
     pub(crate) schemas: Vec<(TopicId, Arc<Schema>)>,
@@ -86,6 +92,8 @@ impl Body {
         let part = Part {
             index,
             name,
+            stops: Vec::new(),
+            heartbeats: Vec::new(),
             publishers: Vec::new(),
             schemas: Vec::new(),
             subscriptions: Vec::new(),
@@ -115,6 +123,10 @@ impl Body {
     #[inline]
     pub(crate) fn perform(&mut self, shared: &Arc<Shared>, job: Job) -> Result<(), Failure> {
         self.part.recorder.begin(Cause::default());
+        if job == Job::Shutdown {
+            // Before its code runs, which may hang.
+            shared.stops.request(&self.part.stops);
+        }
         let result = match job {
             Job::Execute => {
                 let fault = self.part.fault.take();
@@ -138,6 +150,13 @@ impl Body {
         for inbox in &mut self.inboxes {
             inbox.clear();
         }
+        match &result {
+            Ok(()) if job == Job::Execute && !self.part.heartbeats.is_empty() => {
+                shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
+            }
+            Ok(()) => {}
+            Err(_) => shared.stops.request(&self.part.stops),
+        }
         if result.is_err() || job == Job::Shutdown {
             self.discard();
         }
@@ -157,7 +176,8 @@ impl Body {
         self.part.recorder.reset();
         let result = self.call(shared, |instance, context| instance.initialize(context));
         self.part.initializing = false;
-        result?
+        result??;
+        self.part.has_registered_stop()
     }
 
     /// Serves a call to one of the component's services, for a caller with this cause. The outer error is a panic,
@@ -171,6 +191,7 @@ impl Body {
         self.part.recorder.begin(cause);
         let result = self.call(shared, |instance, context| instance.serve(invocation, context));
         if result.is_err() {
+            shared.stops.request(&self.part.stops);
             self.discard();
         }
         result
@@ -196,6 +217,7 @@ impl Body {
             // A panic here is ignored: the failure or the shutdown before it has been reported.
             let _ = contained(|| drop(instance));
         }
+        self.part.stops.clear();
     }
 }
 
@@ -219,6 +241,18 @@ fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
 }
 
 impl Part {
+    /// Holds a class that declares it to the registration of a function that stops hardware.
+    pub(crate) fn has_registered_stop(&self) -> Result<(), Failure> {
+        if self.stops.is_empty() && self.spec.class.declaration().stops {
+            return Err(Failure::new(format!(
+                "class `{}` declares that it `stops` its hardware, but `initialize` registered no function for that: \
+                 call `Context::register_stop`",
+                self.spec.class.name()
+            )));
+        }
+        Ok(())
+    }
+
     /// True if the instance tries again, with the same messages.
     #[cold]
     fn keeps_instance(&self, job: Job, failure: &Failure) -> bool {

@@ -118,6 +118,7 @@ impl Engine {
         let Some(body) = slot.body.take_if(|_| (caller.held || !slot.held) && caller.now >= slot.busy_until) else {
             return Err(CallError::Busy { provider: provider() });
         };
+        slot.out_since = caller.now;
         self.out += 1;
         Ok(body)
     }

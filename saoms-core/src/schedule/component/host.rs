@@ -6,7 +6,7 @@ use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
-use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, Time, Value, Work};
+use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
 
 use super::body::{Part, subject};
 use crate::bus::TopicId;
@@ -267,6 +267,24 @@ impl Host for ComponentHost<'_> {
             "class `{}` declares no reference `{name}` with the interface `{interface}`; it declares: {known}",
             self.spec().class.name()
         )))
+    }
+
+    fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
+        if !self.part.initializing {
+            return Err(Failure::new(
+                "a component can only register a function that stops its hardware in `initialize`",
+            ));
+        }
+        let class = &self.spec().class;
+        if !class.declaration().stops {
+            return Err(Failure::new(format!(
+                "class `{}` does not declare that it stops hardware: write `stops` in its `#[class(...)]`",
+                class.name()
+            )));
+        }
+        let registered = self.shared.stops.register(self.part.index, &self.part.name, stop);
+        self.part.stops.push(registered);
+        Ok(())
     }
 
     fn is_wired(&self, reference: u32) -> bool {

@@ -29,6 +29,7 @@ impl Engine {
         if self.phase != RunPhase::Running {
             return;
         }
+        self.stops.request_all();
         self.phase = RunPhase::Stopping;
         self.cause = Some(cause);
         self.ended = (now, sys::monotonic());
@@ -73,6 +74,8 @@ impl Engine {
                 self.reasons.push(format!("component `{}` {why}", slot.name));
                 self.note_return();
                 self.emit(now, index, Occurrence::Abandoned);
+                self.stops.request_of(index);
+                self.stop_its_hardware(index);
             }
         }
     }

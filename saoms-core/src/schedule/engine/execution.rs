@@ -55,6 +55,7 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         let mut body = slot.body.take()?;
         self.out += 1;
+        slot.out_since = now;
         body.part.now = now;
         match job {
             Job::Execute => self.begin_execution(index, &mut body, now),
@@ -72,6 +73,10 @@ impl Engine {
                 body.part.chance = Chance::for_component(seed, &slot.name);
                 body.part.due = now;
                 body.part.execution = 0;
+                body.part.heartbeats = self.heartbeats_of(index);
+                if !body.part.heartbeats.is_empty() && !self.with_hardware.contains(&index) {
+                    self.with_hardware.push(index);
+                }
             }
         }
         Some(body)

@@ -137,6 +137,7 @@ impl Engine {
     pub(crate) fn left(&mut self, index: u32, now: u64) {
         self.leave_topics(index, now);
         self.step(now, index, TraceStep::Left);
+        self.stop_its_hardware(index);
         let slot = &mut self.slots[index as usize];
         let pending = std::mem::replace(&mut slot.pending, PendingRequest::None);
         slot.state = SlotState::Idle;
@@ -185,6 +186,8 @@ impl Engine {
         }
         let stays = self.phase == RunPhase::Running && job != Job::Shutdown && slot.pending == PendingRequest::None;
         let policy = slot.policy;
+        self.stop_its_hardware(index);
+        let slot = &mut self.slots[index as usize];
         let longer = 1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX);
         let pause = (stays && slot.restarts < policy.restarts).then(|| policy.backoff.saturating_mul(longer));
         self.keep_subscriptions(body);

@@ -28,6 +28,7 @@ use self::votes::VoteTally;
 use super::component::body::Job;
 use super::inject::Injections;
 use super::settings::{ClockKind, Settings, nanos};
+use super::stop::Stops;
 use crate::bus::Bus;
 use crate::fault::Faults;
 use crate::journal::{OutsideRing, RecordQueue};
@@ -68,6 +69,9 @@ pub(crate) struct Engine {
     pub(crate) injections: Injections,
     /// The newest records of messages from outside.
     pub(crate) outside: OutsideRing,
+    /// Functions that stop hardware, and the components that have some or use some.
+    pub(crate) stops: Arc<Stops>,
+    pub(crate) with_hardware: Vec<u32>,
     /// Counter of the journal's records.
     pub(crate) record_ids: Arc<AtomicU64>,
     pub(crate) faults: Faults,
@@ -157,6 +161,8 @@ impl Engine {
             ending_later: Vec::new(),
             injections: Injections::default(),
             outside: OutsideRing::default(),
+            stops: Arc::default(),
+            with_hardware: Vec::new(),
             record_ids: Arc::default(),
             faults: settings.faults.clone(),
             numbers: HashMap::new(),

@@ -43,6 +43,10 @@ pub(crate) struct Slot {
     pub(crate) dropping: bool,
     /// True if its last execution was skipped, because a component that it called was busy.
     pub(crate) skipping: bool,
+    /// Time since which its body is out.
+    pub(crate) out_since: u64,
+    /// The same of the last code that did not return in time, so that its hardware was stopped.
+    pub(crate) hangs_since: u64,
     /// In virtual time, the end of an execution that a fault makes longer.
     pub(crate) busy_until: u64,
     pub(crate) isolation: Isolation,
@@ -208,6 +212,8 @@ impl Slot {
             queued: false,
             dropping: false,
             skipping: false,
+            out_since: NEVER,
+            hangs_since: NEVER,
             busy_until: 0,
             isolation: Isolation::default(),
             policy,

@@ -282,7 +282,7 @@ static CLASS: ClassTable =
 static CLASSES: &[&ClassTable] = &[&CLASS];
 
 const TEXT: ConstText = ConstText::Joined(&[
-    ConstText::Plain(r#"{"saoms":"plugin","abi":2,"package":"test-raw","entry":"raw_entry","classes":["#),
+    ConstText::Plain(r#"{"saoms":"plugin","abi":3,"package":"test-raw","entry":"raw_entry","classes":["#),
     ConstText::Plain(<Actor as Class>::DECLARATION),
     ConstText::Plain("]}"),
 ]);

@@ -98,7 +98,7 @@ static SaomsStatus counter_restore(void *component, SaomsBytes saved, SaomsSink 
 }
 
 SAOMS_METADATA static const char metadata[] =
-    "{\"saoms\":\"plugin\",\"abi\":2,\"package\":\"counter\",\"version\":\"0.1.0\",\"entry\":\"counter_plugin\",\"classes\":"
+    "{\"saoms\":\"plugin\",\"abi\":3,\"package\":\"counter\",\"version\":\"0.1.0\",\"entry\":\"counter_plugin\",\"classes\":"
     "[{\"contract\":1,\"class\":\"test.Counter\",\"kind\":\"periodic\",\"doc\":\"" DOC "\",\"properties\":[],"
     "\"publishes\":[],\"subscribes\":[],\"services\":[],\"references\":[]}]}";
 

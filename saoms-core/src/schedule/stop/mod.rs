@@ -1,0 +1,184 @@
+//! Functions that stop the hardware of components, whatever the code of the components does: see
+//! [`StopFunction`](saoms_api::StopFunction).
+//!
+//! They are called on threads of their own, so that one that hangs holds up neither the fleet nor the others. All are
+//! requested when a run ends; [`stop_hardware`] does that for a process that ends without its runs.
+
+mod hang;
+mod threads;
+
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+use std::time::{Duration, Instant};
+
+use saoms_api::StopFunction;
+use saoms_api::host::contain::contained;
+
+use self::threads::StopThreads;
+use super::engine::Engine;
+use super::shared::Shared;
+use crate::observe::Occurrence;
+
+/// The functions of a fleet that stop hardware.
+#[derive(Default)]
+pub(crate) struct Stops {
+    /// By the number of their component. Bodies own them.
+    registered: Mutex<HashMap<u32, Vec<Weak<RegisteredStop>>>>,
+    threads: StopThreads,
+    /// True once there was one.
+    any: AtomicBool,
+    /// The fleet, which is told what could not be stopped.
+    fleet: OnceLock<Weak<Shared>>,
+}
+
+/// A function of a component that stops hardware.
+#[derive(Debug)]
+pub(crate) struct RegisteredStop {
+    component: u32,
+    /// Path of the component.
+    name: Arc<str>,
+    function: StopFunction,
+}
+
+/// The functions of all fleets of the process.
+static ALL: Mutex<Vec<Weak<Stops>>> = Mutex::new(Vec::new());
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Stops the hardware of all fleets of this process, for a process that ends at once. Waits for it, but no longer than
+/// `patience`; gives the components whose hardware may still move.
+pub fn stop_hardware(patience: Duration) -> Vec<String> {
+    let all: Vec<Arc<Stops>> = lock(&ALL).iter().filter_map(Weak::upgrade).collect();
+    let deadline = Instant::now() + patience;
+    all.iter().for_each(Stops::request_all);
+    let rest = |stops: &Arc<Stops>| stops.threads.wait(deadline.saturating_duration_since(Instant::now()));
+    all.iter().flat_map(rest).map(|name| name.to_string()).collect()
+}
+
+impl Stops {
+    /// Names the fleet of these functions.
+    pub(super) fn serve(self: &Arc<Stops>, fleet: &Arc<Shared>) {
+        // It is set once, by the start of the fleet.
+        let _ = self.fleet.set(Arc::downgrade(fleet));
+    }
+
+    /// True if a component of the fleet ever registered one: where none did, nothing has to be looked up.
+    #[inline]
+    pub(crate) fn any(&self) -> bool {
+        self.any.load(Ordering::Relaxed)
+    }
+
+    /// Registers a function of a component, until what is given back is dropped.
+    pub(crate) fn register(
+        self: &Arc<Stops>,
+        component: u32,
+        name: &Arc<str>,
+        function: StopFunction,
+    ) -> Arc<RegisteredStop> {
+        let registered = Arc::new(RegisteredStop { component, name: Arc::clone(name), function });
+        let mut all = lock(&self.registered);
+        let own = all.entry(component).or_default();
+        own.retain(|known| known.strong_count() > 0);
+        own.push(Arc::downgrade(&registered));
+        drop(all);
+        if !self.any.swap(true, Ordering::Relaxed) {
+            lock(&ALL).retain(|known| known.strong_count() > 0);
+            lock(&ALL).push(Arc::downgrade(self));
+            if let Some(fleet) = self.fleet.get().and_then(Weak::upgrade) {
+                hang::watch(&fleet);
+            }
+        }
+        registered
+    }
+
+    /// The functions of a component.
+    fn of(&self, component: u32) -> Vec<Arc<RegisteredStop>> {
+        lock(&self.registered).get(&component).into_iter().flatten().filter_map(Weak::upgrade).collect()
+    }
+
+    /// Has these functions called.
+    pub(crate) fn request(self: &Arc<Stops>, functions: &[Arc<RegisteredStop>]) {
+        if !functions.is_empty() {
+            self.threads.request(self, functions);
+        }
+    }
+
+    /// Has the functions of a component called.
+    pub(crate) fn request_of(self: &Arc<Stops>, component: u32) {
+        self.request(&self.of(component));
+    }
+
+    /// Has all functions called.
+    pub(crate) fn request_all(self: &Arc<Stops>) {
+        if self.any() {
+            let all: Vec<_> = lock(&self.registered).values().flatten().filter_map(Weak::upgrade).collect();
+            self.request(&all);
+        }
+    }
+
+    /// Tells the hardware of these components that an execution has finished, and within which time the next one does.
+    #[cold]
+    pub(crate) fn beat(&self, components: &[u32], period: Duration) {
+        for registered in components.iter().flat_map(|component| self.of(*component)) {
+            // A panic is a missing heartbeat, at which the hardware stops.
+            let _ = contained(|| registered.function.beat(period));
+        }
+    }
+
+    /// Waits until all that were requested have returned; gives the components of those that have not.
+    pub(super) fn wait(&self, patience: Duration) -> Vec<Arc<str>> {
+        if self.any() { self.threads.wait(patience) } else { Vec::new() }
+    }
+
+    /// Calls a function.
+    fn call(&self, registered: &RegisteredStop) {
+        let Err(failure) = contained(|| registered.function.stop()).and_then(|stopped| stopped) else { return };
+        let Some(fleet) = self.fleet.get().and_then(Weak::upgrade) else { return };
+        let mut engine = fleet.lock();
+        engine.hardware_moves(registered.component, failure.to_string(), fleet.clock.now());
+        fleet.release(engine);
+    }
+}
+
+impl Engine {
+    /// The components whose hardware hears a heartbeat when this one has executed: itself, and those that it is wired
+    /// to, where they register functions that stop hardware.
+    pub(crate) fn heartbeats_of(&self, index: u32) -> Vec<u32> {
+        let spec = &self.slots[index as usize].spec;
+        let targets = spec.references.iter().flat_map(|wire| &wire.targets).map(|target| target.component as u32);
+        let stops =
+            |index: &u32| self.slots.get(*index as usize).is_some_and(|slot| slot.spec.class.declaration().stops);
+        let mut all: Vec<u32> = std::iter::once(index).chain(targets).filter(stops).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Stops the hardware of passive components that only this one uses.
+    pub(crate) fn stop_its_hardware(&mut self, index: u32) {
+        if !self.stops.any() {
+            return;
+        }
+        let uses = |user: u32, provider: u32| {
+            let wires = &self.slots[user as usize].spec.references;
+            wires.iter().flat_map(|wire| &wire.targets).any(|target| target.component as u32 == provider)
+        };
+        for provider in self.heartbeats_of(index) {
+            let is_used = |user: u32| user != index && self.slots[user as usize].is_alive() && uses(user, provider);
+            let is_passive = !self.slots[provider as usize].policy.periodic;
+            if is_passive && !(0..self.slots.len() as u32).any(is_used) {
+                self.stops.request_of(provider);
+            }
+        }
+    }
+
+    /// Notes that hardware may still move, which fails the run.
+    pub(super) fn hardware_moves(&mut self, index: u32, message: String, now: u64) {
+        let name = &self.slots[index as usize].name;
+        self.reasons.push(format!("component `{name}` could not stop its hardware: {message}"));
+        self.emit(now, index, Occurrence::NotStopped { message });
+    }
+}
