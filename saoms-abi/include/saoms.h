@@ -196,11 +196,12 @@ typedef struct SaomsEntryView {
 // A value of a record or an entry.
 typedef struct SaomsValueView {
     // 0: false or true (`bits` 0 or 1), 1: a whole number (`bits` as a signed integer), 2: a number
-    // (`bits` of its IEEE 754 form), 3: a pair (the first in the lower 32 bits of `bits`), 4: the `word`, 5: no value.
+    // (`bits` of its IEEE 754 form), 3: a pair (the first in the lower 32 bits of `bits`), 4: the `word`, 5: no value,
+    // 6: a text in `word`.
     uint32_t kind;
     // The value.
     uint64_t bits;
-    // A word; it has to be part of the library.
+    // A word, which has to be part of the library; or a text, which is copied within the call.
     struct SaomsBytes word;
 } SaomsValueView;
 

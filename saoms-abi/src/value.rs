@@ -21,11 +21,12 @@ pub struct PropertyView {
 #[derive(Clone, Copy, Debug)]
 pub struct ValueView {
     /// 0: false or true (`bits` 0 or 1), 1: a whole number (`bits` as a signed integer), 2: a number
-    /// (`bits` of its IEEE 754 form), 3: a pair (the first in the lower 32 bits of `bits`), 4: the `word`, 5: no value.
+    /// (`bits` of its IEEE 754 form), 3: a pair (the first in the lower 32 bits of `bits`), 4: the `word`, 5: no value,
+    /// 6: a text in `word`.
     pub kind: u32,
     /// The value.
     pub bits: u64,
-    /// A word; it has to be part of the library.
+    /// A word, which has to be part of the library; or a text, which is copied within the call.
     pub word: Bytes,
 }
 

@@ -1,4 +1,5 @@
-use crate::host::{Invocation, LoopRegistration};
+use crate::derived;
+use crate::host::{Derived, Invocation, LoopRegistration};
 use crate::{CallError, Context, Failure, Properties, Saved};
 
 /// A component of a fleet, written by an author.
@@ -24,13 +25,14 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 ///
 /// ```
 /// # use std::time::Duration;
-/// # use saoms_api::{Component, Context, Failure, Message, Publisher};
+/// # use saoms_api::{Class, Component, Context, Failure, Message, Publisher};
 /// # #[derive(Clone, Debug, Message)]
 /// # struct Arrived;
+/// # #[derive(Class)]
+/// # #[class(name = "example.Wheels", periodic)]
 /// # struct Wheels { arrived: Publisher<Arrived>, drive_time: Duration }
 /// # impl Component for Wheels {
 /// # type Properties = ();
-/// # fn new((): ()) -> Result<Self, Failure> { Err("only an example".into()) }
 /// fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
 ///     std::thread::sleep(self.drive_time); // wrong: no other component can run, or this one becomes late
 ///     context.send(&self.arrived, Arrived)
@@ -41,13 +43,14 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 /// Remember the state instead, and look again in the next period:
 ///
 /// ```
-/// # use saoms_api::{Component, Context, Failure, Message, Publisher, Time};
+/// # use saoms_api::{Class, Component, Context, Failure, Message, Publisher, Time};
 /// # #[derive(Clone, Debug, Message)]
 /// # struct Arrived;
+/// # #[derive(Class)]
+/// # #[class(name = "example.Wheels", periodic)]
 /// # struct Wheels { arrived: Publisher<Arrived>, arrival: Time }
 /// # impl Component for Wheels {
 /// # type Properties = ();
-/// # fn new((): ()) -> Result<Self, Failure> { Err("only an example".into()) }
 /// fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
 ///     if context.now() < self.arrival {
 ///         return Ok(());
@@ -56,42 +59,82 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 /// }
 /// # }
 /// ```
-pub trait Component: Send + Sized + 'static {
-    /// Properties that the composite sets.
+pub trait Component: Derived + Send + Sized + 'static {
+    /// Properties that the composite sets: [`Own<Self>`](crate::Own) where fields declare them with `#[property]`, a
+    /// struct that derives [`Properties`], or `()`.
     type Properties: Properties;
 
-    /// Makes the component.
+    /// Makes the component. By itself it has the values of the composite in the fields with `#[property]` and
+    /// `#[properties]`, and everything else is its `Default`: a component with other fields writes this function.
     ///
     /// # Errors
     /// The values do not fit together; the message says which and why. [`Finding`](crate::Finding)s are shown in the
     /// composite at the very values, or parts of values, that they are about, all of them at once.
-    fn new(properties: Self::Properties) -> Result<Self, Failure>;
+    fn new(properties: Self::Properties) -> Result<Self, Failure> {
+        <Self as Derived>::made::<true>(properties)
+    }
 
-    /// Asks for topics and references.
+    /// The component that [`new`](Component::new) makes by itself: for a `new` that checks values.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Failure, Own};
+    ///
+    /// /// Heats between two temperatures.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Heater", periodic)]
+    /// struct Heater {
+    ///     /// Where it begins to heat.
+    ///     #[property(default = 18.0, unit = "degrees Celsius")]
+    ///     lowest: f64,
+    ///     /// Where it stops.
+    ///     #[property(default = 22.0, unit = "degrees Celsius")]
+    ///     highest: f64,
+    ///     is_on: bool,
+    /// }
+    ///
+    /// impl Component for Heater {
+    ///     type Properties = Own<Self>;
+    ///
+    ///     fn new(properties: Own<Self>) -> Result<Self, Failure> {
+    ///         let heater = Self::made(properties)?;
+    ///         if heater.lowest > heater.highest {
+    ///             return Err("`lowest` is above `highest`".into());
+    ///         }
+    ///         Ok(heater)
+    ///     }
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// The component that it extends refuses the values.
+    fn made(properties: Self::Properties) -> Result<Self, Failure> {
+        <Self as Derived>::made::<true>(properties)
+    }
+
+    /// Begins the work. The handles in fields (`#[publishes]` and the like) are bound before; others are asked for here.
+    /// By itself it starts what it extends, or its loops.
     ///
     /// # Errors
     /// The component cannot start; at the start of a fleet nothing starts then.
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let _ = context;
-        Ok(())
+        derived::initialize(self, context)
     }
 
-    /// Does the work of one period. Never called for a passive component.
+    /// Does the work of one period. Never called for a passive component. By itself it does that of what it extends, or
+    /// of its loops.
     ///
     /// # Errors
     /// The component has failed.
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let _ = context;
-        Ok(())
+        derived::execute(self, context)
     }
 
-    /// Ends the work; messages sent here are still delivered.
+    /// Ends the work; messages sent here are still delivered. By itself it ends what it extends, or its loops.
     ///
     /// # Errors
     /// The component could not end properly.
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let _ = context;
-        Ok(())
+        derived::shutdown(self, context)
     }
 
     /// Saves the state for a successor, when the library was rebuilt while the fleet runs (`saoms run --reload`):
@@ -100,16 +143,17 @@ pub trait Component: Send + Sized + 'static {
     /// called. By default nothing is saved, and the new one starts without state.
     ///
     /// ```
-    /// # use saoms_api::{Component, Context, Failure, Message, Saved};
+    /// # use saoms_api::{Class, Component, Context, Failure, Message, Saved};
     /// #[derive(Clone, Debug, Message)]
     /// struct State {
     ///     blocks: u64,
     /// }
     ///
+    /// # #[derive(Class)]
+    /// # #[class(name = "example.Odometer", periodic)]
     /// # struct Odometer { blocks: u64, drives: bool }
     /// # impl Component for Odometer {
     /// # type Properties = ();
-    /// # fn new((): ()) -> Result<Self, Failure> { Err("only an example".into()) }
     /// fn save(&mut self) -> Result<Saved, Failure> {
     ///     if self.drives {
     ///         return Err("it drives".into());
@@ -129,7 +173,7 @@ pub trait Component: Send + Sized + 'static {
     /// # Errors
     /// It cannot be replaced now: it stays, and is asked again a second later.
     fn save(&mut self) -> Result<Saved, Failure> {
-        Ok(Saved::default())
+        self.base_mut().map_or_else(|| Ok(Saved::default()), |base| base.save())
     }
 
     /// Goes on where an earlier build was. Not called where that saved nothing.
@@ -137,7 +181,9 @@ pub trait Component: Send + Sized + 'static {
     /// # Errors
     /// It cannot continue from that state: the earlier one stays.
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
-        let _ = saved;
+        if let Some(base) = self.base_mut() {
+            return base.restore(saved);
+        }
         Err("the earlier build saved its state, and this one does not implement `restore`".into())
     }
 
@@ -148,7 +194,7 @@ pub trait Component: Send + Sized + 'static {
     /// however long that takes. The text completes "it waits for". `None`, which is the default, promises nothing. In
     /// virtual time a run without a limit ends when all promise.
     fn waits_for(&self) -> Option<String> {
-        None
+        self.base()?.waits_for().ok()?
     }
 }
 
@@ -161,35 +207,47 @@ pub trait Component: Send + Sized + 'static {
 /// | --- | --- |
 /// | `name = "saoms.Robot"` | the name that composite files use |
 /// | `periodic` or `passive` | whether it is executed in each period; a passive one cannot subscribe |
-/// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
 /// | `service("move": Robot)` | a service with this [interface](crate::host::Interface), which the component implements |
-/// | `reference("gps": Gps)`, `reference("gps": Gps, optional)`, `reference("gps": Gps, many)` | a service of another component that this one calls |
 /// | `stops` | it registers a function that [stops its hardware](crate::StopFunction) |
-/// | `knowledge = RobotKnowledge` | the [knowledge](crate::host::KnowledgeClass) that its loops work on |
 /// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite says otherwise, in their order |
 /// | `loops(property = "policy", safe(A, B), classic(A, C))` | the same, one list for each value of a property |
 /// | `also("robot.Robot001", number = 1)` | a further name, with properties preset to literals |
+///
+/// The fields say the rest, each in one attribute:
+///
+/// | field | what it is |
+/// | --- | --- |
+/// | `#[publishes(COUNT)] count: Publisher<Count>` | a publisher of this [`Topic`](crate::Topic) |
+/// | `#[subscribes(COUNT)] count: Subscription<Count>` | a subscription of it |
+/// | `#[reference] gps: GpsReference` | a service of another component that this one calls, with the name of the field |
+/// | `#[reference("gps")] gps: Option<GpsReference>` | one that needs no target, under another name; it is `None` without a target |
+/// | `#[reference] lights: Vec<LightReference>` | one that takes several targets; with `optional`, as in `#[reference(optional)]`, also none |
+/// | `#[property(default = 1, range = 1..=100)] step: u32` | a property, with all that [`Properties`] says |
+/// | `#[properties] properties: CounterProperties` | all properties, as a struct, in the place of single ones |
+/// | `#[knowledge] knowledge: LampKnowledge`, `#[loops] loops: Loops` | the [knowledge](crate::host::KnowledgeClass), and the loops that work on it |
+/// | `#[extends] robot: Robot` | what it extends, see below |
+///
+/// Handles are bound before [`initialize`](Component::initialize), and a component whose other fields have a default
+/// needs no [`new`](Component::new). With `#[property]` fields, `type Properties` is [`Own<Self>`](crate::Own).
+///
+/// What is not kept in a field is said in `#[class(...)]`, too, and asked for in `initialize`: `publishes(A, B)`,
+/// `subscribes(A, B)`, `reference("gps": Gps)` with `optional` and `many` behind it, `knowledge = RobotKnowledge`.
 ///
 /// Linked classes register themselves: [`Registration::linked`](crate::host::Registration::linked) lists them.
 ///
 /// # Extending a class
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the
-/// topics, services, references, knowledge and loops of the other one and those that it declares itself; composites
-/// change its loops as those of the other, and rules over fleets take it for one. It calls the functions of the other
-/// where the work of the other belongs, shutdown, save, restore and `waits_for` included, and `flatten` gives it the
-/// same properties:
+/// properties, topics, services, references, knowledge and loops of the other one and those that it declares itself;
+/// composites change its loops as those of the other, and rules over fleets take it for one. What it does not write goes
+/// to the other: start, execution, end, save, restore and `waits_for`. What it writes calls that of the other where its
+/// work belongs:
 ///
 /// ```
-/// use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
-/// # #[derive(Properties)]
-/// # struct RobotProperties { #[property(default = 1)] number: u32 }
+/// use saoms_api::{Class, Component, Context, Failure, Message, Own, Publisher, Topic};
 /// # #[derive(Class)]
 /// # #[class(name = "example.Robot", periodic)]
-/// # struct Robot { number: u32 }
-/// # impl Component for Robot {
-/// #     type Properties = RobotProperties;
-/// #     fn new(properties: RobotProperties) -> Result<Self, Failure> { Ok(Robot { number: properties.number }) }
-/// # }
+/// # struct Robot { #[property(default = 1)] number: u32 }
+/// # impl Component for Robot { type Properties = Own<Self>; }
 ///
 /// /// What a horn did.
 /// #[derive(Clone, Debug, Message)]
@@ -199,37 +257,21 @@ pub trait Component: Send + Sized + 'static {
 ///
 /// const HONK: Topic<Honk> = Topic::event("HONK");
 ///
-/// #[derive(Properties)]
-/// struct LoudRobotProperties {
-///     #[property(flatten)]
-///     robot: RobotProperties,
-///     /// It honks each so many executions.
-///     #[property(default = 10, range = 1..)]
-///     every: u64,
-/// }
-///
-/// /// A robot with a horn.
+/// /// A robot that honks.
 /// #[derive(Class)]
-/// #[class(name = "example.LoudRobot", periodic, publishes(HONK))]
+/// #[class(name = "example.LoudRobot", periodic)]
 /// struct LoudRobot {
 ///     #[extends]
 ///     robot: Robot,
+///     /// It honks each so many executions.
+///     #[property(default = 10, range = 1..)]
 ///     every: u64,
+///     #[publishes(HONK)]
 ///     horn: Publisher<Honk>,
 /// }
 ///
 /// impl Component for LoudRobot {
-///     type Properties = LoudRobotProperties;
-///
-///     fn new(properties: LoudRobotProperties) -> Result<Self, Failure> {
-///         let robot = Robot::new(properties.robot)?;
-///         Ok(LoudRobot { robot, every: properties.every, horn: Publisher::default() })
-///     }
-///
-///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-///         self.horn = context.publish(&HONK)?;
-///         self.robot.initialize(context)
-///     }
+///     type Properties = Own<Self>;
 ///
 ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
 ///         self.robot.execute(context)?;
@@ -238,12 +280,10 @@ pub trait Component: Send + Sized + 'static {
 ///         }
 ///         Ok(())
 ///     }
-///
-///     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-///         self.robot.shutdown(context)
-///     }
 /// }
 /// ```
+///
+/// A class with a property struct of its own gives it those of the other with `#[property(flatten)]`, and writes `new`.
 pub trait Class: Component {
     /// Name, properties, topics, services and references as one JSON text; its shape is described in
     /// [`crate::host::declaration`].
@@ -260,11 +300,18 @@ pub trait Class: Component {
 
 /// A component of any class, as hosts hold it.
 pub trait DynComponent: Send {
-    /// See [`Component::initialize`].
+    /// Binds the handles in its fields, then [`Component::initialize`].
     ///
     /// # Errors
     /// As there.
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// [`Component::initialize`] alone, for a component that extends this one and has bound its handles.
+    ///
+    /// # Errors
+    /// As there.
+    fn initialize_bound(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.initialize(context)
+    }
     /// See [`Component::execute`].
     ///
     /// # Errors
@@ -299,6 +346,11 @@ pub trait DynComponent: Send {
 
 impl<C: Class> DynComponent for C {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.bind(context)?;
+        Component::initialize(self, context)
+    }
+
+    fn initialize_bound(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         Component::initialize(self, context)
     }
 

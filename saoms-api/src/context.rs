@@ -139,45 +139,7 @@ impl<'a> Context<'a> {
     }
 
     /// A handle for each target of a reference that the class declares as `many`, in the order of the composite; none
-    /// where it has none. Only in `initialize`.
-    ///
-    /// ```
-    /// use saoms_api::{Class, Component, Context, Failure, interface};
-    ///
-    /// /// Lights something.
-    /// #[interface(name = "example.Light")]
-    /// pub trait Light {
-    ///     /// On or off.
-    ///     fn switch(&mut self, context: &mut Context<'_>, on: bool) -> Result<(), Failure>;
-    /// }
-    ///
-    /// /// Switches all lights that the composite wires it to.
-    /// #[derive(Class)]
-    /// #[class(name = "example.Switch", periodic, reference("lights": Light, optional, many))]
-    /// struct Switch {
-    ///     lights: Vec<LightReference>,
-    /// }
-    ///
-    /// impl Component for Switch {
-    ///     type Properties = ();
-    ///
-    ///     fn new((): ()) -> Result<Self, Failure> {
-    ///         Ok(Switch { lights: Vec::new() })
-    ///     }
-    ///
-    ///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-    ///         self.lights = context.references("lights")?;
-    ///         Ok(())
-    ///     }
-    ///
-    ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-    ///         for light in &self.lights {
-    ///             light.switch(context, true)?;
-    ///         }
-    ///         Ok(())
-    ///     }
-    /// }
-    /// ```
+    /// where it has none. Only in `initialize`: a field `#[reference] lights: Vec<LightReference>` has them by itself.
     ///
     /// # Errors
     /// The class declares no reference of this name and interface.
@@ -280,24 +242,25 @@ impl<'a> Context<'a> {
         self.host.name_of(header.sender)
     }
 
-    /// Writes a line to the log, with the time and the component's name. Formatted only if an observer wants it.
-    pub fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
-        self.host.log(level, line);
+    /// Writes a line to the log, with the time and the component's name. Formatted only if an observer wants it:
+    /// [`info!`](crate::info) and [`warn!`](crate::warn) take a text with values in it.
+    pub fn log(&mut self, level: Level, line: impl fmt::Display) {
+        self.host.log(level, format_args!("{line}"));
     }
 
     /// [`log`](Context::log) at [`Level::Info`].
-    pub fn info(&mut self, line: fmt::Arguments<'_>) {
-        self.host.log(Level::Info, line);
+    pub fn info(&mut self, line: impl fmt::Display) {
+        self.log(Level::Info, line);
     }
 
     /// [`log`](Context::log) at [`Level::Warning`].
-    pub fn warn(&mut self, line: fmt::Arguments<'_>) {
-        self.host.log(Level::Warning, line);
+    pub fn warn(&mut self, line: impl fmt::Display) {
+        self.log(Level::Warning, line);
     }
 
     /// Writes a line to the classic console (`--console classic`). Formatted only if an observer wants it.
-    pub fn console(&mut self, line: fmt::Arguments<'_>) {
-        self.host.console(line);
+    pub fn console(&mut self, line: impl fmt::Display) {
+        self.host.console(format_args!("{line}"));
     }
 
     /// Sets a value of the run's report, such as `map.blocks`; dots lead into nested objects. The last value counts.
@@ -315,4 +278,25 @@ impl<'a> Context<'a> {
     pub fn vote(&mut self, work: Work) {
         self.host.vote(work);
     }
+}
+
+/// Writes a line to the log with values in it, as `format!` takes them; [`Context::info`] takes a text alone.
+///
+/// ```
+/// use saoms_api::{Context, info};
+///
+/// fn tell(context: &mut Context<'_>, pieces: u32) {
+///     info!(context, "has {pieces} pieces");
+/// }
+/// ```
+#[macro_export]
+macro_rules! info {
+    ($context:expr, $($line:tt)+) => { $crate::info!(@ $crate::Level::Info, $context, $($line)+) };
+    (@ $level:expr, $context:expr, $($line:tt)+) => { $context.log($level, ::core::format_args!($($line)+)) };
+}
+
+/// [`info!`](crate::info) at [`Level::Warning`].
+#[macro_export]
+macro_rules! warn {
+    ($context:expr, $($line:tt)+) => { $crate::info!(@ $crate::Level::Warning, $context, $($line)+) };
 }

@@ -1,3 +1,4 @@
+use std::error::Error;
 use std::fmt;
 
 use crate::Finding;
@@ -73,22 +74,62 @@ impl fmt::Display for Failure {
     }
 }
 
-impl std::error::Error for Failure {}
-
-impl From<String> for Failure {
-    fn from(message: String) -> Failure {
-        Failure::new(message)
+/// Any error becomes a failure with its message and those of its sources, so `?` takes it; so do a `String` and a
+/// `&str`. A [`CallError`] keeps that a component was [busy](Failure::busy_provider), and a [`Finding`] stays one.
+///
+/// A failure is no `std::error::Error` itself: it would have to become one of itself then.
+impl<E: Reason> From<E> for Failure {
+    fn from(reason: E) -> Failure {
+        let reason: Box<dyn Error + Send + Sync> = reason.into();
+        let reason = match reason.downcast::<CallError>() {
+            Ok(call) => return Failure::of_call(*call),
+            Err(reason) => reason,
+        };
+        match reason.downcast::<Finding>() {
+            Ok(finding) => Failure::of_findings(vec![*finding]),
+            Err(reason) => Failure { message: with_sources(&*reason), details: None },
+        }
     }
 }
 
-impl From<&str> for Failure {
-    fn from(message: &str) -> Failure {
-        Failure::new(message)
+/// What becomes a [`Failure`]: an error, a `String` or a `&str`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no reason for a failure",
+    label = "an error, a `String` or a `&str` becomes a failure, and several findings by `Failure::of_findings`",
+    note = "an error that is `Send + Sync + 'static`, a `String` and a `&str` are; of several findings make one with \
+            `Failure::of_findings`"
+)]
+pub trait Reason: Into<Box<dyn Error + Send + Sync>> {}
+
+#[diagnostic::do_not_recommend]
+impl<E: Into<Box<dyn Error + Send + Sync>>> Reason for E {}
+
+/// The message of an error and those of its sources, as far as it does not say them itself.
+fn with_sources(error: &(dyn Error + 'static)) -> String {
+    let mut message = error.to_string();
+    let mut next = error.source();
+    while let Some(source) = next {
+        let text = source.to_string();
+        if !message.contains(&text) {
+            message = format!("{message}: {text}");
+        }
+        next = source.source();
     }
+    message
 }
 
-impl From<CallError> for Failure {
-    fn from(error: CallError) -> Failure {
+impl Failure {
+    /// A failure of a constructor about values that do not fit together, each of which is shown at its place.
+    pub fn of_findings(findings: Vec<Finding>) -> Failure {
+        let message = match &findings[..] {
+            [] => "the values do not fit together".to_owned(),
+            [one] => one.to_string(),
+            [first, more @ ..] => format!("{first} (and {} more)", more.len()),
+        };
+        Failure::with_findings(message, findings)
+    }
+
+    fn of_call(error: CallError) -> Failure {
         let message = error.to_string();
         let busy = match error {
             CallError::Busy { provider } => Some(provider),
@@ -153,7 +194,7 @@ impl fmt::Display for CallError {
     }
 }
 
-impl std::error::Error for CallError {}
+impl Error for CallError {}
 
 impl From<Failure> for CallError {
     fn from(failure: Failure) -> CallError {

@@ -1,7 +1,6 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::Failure;
 use crate::rule::Severity;
 
 /// A place in a composite: a component, a property of it, or a part of what the property's text says.
@@ -176,19 +175,4 @@ impl fmt::Display for Finding {
     }
 }
 
-impl From<Finding> for Failure {
-    fn from(finding: Finding) -> Failure {
-        vec![finding].into()
-    }
-}
-
-impl From<Vec<Finding>> for Failure {
-    fn from(findings: Vec<Finding>) -> Failure {
-        let message = match &findings[..] {
-            [] => "the values do not fit together".to_owned(),
-            [one] => one.to_string(),
-            [first, more @ ..] => format!("{first} (and {} more)", more.len()),
-        };
-        Failure::with_findings(message, findings)
-    }
-}
+impl std::error::Error for Finding {}

@@ -7,7 +7,7 @@
 //! separately.
 //!
 //! ```
-//! use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
+//! use saoms_api::{Class, Component, Context, Failure, Message, Own, Publisher, Topic};
 //!
 //! /// What the thermometer measured.
 //! #[derive(Clone, Debug, PartialEq, Message)]
@@ -19,38 +19,22 @@
 //! /// The newest measurement of each thermometer.
 //! pub const TEMPERATURE: Topic<Temperature> = Topic::state("TEMPERATURE");
 //!
-//! /// What a composite says about a thermometer.
-//! #[derive(Properties)]
-//! pub struct ThermometerProperties {
+//! /// Publishes the temperature in each period.
+//! #[derive(Class)]
+//! #[class(name = "example.Thermometer", periodic)]
+//! pub struct Thermometer {
 //!     /// Added to every measurement.
 //!     #[property(default = 0.0, range = -5.0..=5.0, unit = "degrees Celsius")]
 //!     offset: f64,
-//! }
-//!
-//! /// Publishes the temperature in each period.
-//! #[derive(Class)]
-//! #[class(name = "example.Thermometer", periodic, publishes(TEMPERATURE))]
-//! pub struct Thermometer {
-//!     properties: ThermometerProperties,
+//!     #[publishes(TEMPERATURE)]
 //!     temperature: Publisher<Temperature>,
 //! }
 //!
 //! impl Component for Thermometer {
-//!     type Properties = ThermometerProperties;
-//!
-//!     fn new(properties: ThermometerProperties) -> Result<Self, Failure> {
-//!         Ok(Thermometer { properties, temperature: Publisher::default() })
-//!     }
-//!
-//!     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-//!         self.temperature = context.publish(&TEMPERATURE)?;
-//!         Ok(())
-//!     }
+//!     type Properties = Own<Self>;
 //!
 //!     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-//!         let degrees = 20.0 + self.properties.offset;
-//!         context.send(&self.temperature, Temperature { degrees })?;
-//!         Ok(())
+//!         context.send(&self.temperature, Temperature { degrees: 20.0 + self.offset })
 //!     }
 //! }
 //! ```
@@ -70,6 +54,7 @@ pub mod builtin_interfaces;
 mod chance;
 mod component;
 mod context;
+mod derived;
 pub mod extension;
 mod failure;
 mod field;
@@ -88,12 +73,14 @@ mod time;
 mod topic;
 
 pub use adaptation::{
-    Cause, Effector, Entries, Entry, Extras, Knowledge, Loop, LoopClass, Loops, Record, Recordable, Value,
+    Adaptation, Cause, Effector, Entries, Entry, Extras, Knowledge, Loop, LoopClass, Loops, Record, Recordable,
+    SimpleLoop, Value,
 };
 pub use bounded::Bounded;
 pub use chance::Chance;
 pub use component::{Class, Component};
 pub use context::{Context, Level};
+pub use derived::Own;
 pub use failure::{CallError, Failure};
 pub use field::Field;
 pub use finding::{Finding, Place};
@@ -113,6 +100,7 @@ pub use saoms_derive::{Class, Entries, Field, Knowledge, LoopClass, Message, Pro
 pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::boundary::{API, class_table, loop_class_table, rule_table};
+    pub use crate::derived::{DefaultOf, Different, NoDefault, Same, parts};
     pub use crate::host::contain::install_hook;
     pub use crate::host::declaration::ConstText;
     pub use crate::message::Key;

@@ -8,12 +8,12 @@ use crate::{CallError, Component, Context, Failure, Field};
 ///
 /// Each method is an operation, named like the method in lowerCamelCase. It takes `&mut self`, the context, and up to
 /// six arguments that are [`Field`]s, and returns a [`Field`] or a [`Failure`]. A component offers the interface by
-/// implementing the trait and saying `service("name": Trait)` in `#[class(...)]`; another one says `reference("name":
-/// Trait)` and calls through the generated `TraitReference`, whose methods return [`CallError`] instead of [`Failure`].
-/// The composite wires the two.
+/// implementing the trait and saying `service("name": Trait)` in `#[class(...)]`; another one has a field `#[reference]
+/// name: TraitReference` and calls through it. Its methods return [`CallError`] instead of [`Failure`]. The composite
+/// wires the two.
 ///
 /// ```
-/// use saoms_api::{Class, Component, Context, Failure, interface};
+/// use saoms_api::{Class, Component, Context, Failure, info, interface};
 ///
 /// /// Lends its numbers.
 /// #[interface(name = "example.Counter")]
@@ -31,10 +31,6 @@ use crate::{CallError, Component, Context, Failure, Field};
 ///
 /// impl Component for CounterImpl {
 ///     type Properties = ();
-///
-///     fn new((): ()) -> Result<Self, Failure> {
-///         Ok(CounterImpl { number: 0 })
-///     }
 /// }
 ///
 /// impl Counter for CounterImpl {
@@ -46,30 +42,25 @@ use crate::{CallError, Component, Context, Failure, Field};
 ///
 /// /// Shows a number in each period.
 /// #[derive(Class)]
-/// #[class(name = "example.Display", periodic, reference("source": Counter))]
+/// #[class(name = "example.Display", periodic)]
 /// struct Display {
+///     #[reference]
 ///     source: CounterReference,
 /// }
 ///
 /// impl Component for Display {
 ///     type Properties = ();
 ///
-///     fn new((): ()) -> Result<Self, Failure> {
-///         Ok(Display { source: CounterReference::default() })
-///     }
-///
-///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-///         self.source = context.reference("source")?;
-///         Ok(())
-///     }
-///
 ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
 ///         let number = self.source.next_number(context, 1)?;
-///         context.info(format_args!("{number}"));
+///         info!(context, "{number}");
 ///         Ok(())
 ///     }
 /// }
 /// ```
+///
+/// Of an interface that one component alone offers, trait and implementation are one: `#[interface(name =
+/// "example.Counter")] impl Counter for CounterImpl { ... }` makes the trait, too.
 pub trait Interface {
     /// The name that composite files use in `interface.java` and `interface.rust`.
     const NAME: &'static str;
@@ -81,10 +72,60 @@ pub trait Interface {
 pub trait Reference: Default {
     /// The interface's name.
     const INTERFACE: &'static str;
+    /// The interface's operations, as [`Interface::DECLARATION`].
+    const DECLARATION: &'static str;
     /// For hosts and generated code.
     fn from_index(index: u32) -> Self;
     /// For hosts and generated code.
     fn index(&self) -> u32;
+}
+
+/// A field with `#[reference]`: a handle, `Option` of one for a reference that needs no target (it is `None` without one),
+/// or `Vec` of them for one that takes many.
+pub trait ReferenceField: Sized {
+    /// The operations of the interface, as [`Interface::DECLARATION`].
+    const DECLARATION: &'static str;
+    /// True if it needs no target.
+    const OPTIONAL: bool;
+    /// True if it takes several targets.
+    const MANY: bool;
+
+    /// Asks for the reference of this name.
+    ///
+    /// # Errors
+    /// As [`Context::reference`].
+    fn bind(name: &str, context: &mut Context<'_>) -> Result<Self, Failure>;
+}
+
+impl<R: Reference> ReferenceField for R {
+    const DECLARATION: &'static str = <R as Reference>::DECLARATION;
+    const OPTIONAL: bool = false;
+    const MANY: bool = false;
+
+    fn bind(name: &str, context: &mut Context<'_>) -> Result<Self, Failure> {
+        context.reference(name)
+    }
+}
+
+impl<R: Reference> ReferenceField for Option<R> {
+    const DECLARATION: &'static str = <R as Reference>::DECLARATION;
+    const OPTIONAL: bool = true;
+    const MANY: bool = false;
+
+    fn bind(name: &str, context: &mut Context<'_>) -> Result<Self, Failure> {
+        let reference = context.reference(name)?;
+        Ok(context.is_wired(&reference).then_some(reference))
+    }
+}
+
+impl<R: Reference> ReferenceField for Vec<R> {
+    const DECLARATION: &'static str = <R as Reference>::DECLARATION;
+    const OPTIONAL: bool = false;
+    const MANY: bool = true;
+
+    fn bind(name: &str, context: &mut Context<'_>) -> Result<Self, Failure> {
+        context.references(name)
+    }
 }
 
 /// The number of an operation: its place in the interface's declaration.

@@ -243,7 +243,7 @@ fn start(shape: &Shape) -> Result<RunningFleet, Box<dyn std::error::Error>> {
             site: Default::default(),
             values: values.map(|(name, value)| (name.into(), PropertyValue::from(value.as_str()))).to_vec(),
             written: Default::default(),
-            task: Some(TaskProperties::from_values(&task)?),
+            task: Some(TaskProperties::from_values(&task).map_err(|failure| failure.to_string())?),
             library: None,
             references: Vec::new(),
             loops: std::sync::Arc::default(),

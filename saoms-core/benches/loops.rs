@@ -205,7 +205,7 @@ fn start(changes: Option<&str>) -> Result<RunningFleet, Box<dyn std::error::Erro
         site: Default::default(),
         values: Vec::new(),
         written: Default::default(),
-        task: Some(TaskProperties::from_values(&task)?),
+        task: Some(TaskProperties::from_values(&task).map_err(|failure| failure.to_string())?),
         library: None,
         references: Vec::new(),
         loops: changes.map(of).into_iter().collect(),

@@ -4,10 +4,11 @@ use syn::ext::IdentExt;
 use syn::meta::ParseNestedMeta;
 use syn::parse::ParseStream;
 use syn::spanned::Spanned;
-use syn::{Data, DeriveInput, Error, Expr, Ident, LitStr, Path, Result, Token, Type, parenthesized};
+use syn::{DeriveInput, Error, Expr, Ident, LitStr, Path, Result, Token, Type, parenthesized};
 
 use crate::docs::docs;
 use crate::field::no_generics;
+use crate::handles::{self, Handles, Role};
 use crate::json::{self, Json};
 use crate::literal::Literal;
 use crate::loops::DefaultLoops;
@@ -26,13 +27,6 @@ struct Declared {
     knowledge: Option<Path>,
     loops: Option<DefaultLoops>,
     also: Vec<Also>,
-    base: Option<Base>,
-}
-
-/// The component that this one wraps; its class has all declarations that this one does not make itself.
-struct Base {
-    field: Ident,
-    of: Type,
 }
 
 /// A further name of the class, with preset properties.
@@ -44,10 +38,12 @@ struct Also {
 /// `#[derive(Class)]`.
 pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
     no_generics(&input.generics, "a component")?;
-    let declared = Declared::of(input)?;
+    let handles = Handles::of(input)?;
+    handles.refuse("a component", |role| matches!(role, Role::Senses(_) | Role::Effects(_) | Role::Entry(_)))?;
+    let declared = Declared::of(input, &handles)?;
     let ident = &input.ident;
     let properties = quote!(<#ident as ::saoms_api::Component>::Properties as ::saoms_api::Properties);
-    let declaration = json::flat(&declared.declaration(&docs(&input.attrs), &properties)?.into_text());
+    let declaration = json::flat(&declared.declaration(&docs(&input.attrs), &properties, &handles)?.into_text());
     let class = declared.name()?.value();
     let arms = declared.services.iter().map(|(service, interface)| {
         // Faults are shown at the interface; `self` is that of this macro.
@@ -66,8 +62,8 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
         // Shown where the class says that it has a task.
         quote_spanned!(span=> const _: () = ::saoms_api::generated::refuse_reserved(<#properties>::NAMES);)
     });
-    let no_such_service = match &declared.base {
-        Some(Base { field, of }) => quote! {
+    let no_such_service = match handles.extends() {
+        Some((field, of)) => quote! {
             _ => <#of as ::saoms_api::Class>::serve(&mut self.#field, invocation, context),
         },
         None => quote! {
@@ -75,16 +71,46 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
         },
     };
     let loops = match (&declared.loops, &declared.knowledge) {
-        (None, _) => declared.base.iter().map(Base::loops).collect(),
+        (None, _) => handles.extends().iter().map(|(_, base)| loops_of(base)).collect(),
         (Some(loops), Some(knowledge)) => loops.registrations(&properties, knowledge),
         (Some(_), None) => {
-            let message = "a class with loops needs their knowledge: `knowledge = RobotKnowledge`";
+            let message = "a class with loops needs their knowledge: `#[knowledge]` at its field, or `knowledge = RobotKnowledge`";
             return Err(Error::new_spanned(&declared.name, message));
         }
     };
+    let (own, own_properties) = handles.own_properties();
+    let said = quote!(<#ident as ::saoms_api::Component>::Properties);
+    let (made, binds, lends) = (handles.made(&said), handles.binds(), handles.lends());
     Ok(quote! {
         const _: () = {
             const DECLARATION: &str = #declaration;
+
+            #own_properties
+
+            #[automatically_derived]
+            impl ::saoms_api::host::Fields for #ident {
+                type Own = #own;
+            }
+
+            #[automatically_derived]
+            impl ::saoms_api::host::Derived for #ident {
+                fn made<const ASKED: bool>(
+                    properties: #said,
+                ) -> ::core::result::Result<Self, ::saoms_api::Failure> {
+                    #made
+                }
+
+                fn bind(
+                    &mut self,
+                    context: &mut ::saoms_api::Context<'_>,
+                ) -> ::core::result::Result<(), ::saoms_api::Failure> {
+                    let _ = &context;
+                    #binds
+                    ::core::result::Result::Ok(())
+                }
+
+                #lends
+            }
 
             #[automatically_derived]
             impl ::saoms_api::Class for #ident {
@@ -113,14 +139,21 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
 }
 
 impl Declared {
-    fn of(input: &DeriveInput) -> Result<Declared> {
+    fn of(input: &DeriveInput, handles: &Handles<'_>) -> Result<Declared> {
         let mut declared = Declared::default();
         let attributes: Vec<_> = input.attrs.iter().filter(|attribute| attribute.path().is_ident("class")).collect();
         for attribute in &attributes {
             attribute.parse_nested_meta(|meta| declared.take(&meta))?;
         }
-        declared.base = Base::of(input)?;
-        if let (Some(_), Some(knowledge)) = (&declared.base, &declared.knowledge) {
+        if let Some(of) = handles.knowledge() {
+            let Type::Path(path) = of else { return Err(Error::new_spanned(of, "expected the name of a knowledge")) };
+            if declared.knowledge.replace(path.path.clone()).is_some() {
+                return Err(Error::new_spanned(of, "the class says its knowledge already"));
+            }
+        }
+        handles::take_topics(&mut declared.publishes, handles.publishes())?;
+        handles::take_topics(&mut declared.subscribes, handles.subscribes())?;
+        if let (Some(_), Some(knowledge)) = (handles.extends(), &declared.knowledge) {
             let message = "the class has the knowledge and the loops of what it extends";
             return Err(Error::new_spanned(knowledge, message));
         }
@@ -202,7 +235,7 @@ impl Declared {
         self.name.as_ref().ok_or_else(|| Error::new(Span::call_site(), "expected a name"))
     }
 
-    fn declaration(&self, doc: &str, properties: &TokenStream) -> Result<Json> {
+    fn declaration(&self, doc: &str, properties: &TokenStream, handles: &Handles<'_>) -> Result<Json> {
         let mut text = Json::default();
         text.plain("{\"contract\":1,\"class\":");
         text.string(&self.name()?.value());
@@ -221,7 +254,7 @@ impl Declared {
             text.plain("}");
         });
         text.plain(",\"references\":");
-        text.list(&self.references, parts::reference);
+        handles::declare_references(&mut text, &self.references, handles)?;
         if self.stops {
             text.plain(",\"stops\":true");
         }
@@ -234,7 +267,7 @@ impl Declared {
         if let Some(loops) = &self.loops {
             loops.declare(&mut text);
         }
-        if let Some(Base { of, .. }) = &self.base {
+        if let Some((_, of)) = handles.extends() {
             text.plain(",\"extends\":");
             text.json(quote_spanned!(of.span()=> <#of as ::saoms_api::Class>::DECLARATION));
         }
@@ -243,31 +276,10 @@ impl Declared {
     }
 }
 
-impl Base {
-    /// The field with `#[extends]`.
-    fn of(input: &DeriveInput) -> Result<Option<Base>> {
-        let Data::Struct(data) = &input.data else { return Ok(None) };
-        let mut base = None;
-        for field in &data.fields {
-            let mut marks = field.attrs.iter().filter(|attribute| attribute.path().is_ident("extends"));
-            let Some(mark) = marks.next() else { continue };
-            mark.meta.require_path_only()?;
-            let Some(ident) = &field.ident else {
-                return Err(Error::new_spanned(mark, "`extends` needs a field with a name"));
-            };
-            if base.replace(Base { field: ident.clone(), of: field.ty.clone() }).is_some() {
-                return Err(Error::new_spanned(mark, "a component extends one other"));
-            }
-        }
-        Ok(base)
-    }
-
-    /// The constant of the class that brings the loops.
-    fn loops(&self) -> TokenStream {
-        let of = &self.of;
-        quote! {
-            const LOOPS: &'static [::saoms_api::host::LoopRegistration] = <#of as ::saoms_api::Class>::LOOPS;
-        }
+/// The constant of a class that has the loops of the class that it extends.
+fn loops_of(base: &Type) -> TokenStream {
+    quote! {
+        const LOOPS: &'static [::saoms_api::host::LoopRegistration] = <#base as ::saoms_api::Class>::LOOPS;
     }
 }
 

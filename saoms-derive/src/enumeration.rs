@@ -43,8 +43,7 @@ pub(crate) fn field(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream>
             }
 
             fn of_value(value: ::saoms_api::Value) -> ::core::option::Option<Self> {
-                let ::saoms_api::Value::Word(word) = value else { return ::core::option::Option::None };
-                match word {
+                match ::saoms_api::Value::as_text(&value)? {
                     #(#words => ::core::option::Option::Some(#ident::#variants),)*
                     _ => ::core::option::Option::None,
                 }

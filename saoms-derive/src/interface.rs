@@ -4,8 +4,8 @@ use syn::ext::IdentExt;
 use syn::parse::Parser;
 use syn::punctuated::Punctuated;
 use syn::{
-    Attribute, Error, FnArg, GenericArgument, Ident, ItemTrait, LitStr, Meta, Pat, PathArguments, ReceiverKind, Result,
-    ReturnType, Token, TraitItem, TraitItemFn, Type,
+    Attribute, Error, FnArg, GenericArgument, Ident, ImplItem, ItemImpl, ItemTrait, LitStr, Meta, Pat, PathArguments,
+    ReceiverKind, Result, ReturnType, Signature, Token, TraitItem, TraitItemFn, Type,
 };
 
 use crate::case::lower_camel;
@@ -70,6 +70,54 @@ pub(crate) fn interface(arguments: TokenStream, item: &ItemTrait) -> Result<Toke
     })
 }
 
+/// The trait of an interface that its one component implements at once: the operations without their bodies. `None` for
+/// what is no `impl`.
+pub(crate) fn of_implementation(item: TokenStream) -> Option<Result<ItemTrait>> {
+    let item: ItemImpl = syn::parse2(item).ok()?;
+    let Some((path, _)) = &item.trait_ else {
+        let message = "expected `impl NAME for COMPONENT`, which makes the interface NAME, or a `trait`";
+        return Some(Err(Error::new_spanned(&item.self_ty, message)));
+    };
+    let Some(ident) = path.get_ident() else {
+        return Some(Err(Error::new_spanned(path, "expected a new name: the interface is made here")));
+    };
+    let operations = item.items.iter().map(|item| match item {
+        ImplItem::Fn(function) => {
+            let (attributes, signature) = (&function.attrs, without_patterns(&function.sig));
+            let documented = attributes.iter().filter(|attribute| attribute.path().is_ident("doc"));
+            Ok(quote!(#(#documented)* #signature;))
+        }
+        other => Err(Error::new_spanned(other, "an interface has operations only: expected `fn`")),
+    });
+    let operations = match operations.collect::<Result<Vec<_>>>() {
+        Ok(operations) => operations,
+        Err(error) => return Some(Err(error)),
+    };
+    let documented = item.attrs.iter().filter(|attribute| attribute.path().is_ident("doc"));
+    Some(syn::parse2(quote!(#(#documented)* pub trait #ident { #(#operations)* })))
+}
+
+/// The same signature for a trait: its context may be `_`, and no argument is `mut`.
+fn without_patterns(signature: &Signature) -> Signature {
+    let mut signature = signature.clone();
+    for input in &mut signature.inputs {
+        if let FnArg::Typed(argument) = input {
+            match &mut *argument.pat {
+                Pat::Ident(name) => name.mutability = None,
+                Pat::Wild(_) => argument.pat = syn::parse_quote!(_context),
+                _ => {}
+            }
+        }
+    }
+    signature
+}
+
+/// `#[interface(name = "...")]` above `impl NAME for COMPONENT`.
+pub(crate) fn with_implementation(arguments: TokenStream, item: &ItemTrait, kept: TokenStream) -> Result<TokenStream> {
+    let interface = interface(arguments, item)?;
+    Ok(quote!(#interface #kept))
+}
+
 fn reference(item: &ItemTrait, name: &str, operations: &[Operation<'_>]) -> TokenStream {
     let (ident, visibility) = (&item.ident, &item.vis);
     let reference = format_ident!("{}Reference", ident.unraw());
@@ -93,6 +141,7 @@ fn reference(item: &ItemTrait, name: &str, operations: &[Operation<'_>]) -> Toke
 
         impl ::saoms_api::host::Reference for #reference {
             const INTERFACE: &'static str = #name;
+            const DECLARATION: &'static str = <dyn #ident as ::saoms_api::host::Interface>::DECLARATION;
 
             fn from_index(index: u32) -> Self {
                 #reference { index }

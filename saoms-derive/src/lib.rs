@@ -7,6 +7,7 @@ mod docs;
 mod entries;
 mod enumeration;
 mod field;
+mod handles;
 mod interface;
 mod json;
 mod literal;
@@ -54,9 +55,16 @@ pub fn property_field(input: TokenStream) -> TokenStream {
 }
 
 /// See `saoms_api::Class`.
-#[proc_macro_derive(Class, attributes(class, extends))]
+#[proc_macro_derive(
+    Class,
+    attributes(
+        class, extends, publishes, subscribes, reference, properties, property, knowledge, loops, senses, effects,
+        entry
+    )
+)]
 pub fn class(input: TokenStream) -> TokenStream {
-    finish(class::class(&parse_macro_input!(input as DeriveInput)))
+    let input = parse_macro_input!(input as DeriveInput);
+    finish(class::class(&input).or_else(|error| Ok(handles::after_error(&input, &error, true))))
 }
 
 /// See `saoms_api::Entries`.
@@ -72,15 +80,29 @@ pub fn knowledge(input: TokenStream) -> TokenStream {
 }
 
 /// See `saoms_api::LoopClass`.
-#[proc_macro_derive(LoopClass, attributes(looping))]
+#[proc_macro_derive(
+    LoopClass,
+    attributes(
+        looping, extends, publishes, subscribes, reference, properties, property, knowledge, loops, senses, effects,
+        entry
+    )
+)]
 pub fn loop_class(input: TokenStream) -> TokenStream {
-    finish(looping::loop_class(&parse_macro_input!(input as DeriveInput)))
+    let input = parse_macro_input!(input as DeriveInput);
+    finish(looping::loop_class(&input).or_else(|error| Ok(handles::after_error(&input, &error, false))))
 }
 
 /// See `saoms_api::host::Interface`.
 #[proc_macro_attribute]
 pub fn interface(arguments: TokenStream, item: TokenStream) -> TokenStream {
-    let item = parse_macro_input!(item as ItemTrait);
+    let item = match interface::of_implementation(item.clone().into()) {
+        Some(Ok(implementation)) => {
+            let kept = item.into();
+            return finish(interface::with_implementation(arguments.into(), &implementation, kept));
+        }
+        Some(Err(error)) => return finish(Err(error)),
+        None => parse_macro_input!(item as ItemTrait),
+    };
     let result = interface::interface(arguments.into(), &item);
     // The trait is kept, so that its users do not fail as well.
     finish(result.or_else(|error| {

@@ -8,6 +8,7 @@ use syn::{DeriveInput, Error, LitStr, Path, Result, Token, parenthesized};
 
 use crate::docs::docs;
 use crate::field::no_generics;
+use crate::handles::{self, Handles, Role};
 use crate::json::{self, Json};
 use crate::parts::{self, Reference};
 
@@ -28,11 +29,13 @@ struct Declared {
 /// `#[derive(LoopClass)]`.
 pub(crate) fn loop_class(input: &DeriveInput) -> Result<TokenStream> {
     no_generics(&input.generics, "a loop")?;
-    let declared = Declared::of(input)?;
+    let handles = Handles::of(input)?;
+    handles.refuse("a loop", |role| matches!(role, Role::Extends | Role::Knowledge | Role::Loops))?;
+    let declared = Declared::of(input, &handles)?;
     let ident = &input.ident;
     let name = declared.name(input)?;
     let properties = quote!(<#ident as ::saoms_api::Loop>::Properties as ::saoms_api::Properties);
-    let declaration = declared.declaration(name, ident, &docs(&input.attrs), &properties);
+    let declaration = declared.declaration(name, ident, &docs(&input.attrs), &properties, &handles)?;
     let declaration = json::flat(&declaration.into_text());
     let knowledge = match &declared.knowledge {
         Some(name) => quote!(::core::option::Option::Some(#name)),
@@ -48,9 +51,40 @@ pub(crate) fn loop_class(input: &DeriveInput) -> Result<TokenStream> {
             }
         }
     });
+    let (own, own_properties) = handles.own_properties();
+    let own_entries = handles.own_entries().map(|(_, entries)| entries);
+    let said = quote!(<#ident as ::saoms_api::Loop>::Properties);
+    let (made, binds) = (handles.made(&said), handles.binds());
     Ok(quote! {
         const _: () = {
+            #own_properties
+            #own_entries
+
             const DECLARATION: &str = #declaration;
+
+            #[automatically_derived]
+            impl ::saoms_api::host::Fields for #ident {
+                type Own = #own;
+            }
+
+            #[automatically_derived]
+            impl ::saoms_api::host::DerivedLoop for #ident {
+                fn made<const ASKED: bool>(
+                    properties: #said,
+                ) -> ::core::result::Result<Self, ::saoms_api::Failure> {
+                    #made
+                }
+
+                fn bind(
+                    &mut self,
+                    knowledge: &mut dyn ::saoms_api::Knowledge,
+                    context: &mut ::saoms_api::Context<'_>,
+                ) -> ::core::result::Result<(), ::saoms_api::Failure> {
+                    let _ = (&knowledge, &context);
+                    #binds
+                    ::core::result::Result::Ok(())
+                }
+            }
 
             #[automatically_derived]
             impl ::saoms_api::LoopClass for #ident {
@@ -68,10 +102,22 @@ pub(crate) fn loop_class(input: &DeriveInput) -> Result<TokenStream> {
 }
 
 impl Declared {
-    fn of(input: &DeriveInput) -> Result<Declared> {
+    fn of(input: &DeriveInput, handles: &Handles<'_>) -> Result<Declared> {
         let mut declared = Declared::default();
         for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("looping")) {
             attribute.parse_nested_meta(|meta| declared.take(&meta))?;
+        }
+        handles::take_topics(&mut declared.publishes, handles.publishes())?;
+        handles::take_topics(&mut declared.subscribes, handles.subscribes())?;
+        handles.senses().try_for_each(|name| add(&mut declared.senses, name.clone()))?;
+        handles.effects().try_for_each(|name| add(&mut declared.effects, name.clone()))?;
+        if let Some((name, _)) = handles.own_entries()
+            && let Some(other) = declared.entries.replace(name.into())
+        {
+            return Err(Error::new_spanned(
+                other,
+                "the loop has entries in fields already: put all into the same place",
+            ));
         }
         Ok(declared)
     }
@@ -124,7 +170,14 @@ impl Declared {
         }
     }
 
-    fn declaration(&self, name: &LitStr, ident: &syn::Ident, doc: &str, properties: &TokenStream) -> Json {
+    fn declaration(
+        &self,
+        name: &LitStr,
+        ident: &syn::Ident,
+        doc: &str,
+        properties: &TokenStream,
+        handles: &Handles<'_>,
+    ) -> Result<Json> {
         let mut text = Json::default();
         text.plain("{\"contract\":1,\"loop\":");
         text.string(&name.value());
@@ -151,9 +204,9 @@ impl Declared {
             text.list(topics, parts::topic);
         }
         text.plain(",\"references\":");
-        text.list(&self.references, parts::reference);
+        handles::declare_references(&mut text, &self.references, handles)?;
         text.plain("}");
-        text
+        Ok(text)
     }
 }
 
@@ -161,11 +214,13 @@ impl Declared {
 fn names(meta: &ParseNestedMeta<'_>, names: &mut Vec<LitStr>) -> Result<()> {
     let list;
     parenthesized!(list in meta.input);
-    for name in Punctuated::<LitStr, Token![,]>::parse_terminated(&list)? {
-        if names.iter().any(|other| other.value() == name.value()) {
-            return Err(Error::new(name.span(), "this entry is named already"));
-        }
-        names.push(name);
+    Punctuated::<LitStr, Token![,]>::parse_terminated(&list)?.into_iter().try_for_each(|name| add(names, name))
+}
+
+fn add(names: &mut Vec<LitStr>, name: LitStr) -> Result<()> {
+    if names.iter().any(|other| other.value() == name.value()) {
+        return Err(Error::new(name.span(), "this entry is named already"));
     }
+    names.push(name);
     Ok(())
 }

@@ -48,7 +48,7 @@ impl Component for Airline {
         };
         let (from, to) = (block("from", &from), block("to", &to));
         if !wrong.is_empty() {
-            return Err(wrong.into());
+            return Err(Failure::of_findings(wrong));
         }
         Ok(Airline {
             flight: Flight { number: flight, pieces, from, to },

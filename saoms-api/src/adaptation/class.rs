@@ -10,74 +10,29 @@ use crate::{Failure, Loop, Properties};
 /// | attribute | meaning |
 /// | --- | --- |
 /// | `name = "saoms.CollisionMS"` | the name that composite files use; what follows the last dot names the loop within a component |
-/// | `knowledge = RobotKnowledge`, `knowledge = "saoms.Robot"` | the [knowledge](crate::host::KnowledgeClass) it works on; without it, any that has the entries |
-/// | `senses("battery", "block")` | the entries it reads |
-/// | `effects("next")` | the entries it changes |
-/// | `entries(Saving)` | entries of its own, a struct that derives [`Entries`](crate::Entries) and `Default`; they are added to the knowledge |
-/// | `publishes(A, B)`, `subscribes(A, B)` | paths to constants of type [`Topic`](crate::Topic) |
-/// | `reference("gps": Gps)`, `reference("gps": Gps, optional)` | a service of another component that it calls |
+/// | `knowledge = RobotKnowledge`, `knowledge = "saoms.Robot"` | the [knowledge](crate::host::KnowledgeClass) it works on; without it, that of its type, or any that has the entries |
+///
+/// The fields say the rest, each in one attribute:
+///
+/// | field | what it is |
+/// | --- | --- |
+/// | `#[senses] battery: Entry<f64>` | an entry that it reads, named like the field in lowerCamelCase; `#[senses("charge")]` gives another name |
+/// | `#[effects] charge_at: Effector<f64>` | an entry that it changes |
+/// | `#[entry(unit = "%", default = 100.0)] lowest: Effector<f64>` | an entry of its own, which it adds to the knowledge, with its first value and all that [`Entries`](crate::Entries) says |
+/// | `#[publishes(A)] a: Publisher<A>`, `#[subscribes(B)] b: Subscription<B>` | a [`Topic`](crate::Topic) |
+/// | `#[reference] gps: GpsReference` | a service of another component that it calls, as of a [class](crate::Class) |
+/// | `#[property(default = 1.0)] limit: f64`, `#[properties] properties: DimmerProperties` | what a composite sets, as of a class |
+///
+/// What is not kept in a field is said in `#[looping(...)]`, too, and asked for in [`initialize`](Loop::initialize):
+/// `senses("battery", "block")`, `effects("next")`, `entries(Saving)` (a struct that derives [`Entries`](crate::Entries)
+/// and `Default`), `publishes(A, B)`, `subscribes(A, B)`, `reference("gps": Gps)`. A loop that works on a component's own
+/// struct names so what it senses and effects.
 ///
 /// Topics and references of a loop count as those of the component that has the loop; where both have a reference of
 /// one name, it is one.
 ///
-/// Linked loops register themselves: [`LoopRegistration::linked`] lists them.
-///
-/// ```
-/// use saoms_api::{Context, Failure, Loop, LoopClass, Entry, Effector, Knowledge, Properties, Record, record};
-///
-/// /// What a composite can set.
-/// #[derive(Properties)]
-/// struct SaverProperties {
-///     /// Below this charge the robot saves.
-///     #[property(default = 50.0, range = 0.0..=100.0, unit = "%")]
-///     threshold: f64,
-/// }
-///
-/// /// Takes no new job while the battery is rather empty.
-/// #[derive(LoopClass)]
-/// #[looping(name = "example.BatterySaver", senses("battery"), effects("busy"))]
-/// struct BatterySaver {
-///     properties: SaverProperties,
-///     battery: Entry<f64>,
-///     busy: Effector<bool>,
-/// }
-///
-/// impl Loop for BatterySaver {
-///     type Properties = SaverProperties;
-///     type Knowledge = dyn Knowledge;
-///     type Symptom = Record;
-///     type Decision = Record;
-///
-///     fn new(properties: SaverProperties) -> Result<Self, Failure> {
-///         Ok(BatterySaver { properties, battery: Entry::default(), busy: Effector::default() })
-///     }
-///
-///     fn initialize(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-///         self.battery = knowledge.entry("battery")?;
-///         self.busy = knowledge.effector("busy")?;
-///         Ok(())
-///     }
-///
-///     fn analyze(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
-///         let battery = self.battery.get(knowledge)?;
-///         let is_low = battery < self.properties.threshold;
-///         Ok(is_low.then(|| record!(low_battery: "battery is low: {battery} %", battery)))
-///     }
-///
-///     fn plan(
-///         &mut self,
-///         _: Record,
-///         knowledge: &mut dyn Knowledge,
-///         _: &mut Context<'_>,
-///     ) -> Result<Option<Record>, Failure> {
-///         Ok((!self.busy.get(knowledge)?).then(|| record!(takes_no_job: "takes no job")))
-///     }
-///
-///     fn execute(&mut self, _: Record, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-///         self.busy.set(knowledge, true)
-///     }
-/// }
-/// ```
+/// Linked loops register themselves: [`LoopRegistration::linked`] lists them. [`SimpleLoop`](crate::SimpleLoop) has an
+/// example.
 pub trait LoopClass: Loop {
     /// The name that composite files use.
     const NAME: &'static str;

@@ -1,4 +1,4 @@
-use crate::host::{DynEntries, Phase, Snapshot, Subject};
+use crate::host::{DerivedLoop, DynEntries, Phase, Snapshot, Subject};
 use crate::{Context, Failure, Knowledge, LoopClass, Properties, Recordable};
 
 /// A MAPE-K loop: one concern of a component that adapts itself.
@@ -8,8 +8,8 @@ use crate::{Context, Failure, Knowledge, LoopClass, Properties, Recordable};
 /// [executes](Loop::execute). The host writes symptom and decision to the journal, and what entries of the knowledge
 /// changed; an effect beyond that is reported with [`Context::effect`].
 ///
-/// A loop that has to do with topics asks for them in [`initialize`](Loop::initialize), as a component does.
-pub trait Loop: Send + Sized + 'static {
+/// A simple one is a [`SimpleLoop`](crate::SimpleLoop), which is one function.
+pub trait Loop: DerivedLoop + Send + Sized + 'static {
     /// Properties that the composite sets.
     type Properties: Properties;
     /// Knowledge that it works on: the component's own struct, or `dyn Knowledge`.
@@ -19,13 +19,24 @@ pub trait Loop: Send + Sized + 'static {
     /// Result of the planning.
     type Decision: Recordable;
 
-    /// Makes the loop; it does no work, as [`Component::new`](crate::Component::new).
+    /// Makes the loop; it does no work, as [`Component::new`](crate::Component::new). By itself it has the values of the
+    /// composite in the fields with `#[property]` and `#[properties]`, and everything else is its `Default`.
     ///
     /// # Errors
     /// The values do not fit together.
-    fn new(properties: Self::Properties) -> Result<Self, Failure>;
+    fn new(properties: Self::Properties) -> Result<Self, Failure> {
+        <Self as DerivedLoop>::made::<true>(properties)
+    }
 
-    /// Asks for topics, references and entries.
+    /// The loop that [`new`](Loop::new) makes by itself: for a `new` that checks values.
+    ///
+    /// # Errors
+    /// None by itself.
+    fn made(properties: Self::Properties) -> Result<Self, Failure> {
+        <Self as DerivedLoop>::made::<true>(properties)
+    }
+
+    /// Begins the work. The handles in fields (`#[senses]` and the like) are bound before; others are asked for here.
     ///
     /// # Errors
     /// The component cannot start.
@@ -129,6 +140,7 @@ impl<L: LoopClass> DynLoop for L {
     }
 
     fn initialize(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.bind(knowledge, context)?;
         Loop::initialize(self, subject::<L>(knowledge)?, context)
     }
 

@@ -119,6 +119,35 @@ impl<T: Field> Effector<T> {
             None => knowledge.set_to_bytes(self.0.place, &cdr::encode(&value)),
         }
     }
+
+    /// The change to this value, to be made later.
+    pub(crate) fn change(&self, value: &T) -> Change {
+        let to = value.as_value().map_or_else(|| ChangedTo::Bytes(cdr::encode(value)), ChangedTo::Value);
+        Change { place: self.0.place, to }
+    }
+}
+
+/// A change of an entry that is not made yet.
+#[derive(Clone, Debug)]
+pub(crate) struct Change {
+    place: u32,
+    to: ChangedTo,
+}
+
+#[derive(Clone, Debug)]
+enum ChangedTo {
+    Value(Value),
+    Bytes(Vec<u8>),
+}
+
+impl Change {
+    /// Makes it.
+    pub(crate) fn make(&self, knowledge: &mut dyn Knowledge) -> Result<(), Failure> {
+        match &self.to {
+            ChangedTo::Value(value) => knowledge.set_value(self.place, *value),
+            ChangedTo::Bytes(bytes) => knowledge.set_to_bytes(self.place, bytes),
+        }
+    }
 }
 
 impl<T> Default for Effector<T> {

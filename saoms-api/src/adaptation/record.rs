@@ -1,7 +1,12 @@
 use std::fmt;
 
+use super::text::{self, ShortText};
+
 /// A value in a [`Record`] or in an entry of a component's knowledge.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// Each number and each text becomes one. A text of more than 22 bytes is kept, once, for as long as the program runs;
+/// where such texts are more than 4 MiB together, further ones are cut.
+#[derive(Clone, Copy, Debug)]
 pub enum Value {
     /// No value: an optional entry that has none.
     Nothing,
@@ -13,9 +18,13 @@ pub enum Value {
     Number(f64),
     /// Two whole numbers, such as the column and the row of a block.
     Pair(i32, i32),
-    /// A word that is known when the loop is compiled.
+    /// A word that is known when the loop is compiled, or a text that is kept.
     Word(&'static str),
+    /// A short text. It is the same as a word of the same letters.
+    Text(ShortText),
 }
+
+const _: () = assert!(size_of::<Value>() == 24, "records are copied on the path of executions");
 
 impl fmt::Display for Value {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -27,6 +36,7 @@ impl fmt::Display for Value {
             Value::Number(value) => value.fmt(formatter),
             Value::Pair(x, y) => write!(formatter, "({x},{y})"),
             Value::Word(word) => formatter.write_str(word),
+            Value::Text(text) => formatter.write_str(text.as_str()),
         }
     }
 }
@@ -41,7 +51,50 @@ macro_rules! from {
     };
 }
 
-from!(bool => Bool, i64 => Integer, i32 => Integer, u32 => Integer, u16 => Integer, u8 => Integer, f64 => Number, &'static str => Word);
+from!(bool => Bool, i64 => Integer, i32 => Integer, i16 => Integer, i8 => Integer, u32 => Integer, u16 => Integer, u8 => Integer, f64 => Number);
+
+/// Numbers that a whole number of 64 bits may not hold: the nearest number then.
+macro_rules! from_wide {
+    ($($type:ty),*) => {
+        $(impl From<$type> for Value {
+            fn from(value: $type) -> Value {
+                i64::try_from(value).map_or(Value::Number(value as f64), Value::Integer)
+            }
+        })*
+    };
+}
+
+from_wide!(u64, usize, isize, u128, i128);
+
+/// The number with the decimals that the value has: 0.1 stays 0.1.
+impl From<f32> for Value {
+    fn from(value: f32) -> Value {
+        let exact = f64::from(value);
+        let rounded = (0..=9).map(|decimals| {
+            let scale = 10f64.powi(decimals);
+            (exact * scale).round() / scale
+        });
+        Value::Number(rounded.into_iter().find(|rounded| *rounded as f32 == value).unwrap_or(exact))
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Value {
+        text::value_of(text)
+    }
+}
+
+impl From<&String> for Value {
+    fn from(text: &String) -> Value {
+        text::value_of(text)
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Value {
+        text::value_of(&text)
+    }
+}
 
 impl From<(i32, i32)> for Value {
     fn from((x, y): (i32, i32)) -> Value {
@@ -55,7 +108,29 @@ impl<T: Into<Value>> From<Option<T>> for Value {
     }
 }
 
+impl PartialEq for Value {
+    fn eq(&self, other: &Value) -> bool {
+        match (self, other) {
+            (Value::Nothing, Value::Nothing) => true,
+            (Value::Bool(one), Value::Bool(other)) => one == other,
+            (Value::Integer(one), Value::Integer(other)) => one == other,
+            (Value::Number(one), Value::Number(other)) => one == other,
+            (Value::Pair(x, y), Value::Pair(other_x, other_y)) => (x, y) == (other_x, other_y),
+            (one, other) => one.as_text().is_some_and(|one| Some(one) == other.as_text()),
+        }
+    }
+}
+
 impl Value {
+    /// The text, or the word.
+    pub fn as_text(&self) -> Option<&str> {
+        match self {
+            Value::Word(word) => Some(word),
+            Value::Text(text) => Some(text.as_str()),
+            _ => None,
+        }
+    }
+
     /// True if both are the same value: as `==`, but NaN is the same as itself.
     #[must_use]
     pub fn is_same(self, other: Value) -> bool {
@@ -158,7 +233,8 @@ impl fmt::Display for Record {
 /// loop an id stands for one text: of two records with the same id and values in one phase, the journal takes the
 /// second for a repetition of the first.
 ///
-/// The values hold data, no words of the sentence: `{name:one|several}` is the first of the two words where the value
+/// A value is a number, a truth value, a pair of whole numbers, a text, or an `Option` of one of them. The values hold
+/// data, no words of the sentence: `{name:one|several}` is the first of the two words where the value
 /// is 1, and the second where it is another one.
 ///
 /// ```

@@ -129,12 +129,6 @@ pub(super) fn call_outcome(status: Status, error: &[u8]) -> Result<(), CallError
     })
 }
 
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Failure {
-        Failure::new(error.to_string())
-    }
-}
-
 impl From<ReadError> for CallError {
     fn from(error: ReadError) -> CallError {
         Failure::from(error).into()

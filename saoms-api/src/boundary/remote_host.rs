@@ -281,18 +281,17 @@ impl Host for RemoteHost<'_> {
     }
 
     fn journal(&mut self, phase: Phase, record: &Record) {
-        let mut values = [value_view(Value::Bool(false)); 6];
-        let mut count = 0;
-        for (place, (_, value)) in values.iter_mut().zip(record.values()) {
+        let mut values = [value_view(&Value::Bool(false)); 6];
+        let used = record.used();
+        for (place, value) in values.iter_mut().zip(used) {
             *place = value_view(value);
-            count += 1;
         }
         let view = RecordView {
             id: Bytes::text(record.id()),
             text: Bytes::text(record.text()),
             names: Bytes::text(record.names()),
             values: values.as_ptr(),
-            count,
+            count: used.len(),
         };
         let phase = match phase {
             Phase::Symptom => 0,
@@ -303,7 +302,7 @@ impl Host for RemoteHost<'_> {
     }
 
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
-        let (before, after) = (value_view(before), value_view(after));
+        let (before, after) = (value_view(&before), value_view(&after));
         get!(self.changed, Bytes::text(entry), &raw const before, &raw const after);
     }
 

@@ -12,16 +12,18 @@ use std::fmt;
 use std::time::Duration;
 
 pub use crate::adaptation::{
-    DynEntries, DynLoop, EntryDeclaration, KnowledgeClass, LoopRegistration, NamedLoops, Phase, Snapshot, Subject,
+    Decided, DynEntries, DynLoop, EntryDeclaration, KnowledgeClass, LoopRegistration, NamedLoops, Phase, ShortText,
+    Snapshot, Subject,
 };
 pub use crate::bounded::Measured;
 pub use crate::component::DynComponent;
+pub use crate::derived::{Derived, DerivedLoop, Fields};
 pub use crate::field::Arguments;
 pub use crate::message::SharedMessage;
 pub use crate::property::{PropertyValue, RESERVED, WriteProperties};
 pub use crate::registration::Registration;
 pub use crate::rule::nearest::{nearest_equal, nearest_few};
-pub use crate::service::{Interface, Invocation, Operation, Reference, ServiceCall, TypedCall};
+pub use crate::service::{Interface, Invocation, Operation, Reference, ReferenceField, ServiceCall, TypedCall};
 pub use crate::time::{format_duration, parse_duration};
 pub use crate::topic::{TopicDeclaration, TopicKind};
 

@@ -221,7 +221,10 @@ fn linked_classes_register_themselves() {
     let name = |declaration: &str| declaration.split('"').nth(5).unwrap_or_default().to_owned();
     let names: Vec<String> = linked.into_iter().map(name).collect();
     let own = ["example.Passive", "example.Robot"];
-    let others = ["example.Car", "extends.Car", "extends.LoudCar", "test.Busy", "test.Echo", "test.Receiver"];
+    let others = [
+        "example.Car", "extends.Car", "extends.LoudCar", "long.Counter", "short.Counter", "short.Lamp",
+        "short.LoudCounter", "short.Remembering", "short.Silent", "test.Busy", "test.Echo", "test.Receiver",
+    ];
     let mut expected = [&own[..], &others[..]].concat();
     expected.sort_unstable();
     assert_eq!(names, expected);

@@ -4,11 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const NAMES: &[&str] = &[
-    "Bounded", "CallError", "Cause", "Chance", "Class", "Component", "Context", "Effector", "Entries", "Entry",
-    "Extras", "Failure", "Field", "Finding", "Header", "Knowledge", "Level", "Loop", "LoopClass", "Loops", "Message",
-    "Messages", "Place", "Properties", "PropertyField", "Publisher", "Record", "Recordable", "ReportValue", "Saved",
-    "StopFunction", "Subscription", "TaskInterface", "TaskInterfaceReference", "Time", "Topic", "Value", "Work",
-    "builtin_interfaces", "extension", "fleet_rules!", "host", "interface", "plugin!", "record!", "rule",
+    "Adaptation", "Bounded", "CallError", "Cause", "Chance", "Class", "Component", "Context", "Effector", "Entries",
+    "Entry", "Extras", "Failure", "Field", "Finding", "Header", "Knowledge", "Level", "Loop", "LoopClass", "Loops",
+    "Message", "Messages", "Own", "Place", "Properties", "PropertyField", "Publisher", "Record", "Recordable",
+    "ReportValue", "Saved", "SimpleLoop", "StopFunction", "Subscription", "TaskInterface", "TaskInterfaceReference",
+    "Time", "Topic", "Value", "Work", "builtin_interfaces", "extension", "fleet_rules!", "host", "info!", "interface",
+    "plugin!", "record!", "rule", "warn!",
 ];
 
 /// The names that the text of `lib.rs` and the exported macros of the crate make public, without hidden ones.

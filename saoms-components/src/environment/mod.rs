@@ -73,7 +73,7 @@ impl Component for Environment {
 
     fn new(properties: EnvironmentProperties) -> Result<Self, Failure> {
         Ok(Environment {
-            scenario: Scenario::read(&properties.scenario)?,
+            scenario: Scenario::read(&properties.scenario).map_err(Failure::of_findings)?,
             playing: None,
             played: 0,
             open: BTreeMap::new(),

@@ -36,7 +36,7 @@ impl Component for Navigator {
         let wrong = properties.path.iter().zip(&path).enumerate().filter(|(_, (_, corner))| corner.is_none());
         let findings: Vec<Finding> = wrong.map(|(value, (text, _))| wrong_corner(value, text)).collect();
         if !findings.is_empty() {
-            return Err(findings.into());
+            return Err(Failure::of_findings(findings));
         }
         let path: Vec<Point> = path.into_iter().flatten().collect();
         let square = [(2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0)].map(|(x, y)| Point { x, y });

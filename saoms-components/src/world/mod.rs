@@ -59,7 +59,7 @@ impl Component for World {
     type Properties = WorldProperties;
 
     fn new(properties: WorldProperties) -> Result<Self, Failure> {
-        let map = properties.map()?;
+        let map = properties.map().map_err(Failure::of_findings)?;
         Ok(World {
             properties,
             referee: Referee::new(map),

@@ -171,5 +171,6 @@ pub(super) fn json(value: saoms_api::Value) -> Value {
         saoms_api::Value::Number(value) => Value::from(value),
         saoms_api::Value::Pair(x, y) => Value::from([x, y].as_slice()),
         saoms_api::Value::Word(word) => Value::from(word),
+        saoms_api::Value::Text(text) => Value::from(text.as_str()),
     }
 }

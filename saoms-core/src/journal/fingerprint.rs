@@ -19,14 +19,15 @@ pub(super) fn fingerprint_of_change(entry: &str, before: Value, after: Value) ->
 fn digest(kind: u64, id: &str, values: &[Value]) -> u64 {
     let mut hash = text(kind, id);
     for value in values {
-        hash = match *value {
+        hash = match value {
             Value::Nothing => fold(hash, 0),
-            Value::Bool(value) => fold(fold(hash, 1), u64::from(value)),
-            Value::Integer(value) => fold(fold(hash, 2), value as u64),
+            Value::Bool(value) => fold(fold(hash, 1), u64::from(*value)),
+            Value::Integer(value) => fold(fold(hash, 2), *value as u64),
             // Adding 0.0 makes -0.0 and 0.0 the same.
             Value::Number(value) => fold(fold(hash, 3), (value + 0.0).to_bits()),
-            Value::Pair(x, y) => fold(fold(hash, 4), u64::from(x as u32) << 32 | u64::from(y as u32)),
+            Value::Pair(x, y) => fold(fold(hash, 4), u64::from(*x as u32) << 32 | u64::from(*y as u32)),
             Value::Word(word) => text(fold(hash, 5), word),
+            Value::Text(short) => text(fold(hash, 5), short.as_str()),
         };
     }
     hash

@@ -3,15 +3,16 @@ use saoms_abi::{Bytes, RecordView, ValueView};
 use crate::boundary::null::given;
 use crate::{Failure, Record, Value};
 
-/// The view of a value.
-pub(in crate::boundary) fn value_view(value: Value) -> ValueView {
+/// The view of a value, which it lends its text.
+pub(in crate::boundary) fn value_view(value: &Value) -> ValueView {
     let (kind, bits, word) = match value {
-        Value::Bool(value) => (0, u64::from(value), Bytes::NONE),
-        Value::Integer(value) => (1, value as u64, Bytes::NONE),
+        Value::Bool(value) => (0, u64::from(*value), Bytes::NONE),
+        Value::Integer(value) => (1, *value as u64, Bytes::NONE),
         Value::Number(value) => (2, value.to_bits(), Bytes::NONE),
-        Value::Pair(x, y) => (3, u64::from(x as u32) | u64::from(y as u32) << 32, Bytes::NONE),
+        Value::Pair(x, y) => (3, u64::from(*x as u32) | u64::from(*y as u32) << 32, Bytes::NONE),
         Value::Word(word) => (4, 0, Bytes::text(word)),
         Value::Nothing => (5, 0, Bytes::NONE),
+        Value::Text(text) => (6, 0, Bytes::text(text.as_str())),
     };
     ValueView { kind, bits, word }
 }
@@ -22,7 +23,7 @@ pub(in crate::boundary) fn value_view(value: Value) -> ValueView {
 /// It is none.
 ///
 /// # Safety
-/// A word is part of a library that stays loaded.
+/// A word is part of a library that stays loaded, a text is lent for this call.
 pub(in crate::boundary) unsafe fn read_value(view: ValueView) -> Result<Value, Failure> {
     Ok(match view.kind {
         0 => Value::Bool(view.bits != 0),
@@ -32,8 +33,10 @@ pub(in crate::boundary) unsafe fn read_value(view: ValueView) -> Result<Value, F
         // SAFETY: as the caller promises.
         4 => Value::Word(unsafe { view.word.get_text() }?),
         5 => Value::Nothing,
+        // SAFETY: as the caller promises.
+        6 => Value::from(unsafe { view.word.get_text() }?),
         other => {
-            return Err(Failure::new(format!("found {other} for the kind of a value, expected 0 to 5")));
+            return Err(Failure::new(format!("found {other} for the kind of a value, expected 0 to 6")));
         }
     })
 }

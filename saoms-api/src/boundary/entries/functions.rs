@@ -2,6 +2,7 @@ use std::ffi::c_void;
 
 use saoms_abi::{Bytes, EntriesFunctions, EntriesHandle, EntryView, Sink, Status, ValueView};
 
+use crate::adaptation::kept;
 use crate::boundary::convert::{read_value, value_view};
 use crate::boundary::guard::{guarded, guarded_value};
 use crate::boundary::lease_cell::knowledge;
@@ -159,7 +160,12 @@ unsafe extern "C" fn get<B: EntriesKind>(state: *mut c_void, entry: u32, value: 
     unsafe {
         match (with_all::<B, _>(state, None, |all| all.get(entry)), value.as_mut()) {
             (Some(found), Some(value)) => {
-                *value = value_view(found);
+                // The value outlives this call, so its text has to.
+                let found = match found {
+                    Value::Text(text) => kept(text.as_str()).map_or(Value::Nothing, Value::Word),
+                    found => found,
+                };
+                *value = value_view(&found);
                 1
             }
             _ => 0,

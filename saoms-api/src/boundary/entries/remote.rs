@@ -95,7 +95,7 @@ impl DynEntries for RemoteEntries {
     }
 
     fn get(&self, entry: u32) -> Option<Value> {
-        let mut value = value_view(Value::Nothing);
+        let mut value = value_view(&Value::Nothing);
         // SAFETY: the handle keeps the rules; words are part of a library or of the program, which stay.
         unsafe {
             let found = (self.functions().get)(self.handle.state, entry, &raw mut value);
@@ -104,7 +104,7 @@ impl DynEntries for RemoteEntries {
     }
 
     fn set(&mut self, entry: u32, value: Value) -> Result<(), Failure> {
-        let value = value_view(value);
+        let value = value_view(&value);
         // SAFETY: the handle keeps the rules; the value is lent to the call.
         call(|error| unsafe { (self.functions().set)(self.handle.state, entry, &raw const value, error) })
     }

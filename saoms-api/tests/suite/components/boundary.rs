@@ -87,7 +87,10 @@ impl Component for Busy {
         }
         if properties.panics == "finds" {
             let first = Finding::new(Place::property("names").part(1, 0..2), "one").help("a").help("b").instead("");
-            return Err(vec![first.label(Place::default(), "here"), Finding::new(Place::default(), "two")].into());
+            return Err(Failure::of_findings(vec![
+                first.label(Place::default(), "here"),
+                Finding::new(Place::default(), "two"),
+            ]));
         }
         let (samples, heard) = (Publisher::default(), Subscription::default());
         Ok(Busy { properties, samples, heard, adder: AdderReference::default() })
@@ -337,8 +340,17 @@ impl Loop for Dimmer {
     fn analyze(&mut self, knowledge: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
         assert!(!self.properties.panics, "too bright");
         let brightness = self.brightness.get(knowledge)?;
-        let heard = i64::try_from(self.heard).unwrap_or(0);
-        Ok((brightness > self.properties.limit).then(|| record!("{brightness} lx, {heard} heard", brightness, heard)))
+        let (heard, text) = (self.heard, format!("more than {}", self.properties.limit));
+        let bright = || {
+            record!(
+                "{brightness} lx, {heard} heard, {text}, {long}",
+                brightness,
+                heard,
+                text = &text,
+                long = text.repeat(9)
+            )
+        };
+        Ok((brightness > self.properties.limit).then(bright))
     }
 
     fn plan(
@@ -385,6 +397,7 @@ fn dimmed(dimmer: Box<dyn DynLoop>) -> String {
 fn a_loop_does_the_same_behind_the_boundary() {
     let expected = dimmed(LoopRegistration::of::<Dimmer>().construct(&[]).unwrap());
     assert!(expected.contains("\"isOn: yes -> no\"") && expected.contains("Ok(2)"), "{expected}");
+    assert!(expected.contains(&format!("more than 10, {}", "more than 10".repeat(9))), "{expected}");
     // SAFETY: the functions of the tables are this crate's own.
     let imported = unsafe { ImportedLoopClass::new(&loop_class_table::<Dimmer>(), "test") };
     assert_eq!(dimmed(imported.construct(&[]).unwrap()), expected);

@@ -3,5 +3,8 @@ mod adaptation;
 mod boundary;
 mod calls;
 mod extends;
+mod failures;
 mod host;
 mod messages;
+mod records;
+mod short;

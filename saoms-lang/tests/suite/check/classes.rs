@@ -307,7 +307,7 @@ impl Component for Reader {
                 findings.push(finding);
             }
         }
-        if findings.is_empty() { Ok(Self) } else { Err(findings.into()) }
+        if findings.is_empty() { Ok(Self) } else { Err(Failure::of_findings(findings)) }
     }
 }
 
@@ -347,6 +347,6 @@ impl Component for Board {
         if label.as_deref() == Some("dark") {
             findings.push(Finding::new(Place::property("label"), "it is too dark"));
         }
-        if findings.is_empty() { Ok(Self) } else { Err(findings.into()) }
+        if findings.is_empty() { Ok(Self) } else { Err(Failure::of_findings(findings)) }
     }
 }

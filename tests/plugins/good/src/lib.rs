@@ -63,7 +63,7 @@ impl Component for Sender {
         let wrong: Vec<Finding> =
             [wrong(least, 0), wrong(most, limits.len() - most.len())].into_iter().flatten().collect();
         if !wrong.is_empty() {
-            return Err(wrong.into());
+            return Err(Failure::of_findings(wrong));
         }
         Ok(Sender { readings: Publisher::default(), doubler: DoublerReference::default() })
     }
