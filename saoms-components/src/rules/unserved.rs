@@ -164,7 +164,8 @@ impl Served {
 
 fn without_master(fleet: &FleetView<'_>, events: &str) -> Mistake {
     let message = "no component forwards the events of this scenario to the robots";
-    let Some(master) = fleet.indices::<MasterEnvironment>().next() else {
+    let masters = fleet.indices::<MasterEnvironment>();
+    let Some(master) = closest(fleet, masters, ENVIRONMENT.name(), events) else {
         return Mistake { message, help: format!("add a `saoms.MasterEnvironment`{}", in_site(events)), other: None };
     };
     let own = fleet.components()[master].topic(ENVIRONMENT.name());
@@ -175,6 +176,17 @@ fn without_master(fleet: &FleetView<'_>, events: &str) -> Mistake {
         help,
         other: Some(Other { index: master, topic: ENVIRONMENT.name(), needed: events.to_owned(), label }),
     }
+}
+
+/// The component whose name of a topic on the bus shares most with the one that is needed: that of the same site, if
+/// there is one.
+fn closest(fleet: &FleetView<'_>, indices: impl Iterator<Item = usize>, topic: &str, needed: &str) -> Option<usize> {
+    let shared = |index: usize| {
+        let own = fleet.components()[index].topic(topic).bytes();
+        own.zip(needed.bytes()).take_while(|(own, needed)| own == needed).count()
+    };
+    // The first of several.
+    indices.min_by_key(|index| std::cmp::Reverse(shared(*index)))
 }
 
 /// Where a component has to be to use a topic of this name on the bus.

@@ -129,8 +129,12 @@ fn beside(fleet: &FleetView<'_>, robot: &FleetRobot, around: &Around<'_>) -> Opt
     let path = fleet.components()[*world].path;
     let message =
         "this robot is not wired to a world, but others are: the world and the other robots do not know where it is";
-    let finding = Finding::new(Place::component(robot.index), message)
-        .label(Place::component(other.index), "this robot is wired");
+    let finding = Finding::new(Place::component(robot.index), message);
+    // A robot of another use of the composite is written in the same place.
+    let finding = match composite(fleet.components()[other.index].path) == own {
+        true => finding.label(Place::component(other.index), "this robot is wired"),
+        false => finding,
+    };
     Some(finding.help(match composite(path) == own {
         true => format!("add `<reference name=\"world\" target=\"{}\"/>` to this robot", &path[own.len()..]),
         false => between(component.path, path),

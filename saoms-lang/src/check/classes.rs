@@ -53,7 +53,15 @@ pub(crate) fn resolve<'a>(fleet: &mut Fleet<'a>, registry: &'a Registry, options
             None => {
                 if !report.skip(&codes::UNKNOWN_CLASS, Severity::Error, class.location) {
                     let near = near.entry(class).or_insert_with(|| registry.nearest(class));
-                    report.push(unknown(class, near, registry));
+                    let fitting: Vec<&str> =
+                        near.iter().copied().filter(|near| fits(component, near, registry)).collect();
+                    let near = if fitting.is_empty() { &*near } else { &fitting };
+                    let composites = contribution.composites().iter();
+                    let local = class.rsplit(':').next().unwrap_or(class);
+                    // The name of a class has no colon.
+                    let is_name = class.contains(':') || composites.clone().any(|one| one.name == *local);
+                    let composite = Some(class.as_str()).filter(|_| is_name && !class.contains("::"));
+                    report.push(unknown(class, near, composite, registry));
                 }
                 continue;
             }
@@ -171,7 +179,15 @@ pub(crate) fn library(component: &ComponentElement, contribution: &Contribution,
     Some(path.display().to_string())
 }
 
-fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
+/// True if a class has all properties and references that a component gives.
+fn fits(component: &ComponentElement, class: &str, registry: &Registry) -> bool {
+    let Some(class) = registry.get(class).map(ClassIndex::new) else { return false };
+    let has = |name: &str| class.references.iter().any(|one| one.name == name);
+    component.properties.iter().all(|one| class.table.place(&one.name).is_some())
+        && component.references.iter().all(|one| has(&one.name))
+}
+
+fn unknown(class: &Text, near: &[&str], composite: Option<&str>, registry: &Registry) -> Diagnostic {
     let message = format!("there is no class {}", quoted(class));
     let mut one = Diagnostic::new(&codes::UNKNOWN_CLASS, class.location, message).at("not registered");
     for meant in near {
@@ -180,6 +196,10 @@ fn unknown(class: &Text, near: &[&str], registry: &Registry) -> Diagnostic {
     if registry.get_loop(class).is_some() {
         let inside = format!("`<saoms:loop name=\"...\" class=\"{class}\"/>`");
         return one.help(format!("it is a loop: write {inside} in a component that has loops"));
+    }
+    if let Some(name) = composite {
+        let meant = format!("<implementation.composite name=\"{name}\"/>");
+        return one.help(format!("it is a composite: write {}", quoted(&meant)));
     }
     one.help(registered(("class", "classes"), registry.iter().map(|class| class.name())))
 }

@@ -26,6 +26,13 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         return None;
     };
     let mut key = head.next()?;
+    if key.parse::<i64>().is_ok() {
+        let message = format!("the first line has the value {}, expected the names of the columns", quoted(&key));
+        let one = Diagnostic::new(&codes::OVERRIDES, key.location, message);
+        diagnostics
+            .push(one.help("write a line such as `index,battery` before it: `index` or `name`, then properties"));
+        return None;
+    }
     let report = |at: Location, message: String| Diagnostic::new(&codes::OVERRIDES, at, message);
     if !KEYS.contains(&key.as_str()) {
         let one = report(key.location, format!("the first column is {}, expected `index` or `name`", quoted(&key)));
@@ -125,9 +132,14 @@ fn lines(file: FileId, text: &str, diagnostics: &mut Diagnostics) -> Vec<Vec<Tex
     let mut line = Vec::new();
     let mut at = text.len() - text.trim_start_matches('\u{feff}').len();
     while at < text.len() {
+        let known = diagnostics.len();
         let (cell, end) = cell(file, text, at, diagnostics);
         line.push(cell);
         at = end;
+        if diagnostics.len() > known && at == text.len() {
+            // What is behind a `"` without an end is no line of its own.
+            return lines;
+        }
         if text[at..].starts_with(',') {
             at += 1;
             // A comma at the end of the file is followed by an empty value.

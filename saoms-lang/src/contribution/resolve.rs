@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::finder::Finder;
-use super::head::Head;
+use super::head::{Head, head};
 use super::{component_types, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
 use crate::limits::{FLEET_ENTRIES, OFFERED_NAMES};
@@ -169,7 +169,15 @@ impl Finder {
         };
         let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
         let mut searched = vec![self.index.searched(folder)];
-        if let Some(other) = seen.named(&wanted.local) {
+        // Editors for XML call files so.
+        let xml = folder.join(format!("{file}.xml"));
+        if xml.is_file() && head(&xml, context.sources.open()).is_some() {
+            let [xml, right] = [&xml, &xml.with_extension("composite")].map(|path| quoted(&path.display().to_string()));
+            searched.push(format!("rename {xml} to {right}: composites are looked for in files with this ending"));
+        }
+        let other = seen.named(&wanted.local);
+        let elsewhere = other.map(|other| other.namespace.clone());
+        if let Some(other) = other {
             searched.push(format!(
                 "{} has a composite {} of the namespace {}",
                 quoted(&other.path.display().to_string()),
@@ -181,7 +189,7 @@ impl Finder {
         searched.extend(self.unread(folder, local, context.sources.open()));
         let around = (&mut self.index, &mut self.candidates);
         searched.extend(self.imports.hints(around, root, namespaces, local, context));
-        Missing { near, searched }
+        Missing { near, searched, elsewhere }
     }
 }
 

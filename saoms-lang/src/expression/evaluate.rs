@@ -4,7 +4,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 use super::parse::Node;
 use super::{Expression, ExpressionError, ExpressionFault, ExpressionValue, Lookup};
-use crate::diagnostic::quoted;
+use crate::diagnostic::{meant_boolean, quoted};
 
 /// The whole number that an expression comes to.
 ///
@@ -48,9 +48,20 @@ fn number(value: ExpressionValue, of: &Expression) -> Result<i64, ExpressionFaul
 fn condition(value: ExpressionValue, of: &Expression) -> Result<bool, ExpressionFault> {
     match value {
         ExpressionValue::Boolean(value) => Ok(value),
-        other => Err(ExpressionError::new(format!("found {other}, expected a condition"))
-            .help("compare it with something, as in `robots > 10`")
-            .at(of.at.clone())),
+        other => {
+            let help = match &other {
+                ExpressionValue::Text(text) if meant_boolean(text).is_some() => {
+                    let meant = meant_boolean(text).unwrap_or_default();
+                    format!("give it the value `{meant}`: a condition is `true` or `false`, or compares something")
+                }
+                ExpressionValue::Integer(number @ (0 | 1)) => format!(
+                    "give it the value `{}`: a condition is `true` or `false`, or compares something, as in `robots > 10`",
+                    *number == 1
+                ),
+                _ => "compare it with something, as in `robots > 10`".to_owned(),
+            };
+            Err(ExpressionError::new(format!("found {other}, expected a condition")).help(help).at(of.at.clone()))
+        }
     }
 }
 

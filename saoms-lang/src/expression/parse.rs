@@ -73,7 +73,10 @@ pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize)
                 Token::Sign(sign) => format!("unexpected {}", quoted(sign)),
                 _ => "expected an operator before this".to_owned(),
             };
-            Err(ExpressionError::new(message).at(at.clone()))
+            let word = text[at.clone()].to_ascii_lowercase();
+            let one = ExpressionError::new(message);
+            let is_word = word != text[at.clone()] && ["and", "or"].contains(&word.as_str());
+            Err(if is_word { one.instead(&word) } else { one }.at(at.clone()))
         }
     }
 }

@@ -41,6 +41,12 @@ impl Loader<'_> {
                 let names = kind.names(self.version);
                 names.filter(|known| element.attribute(known).is_none()).collect()
             });
+            // What an attribute says that nobody reads would be used.
+            for word in
+                attribute.value().split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-' | '.'))).take(8)
+            {
+                self.diagnostics.add_meant(element.document().file(), word);
+            }
             if is_own {
                 self.unknown(element, attribute, kind, free);
             } else {

@@ -217,6 +217,14 @@ impl Loader<'_> {
         let word = word(name).filter(|meant| known.contains(meant));
         self.report(match word.or(slip) {
             None if parent.has(name, self.version) && is_attribute_as_element(element) => as_attribute(one, element),
+            Some("implementation.java") if let Some((kind, attribute)) = kind_in_attribute(element) => {
+                let file = element.document().file();
+                let name = if kind == "composite" { "name" } else { "class" };
+                let mut edits = renaming(element, element.prefix(), &format!("implementation.{kind}"));
+                edits.push(Edit { location: attribute.in_file(file), replacement: name.to_owned() });
+                let meant = format!("<implementation.{kind} {name}=\"...\"/>");
+                one.suggest_edits(format!("write it as {}", quoted(&meant)), edits)
+            }
             Some(meant) => renamed(one, element, meant),
             None if name.starts_with("implementation.") => one
                 .help("if it is an extension, write it with a prefix of its own namespace")
@@ -374,6 +382,12 @@ fn as_comment(one: Diagnostic, element: Element<'_>, span: Span) -> Diagnostic {
         Some(remark) => one.mend("write it as a comment", format!("<!-- {remark} -->")),
         None => one.help("remove it, or write a comment between `<!--` and `-->`"),
     }
+}
+
+/// The kind of an `implementation` that an attribute is called after, with the place of its name.
+fn kind_in_attribute(element: Element<'_>) -> Option<(&str, Span)> {
+    let mut kinds = element.attributes().filter(|one| matches!(one.name(), "java" | "rust" | "composite"));
+    kinds.next().filter(|_| element.local_name() == "implementation").map(|one| (one.name(), one.name_span()))
 }
 
 /// Names of elements in other languages, and general names of several.

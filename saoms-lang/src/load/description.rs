@@ -240,7 +240,8 @@ impl Description {
             let one = format!("{} is listed as deployable twice", quoted(what));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, what.location, one);
             one.label(first.name.location, "the first").help("keep one of them")
-        } else if namespace.is_none() {
+        } else if namespace.is_none() && !what.ends_with(".composite") {
+            // The name of a file leads nowhere, which is reported.
             let why = match what.split_once(':') {
                 Some((prefix, _)) if child.resolve_prefix(prefix).is_none() => {
                     format!("the prefix {} is not declared", quoted(prefix))

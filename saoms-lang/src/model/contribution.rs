@@ -63,6 +63,8 @@ pub struct Missing {
     pub near: Vec<String>,
     /// The places that were searched and what was seen there, a sentence each.
     pub searched: Vec<String>,
+    /// The namespace of a composite of this name that is of another one.
+    pub elsewhere: Option<String>,
 }
 
 /// A place in a composite that names another one.
@@ -266,6 +268,10 @@ impl Contribution {
         let is_wanted = candidates.admit(self.given);
         let near = is_wanted.then(|| nearest(local, known.filter(|known| *known != local))).flatten();
         let prefix = name.as_str().strip_suffix(local).unwrap_or_default();
-        Missing { near: near.map(|near| format!("{prefix}{near}")).into_iter().collect(), searched: Vec::new() }
+        Missing {
+            near: near.map(|near| format!("{prefix}{near}")).into_iter().collect(),
+            searched: Vec::new(),
+            elsewhere: None,
+        }
     }
 }

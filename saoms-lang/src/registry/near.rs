@@ -1,6 +1,6 @@
 //! The names of classes that an unknown one was probably meant to be.
 
-use crate::diagnostic::{nearest, nearest_few};
+use crate::diagnostic::{nearest, nearest_equal, nearest_few};
 
 /// The number of names that are offered.
 const OFFERED: usize = 3;
@@ -36,7 +36,9 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
     let mut all: Vec<&str> = first.collect();
     all.extend(ending);
     if all.is_empty() {
-        all = nearest_few(name, names(), OFFERED);
+        // One that is nearer than all others is meant.
+        let alike = nearest_equal(name, names());
+        all = if alike.is_empty() { nearest_few(name, names(), OFFERED) } else { alike };
         // A package that names share makes all of them alike: of those in one what follows it counts.
         let package = name.strip_suffix(last).unwrap_or_default();
         let is_like = |known: &&str| {
@@ -47,6 +49,11 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
     if all.is_empty() {
         let spelt = nearest_few(last, names().map(simple), OFFERED).into_iter();
         all = spelt.flat_map(|spelt| names().filter(move |known| simple(known) == spelt)).collect();
+    }
+    if all.is_empty() {
+        // The same words in another order, as `EnvironmentMaster`.
+        let own = words(last);
+        all = names().filter(|known| own.len() > 1 && words(simple(known)) == own).collect();
     }
     if all.is_empty() && stem.len() >= TELLING {
         let part = stem.to_lowercase();
@@ -63,6 +70,19 @@ pub(super) fn near<'n>(name: &str, names: impl Iterator<Item = (&'n str, bool)>)
         }
     }
     kept
+}
+
+/// The words of a name such as `MasterRobot`, sorted.
+fn words(name: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for letter in name.chars() {
+        match words.last_mut().filter(|_| !letter.is_uppercase()) {
+            Some(word) => word.push(letter),
+            None => words.push(letter.to_string()),
+        }
+    }
+    words.sort_unstable();
+    words
 }
 
 /// The class without its package: the text behind the last dot.

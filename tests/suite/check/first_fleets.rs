@@ -1,5 +1,6 @@
 //! What new users meet in their first fleets: one mistake, told once, where it was made.
 
+use super::hints::{assert_hint, told_of};
 use super::rules::{Component, MASTER, ROBOT, found};
 
 fn with(scenario: &str, others: &[Component<'_>]) -> Vec<String> {
@@ -79,4 +80,29 @@ fn a_shift_shorter_than_a_period_is_told() {
     let message = "S5013 31:34 a shift of 15ms is shorter than the period of `Robot2`, 100ms: the \
         component executes only once in a shift";
     assert!(told.lines().count() == 1 && told.contains(message), "{told}");
+}
+
+#[test]
+fn one_mistake_in_a_fleet_of_replicas_is_told_once_with_what_to_do() {
+    const HANGAR: &str = include_str!("../../../composites/hangar.composite");
+    const TABLE: &str = include_str!("../../../composites/hangar.csv");
+    let condition = r#"saoms:if="landings""#;
+    for (test, written, arguments, code, help) in [
+        ("no robots", condition, &["--set", "robots=0"][..], "S5008", "add a `saoms.Robot`"),
+        ("no", condition, &["--set", "landings=no"], "S2045", "give it the value `false`"),
+        ("zero", condition, &["--set", "landings=0"], "S2045", "give it the value `false`"),
+        ("and", r#"saoms:if="landings AND robots > 3""#, &[], "S2045", "replace `AND` with `and`"),
+        ("unless", r#"saoms:unless="landings""#, &[], "S1007", "its attributes of SAOMS are"),
+        ("severity", condition, &["--severity", "S5009=off"], "S2048", "replace it with `allow`"),
+        ("swapped", condition, &["--severity", "error=S5009"], "S2048", "write `S5009=error`: the code comes first"),
+    ] {
+        let fleet = HANGAR.replace(condition, written);
+        let files = [("fleet.composite", fleet.as_str()), ("hangar.csv", TABLE)];
+        let told = told_of(&format!("hangar {test}"), &files, &[&["fleet.composite"], arguments].concat());
+        assert_hint(test, &told, code, help);
+    }
+    // A property beside which a component has a value of its own.
+    let fleet = HANGAR.replace("name=\"landings\">true", "name=\"width\">24").replace(condition, "");
+    let told = told_of("hangar unused", &[("fleet.composite", &fleet), ("hangar.csv", TABLE)], &["fleet.composite"]);
+    assert_hint("unused", &told, "S2026", "let component `World` take the value, with `source=\"$width\"`");
 }

@@ -14,7 +14,7 @@ fn told(test: &str, files: &[(&str, &str)]) -> Vec<String> {
 }
 
 /// Checks these composites of a folder with these files.
-fn told_of(test: &str, files: &[(&str, &str)], checked: &[&str]) -> Vec<String> {
+pub(super) fn told_of(test: &str, files: &[(&str, &str)], checked: &[&str]) -> Vec<String> {
     let folder = empty_folder(&format!("hints/{test}"));
     for (name, text) in files {
         fs::write(folder.join(name), text).unwrap();
@@ -33,7 +33,7 @@ fn hall(from: &str, to: &str) -> String {
 }
 
 /// Checks that there is one diagnostic, with this code and this help.
-fn assert_hint(test: &str, told: &[String], code: &str, help: &str) {
+pub(super) fn assert_hint(test: &str, told: &[String], code: &str, help: &str) {
     let count = told.iter().filter(|line| !line.starts_with('=')).count();
     assert_eq!(count, 1, "{test}: {told:#?}");
     assert!(told[0].contains(code), "{test}: {told:#?}");

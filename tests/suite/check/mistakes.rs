@@ -137,3 +137,10 @@ fn in_a_fleet_of_teams() {
     let mistakes = include_str!("../../mistakes/teams/mistakes.txt");
     hold(&files, mistakes, &expect_file!["../../mistakes/teams/mistakes.txt"]);
 }
+
+#[test]
+fn in_a_fleet_of_sites() {
+    let files = shipped!("sites/": "sites.composite" "warehouse.composite" "north.csv" "south.csv");
+    let mistakes = include_str!("../../mistakes/sites/mistakes.txt");
+    hold(&files, mistakes, &expect_file!["../../mistakes/sites/mistakes.txt"]);
+}

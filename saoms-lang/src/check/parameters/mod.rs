@@ -197,7 +197,8 @@ impl<'a> Parameters<'a> {
             let whole = self.resolve(place.unit, source, report)?;
             if !whole.raw.0.is_empty() {
                 let named = expression(source).and_then(|(name, _)| self.units[place.unit].by_name.get(name));
-                if named.is_some_and(|named| named.property.has_value()) {
+                let is_given = |one: &Property| one.has_value() || one.must_supply().is_some_and(|must| must.value);
+                if named.is_some_and(|named| is_given(named.property)) {
                     beside_source(property, source, &place.composite.document, report);
                 }
                 return Ok((whole, Some(source.location)));
@@ -354,10 +355,25 @@ impl<'a> Parameters<'a> {
                 if !used.contains(&(origin.file(), origin.element)) && !is_open {
                     let message = format!("no component uses the property {} of the composite", quoted(name));
                     let one = Diagnostic::new(&codes::UNUSED_PROPERTY, name.location, message);
-                    report.push(one.help(format!(
-                        "remove it, or use its value in a component with `source=\"${}\"`",
-                        escaped(name)
-                    )));
+                    let components = unit.composites.iter().flat_map(|composite| &composite.components);
+                    let namesakes = components.filter_map(|component| {
+                        let own = component.properties.iter().find(|one| one.name == *name.as_str())?;
+                        own.source().is_none().then_some((component, own))
+                    });
+                    report.push(match namesakes.into_iter().next() {
+                        Some((component, own)) => one
+                            .label(own.name.location, "this component gives its property a value of its own")
+                            .help(format!(
+                                "let component {} take the value, with `source=\"${}\"` in place of its own, or remove \
+                                 the property of the composite",
+                                quoted(&component.name),
+                                escaped(name)
+                            )),
+                        None => one.help(format!(
+                            "remove it, or use its value in a component with `source=\"${}\"`",
+                            escaped(name)
+                        )),
+                    });
                 }
             }
         }

@@ -57,7 +57,8 @@ impl Parameters<'_> {
 
     /// Help for a setting of a property that only composites inside have.
     fn inner(&self, setting: &Setting) -> Option<String> {
-        let name = setting.name.as_str();
+        // As people write the path of a component before it.
+        let name = setting.name.rsplit('/').next().unwrap_or_default();
         let mut all = self.units.iter().filter_map(|unit| Some((unit.by_name.get(name)?, unit.owner?)));
         let (parameter, owner) = all.next()?;
         Some(format!(

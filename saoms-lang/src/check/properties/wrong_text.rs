@@ -7,7 +7,7 @@ use crate::check::report::replacing;
 use crate::check::unfolding::replica_plan::as_index;
 use crate::check::values::replica::COUNTERS;
 use crate::diagnostic::{Code, Diagnostic, codes, meant_boolean, nearest, quoted};
-use crate::expression::{INDEX, has_expression, is_name};
+use crate::expression::{INDEX, has_expression, is_name, names, parse};
 use crate::registry::PropertyDeclaration;
 use crate::source::Text;
 use crate::syntax::escaped;
@@ -33,7 +33,7 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
     let by_index = match has_expression(text) {
         _ if is_counter => Some(format!("${{{INDEX}}}")),
         true => None,
-        false => as_index(text.trim()),
+        false => as_index(text.trim()).or_else(|| has_index.then(|| as_expression(text.trim()))?),
     };
     if let Some(meant) = by_index.filter(|meant| meant != text.trim()) {
         return match has_index {
@@ -58,6 +58,14 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
     }
 }
 
+/// A text that is an expression with the index, as it is written in a text: in other brackets, or in none.
+fn as_expression(text: &str) -> Option<String> {
+    let inside = text.strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
+    let plain = text.strip_prefix('$').unwrap_or(inside.unwrap_or(text));
+    let written = format!("${{{plain}}}");
+    (parse(plain).is_ok() && names(&written).iter().any(|name| name == INDEX)).then_some(written)
+}
+
 fn code(text: &Text, declaration: &PropertyDeclaration, said: &str) -> &'static Code {
     if text.trim().is_empty() {
         return &codes::VALUE_EMPTY;
@@ -79,6 +87,11 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
     if let Some(near) = nearest(text, allowed) {
         return Some(near.to_owned());
     }
+    let quotes = ['\'', '"', '`'];
+    let inside = quotes.iter().find_map(|quote| text.strip_prefix(*quote)?.strip_suffix(*quote)).map(str::trim);
+    if let Some(inside) = inside.filter(|inside| declaration.check(*inside).is_ok()) {
+        return Some(inside.to_owned());
+    }
     let lower = text.to_ascii_lowercase();
     let said = match (declaration.kind, lower.as_str()) {
         (PropertyKind::Boolean, _) => meant_boolean(text).unwrap_or_default().to_owned(),
@@ -89,6 +102,8 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
             let text = text.strip_suffix(".0").filter(|_| is_whole).unwrap_or(text);
             without_unit(text).unwrap_or(text).replace(',', ".")
         }
+        // As in XML Schema.
+        (PropertyKind::Duration, _) if let Some(time) = lower.strip_prefix("pt") => time.to_owned(),
         (PropertyKind::Duration, _) => duration(&lower).unwrap_or_else(|| lower.replace(',', ".")),
         _ => lower,
     };

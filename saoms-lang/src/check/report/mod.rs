@@ -132,7 +132,14 @@ impl<'a> Report<'a> {
 
     /// Reports what was kept of replicas and lines of tables.
     pub(crate) fn finish(&mut self) {
+        // How many replicas are meant may be what is wrong.
+        let of_count = [&codes::UNKNOWN_PROPERTY, &codes::SETTING_REPEATED, &codes::UNKNOWN_SETTING];
+        let known = self.diagnostics.iter().chain(self.copies.iter().map(|kept| &kept.one));
+        let is_open = known.into_iter().any(|one| of_count.contains(&one.code));
         for one in std::mem::take(&mut self.lines_without_replica) {
+            if is_open && one.severity == Severity::Warning {
+                continue;
+            }
             // Said once of each line.
             if self.lines.insert(one.location) {
                 self.diagnostics.push(one);
@@ -260,7 +267,7 @@ impl<'a> Report<'a> {
     ) -> Diagnostic {
         let one = Diagnostic::new(code, at, message);
         // No name that is known is of the wrong form: the right one mends both.
-        if name.contains(char::is_whitespace) {
+        if name.contains(|letter: char| letter.is_whitespace() || letter == '/') {
             self.withdraw(&codes::ATTRIBUTE_VALUE, at);
         }
         // It is counted alone.

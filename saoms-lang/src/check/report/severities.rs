@@ -40,7 +40,18 @@ impl SeveritySetting {
         } else {
             let message = format!("there is no severity {}", quoted(&level));
             let one = Diagnostic::new(&codes::SEVERITY, level.location, message);
-            match nearest(&level, names) {
+            let word = match level.to_ascii_lowercase().as_str() {
+                "off" | "none" | "ignore" | "disable" | "silent" => Some("allow"),
+                "info" | "hint" => Some("note"),
+                "warn" => Some("warning"),
+                "fatal" | "deny" | "forbid" => Some("error"),
+                _ => None,
+            };
+            match word.or_else(|| nearest(&level, names)) {
+                None if SeverityLevel::from_name(&code).is_some() => {
+                    let (whole, meant) = (Span::new(0, text.len() as u32).in_file(file), format!("{level}={code}"));
+                    one.suggest(format!("write {}: the code comes first", quoted(&meant)), whole, meant)
+                }
                 Some(meant) => one.suggest(format!("replace it with {}", quoted(meant)), level.location, meant),
                 None => one,
             }

@@ -16,6 +16,8 @@ use crate::check::tasks::unique_values::RepeatedValues;
 use crate::check::wiring::Wiring;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::registry::{RegisteredClass, RegisteredRule};
+use crate::source::{FileId, Location};
+use crate::syntax::ElementId;
 
 /// The declaration of a class and of those that it extends.
 fn declarations<'c>(class: &'c ClassIndex<'_>) -> Vec<&'c str> {
@@ -76,10 +78,16 @@ pub(crate) fn check<'s>(
         }
     }
     let rules: Vec<&RegisteredRule> = rules.collect();
+    let mut told = Told::default();
     for Site { parts, missing, is_part } in connected(sites, (fleet, checks, wiring)) {
         let missing = missing.into_values().map(|class| class.map(declarations)).collect();
         let facts = Facts { fleet, checks, wiring, repeated, missing };
-        facts.check_sites(&parts, rules.iter().copied().filter(|rule| rule.judges_parts() || !is_part), report);
+        facts.check_sites(
+            &parts,
+            rules.iter().copied().filter(|rule| rule.judges_parts() || !is_part),
+            &mut told,
+            report,
+        );
     }
 }
 
@@ -155,6 +163,9 @@ fn end<'s>(leads: &mut HashMap<&'s str, &'s str>, mut site: &'s str) -> &'s str 
     site
 }
 
+/// The scope in which a code was told at a place of a component, by this and the component.
+type Told = HashMap<(&'static str, Location, (FileId, ElementId)), usize>;
+
 /// The findings of earlier phases that rules are told of.
 struct Facts<'s, 'f> {
     fleet: &'s Fleet<'f>,
@@ -167,7 +178,13 @@ struct Facts<'s, 'f> {
 
 impl<'s, 'f> Facts<'s, 'f> {
     /// Asks the rules about the components of sites that are connected.
-    fn check_sites(&self, parts: &[usize], rules: impl Iterator<Item = &'s RegisteredRule>, report: &mut Report<'_>) {
+    fn check_sites(
+        &self,
+        parts: &[usize],
+        rules: impl Iterator<Item = &'s RegisteredRule>,
+        told: &mut Told,
+        report: &mut Report<'_>,
+    ) {
         let Self { fleet, checks, wiring, repeated, missing } = self;
         let indices: HashMap<usize, usize> = parts.iter().copied().zip(0..).collect();
         let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place)?));
@@ -223,7 +240,19 @@ impl<'s, 'f> Facts<'s, 'f> {
                 }
                 let one = diagnostic(rule.code(), severity, finding, own, &subject, report);
                 // A value that two components share is faulty already.
-                one.filter(|one| !repeated.contains(one.location)).into_iter().for_each(|one| report.push(one));
+                let Some(one) = one.filter(|one| !repeated.contains(one.location)) else { continue };
+                // Of several uses of a composite the first is told, if what is wrong is written in the composite.
+                let place = finding.place().component_index().and_then(|index| parts.get(index));
+                let element = place.map(|place| &fleet.members[*place]);
+                let used = element.filter(|member| fleet.scopes[member.scope].owner.is_some() && !member.is_copy);
+                if let Some(member) = used.filter(|member| one.location.file == member.component.origin.file()) {
+                    let origin = (member.component.origin.file(), member.component.origin.element);
+                    let first = told.entry((one.code.id, one.location, origin)).or_insert(member.scope);
+                    if *first != member.scope {
+                        continue;
+                    }
+                }
+                report.push(one);
             }
         }
     }

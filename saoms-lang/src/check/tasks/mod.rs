@@ -162,7 +162,7 @@ pub(crate) fn check_all<'a>(
     checks: &mut [ComponentCheck<'a>],
     report: &mut Report<'_>,
 ) -> RepeatedValues {
-    let mut unique = Unique::default();
+    let mut unique = Unique::of(fleet, checks.iter().map(|check| &check.given), report);
     let mut topics = topic_types::Topics::default();
     let mut renames = Renames::default();
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {

@@ -1,6 +1,6 @@
 //! Values that must not occur twice in a fleet.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
@@ -10,7 +10,7 @@ use crate::check::properties::given_values::PropertyValues;
 use crate::check::report::Report;
 use crate::check::unfolding::replica_plan::with_index;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::expression::has_expression;
+use crate::expression::{INDEX, has_expression, names};
 use crate::model::Property;
 use crate::registry::PropertyDeclaration;
 use crate::source::Location;
@@ -49,6 +49,8 @@ pub(crate) struct RepeatedValues {
     places: HashMap<Location, bool>,
     /// What is wrong with uses of a composite that have the site of an earlier use, and values of it.
     pub(crate) sites: BTreeMap<usize, Diagnostic>,
+    /// The uses of composites whose components have values of those of an earlier use, whatever the use gives them.
+    alike: HashSet<usize>,
 }
 
 impl RepeatedValues {
@@ -66,10 +68,17 @@ impl RepeatedValues {
     fn is_of_site(&mut self, fleet: &Fleet<'_>, value: &str, users: [User; 2], severity: Severity) -> bool {
         let Some([first, other]) = apart(fleet, users) else { return false };
         let [one, two] = [first, other].map(|user| &fleet.members[user]);
-        let (Some(there), Some(here)) = (&one.component.site, &two.component.site) else { return false };
         if one.site != two.site || users[0].place != users[1].place {
             return false;
         }
+        let (Some(there), Some(here)) = (&one.component.site, &two.component.site) else {
+            if !self.alike.contains(&other) {
+                return false;
+            }
+            let known = self.sites.entry(other).or_insert_with(|| without_site([one, two], value, severity));
+            known.severity = severity.max(known.severity);
+            return true;
+        };
         let known = self.sites.entry(other).or_insert_with(|| {
             let [one, two, site, value] = [one.path(), two.path(), &two.site, value].map(quoted);
             let message = format!("{one} and {two} are both in the site {site}, and both have a component {value}");
@@ -80,10 +89,55 @@ impl RepeatedValues {
         true
     }
 
+    /// Finds uses of one composite that cannot be in one site: their components have values that must differ there, and
+    /// that no property of the use changes.
+    fn find_alike<'u>(
+        &mut self,
+        fleet: &Fleet<'_>,
+        given: impl Iterator<Item = &'u PropertyValues>,
+        report: &Report<'_>,
+    ) {
+        let mut first: HashMap<(SmolStr, &str, SmolStr), User> = HashMap::new();
+        for (member, given) in given.enumerate() {
+            let Some(class) = fleet.class_of(member) else { continue };
+            for (value, place, entry) in uses(&fleet.members[member], class, given) {
+                let Some(word) = entry.main.unique.as_deref() else { continue };
+                let user = User { member, place };
+                let earlier = *first.entry((fleet.members[member].site.clone(), word, value)).or_insert(user);
+                if earlier.member == member || earlier.place != place {
+                    continue;
+                }
+                let Some([one, two]) = apart(fleet, [earlier, user]) else { continue };
+                let main = |member: usize| fleet.inner(member).map(|inner| inner.main().origin);
+                let is_one = main(one).is_some() && main(one) == main(two);
+                let is_written = names(report.written(place)).iter().all(|name| name == INDEX);
+                let is_own = |member: usize| fleet.members[member].instance.is_none();
+                if is_one && is_written && is_own(one) && is_own(two) {
+                    self.alike.insert(two);
+                }
+            }
+        }
+    }
+
     /// True if replicas share the value at this place.
     pub(crate) fn is_of_replicas(&self, at: Location) -> bool {
         self.places.get(&at) == Some(&true)
     }
+}
+
+/// Says that two uses of a composite are in one site, where none of them says a site.
+fn without_site([one, two]: [&Member<'_>; 2], value: &str, severity: Severity) -> Diagnostic {
+    let [first, other, value] = [one.path(), two.path(), value].map(quoted);
+    let message =
+        format!("{first} and {other} are uses of one composite in one site, and both have a component {value}");
+    let name = &two.component.name;
+    Diagnostic::new(&codes::NOT_UNIQUE, name.location, message)
+        .label(one.component.name.location, "the first")
+        .help(format!(
+            "give each its own site, as in `saoms:site=\"{name}\"`: IDs need to differ only within a site; to let them \
+             work together, give their components IDs of their own by a property of the composite"
+        ))
+        .severity(severity)
 }
 
 /// The component that has a value.
@@ -94,6 +148,17 @@ struct User {
 }
 
 impl<'a> Unique<'a> {
+    /// None yet, with what is known of the uses of composites.
+    pub(crate) fn of<'u>(
+        fleet: &Fleet<'_>,
+        given: impl Iterator<Item = &'u PropertyValues>,
+        report: &Report<'_>,
+    ) -> Self {
+        let mut unique = Self::default();
+        unique.repeated.find_alike(fleet, given, report);
+        unique
+    }
+
     /// Adds what a component gives, or what its class presets.
     pub(crate) fn add(
         &mut self,
@@ -147,7 +212,8 @@ fn shared(
         quoted(value)
     );
     let one = Diagnostic::new(&codes::NOT_UNIQUE, user.place, message);
-    let one = one.help(format!("give every {word} its own {}", quoted(&declaration.name)));
+    let whose = if word.ends_with(&*declaration.name) { "component" } else { word };
+    let one = one.help(format!("give every {whose} its own {}", quoted(&declaration.name)));
     let own = later.component.properties.iter().filter_map(Property::only_text);
     let is_own = earlier.scope == later.scope && own.clone().any(|text| text.location == user.place);
     report.push(match first.place == user.place {
@@ -196,7 +262,13 @@ fn apart(fleet: &Fleet<'_>, users: [User; 2]) -> Option<[usize; 2]> {
 fn task(value: &str, [first, user]: [User; 2], fleet: &Fleet<'_>, report: &mut Report<'_>) {
     let [earlier, later] = [first, user].map(|one| quoted(fleet.members[one.member].path()));
     let message = format!("components {earlier} and {later} share the ID {}", quoted(value));
-    let one = Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message).other(first.place, "the first");
+    let one = Diagnostic::new(&codes::TASK_ID_SHARED, user.place, message);
+    let [first_member, member] = [first, user].map(|one| &fleet.members[one.member]);
+    if first.place == user.place && first_member.scope == member.scope && member.instance.is_some() {
+        // Of replicas.
+        return report.push(one.replace(value, user.place, &with_index(value)));
+    }
+    let one = one.other(first.place, "the first");
     let help = "give each its own ID: messages and reports name tasks by their ID";
     report.push(in_uses(one, [first, user], fleet).help(help));
 }

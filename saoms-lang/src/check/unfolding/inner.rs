@@ -83,6 +83,11 @@ impl<'a> Unfolding<'a, '_, '_> {
             }
             Link::Faulty => None,
             Link::Missing(missing) => {
+                // One prefix is one mistake, however many names have it.
+                let prefix = names::wrong_prefix(naming, missing, around);
+                if prefix.is_some_and(|(at, _)| !self.wrong_prefixes.insert(at)) {
+                    return None;
+                }
                 self.report.push(names::not_found(naming, missing, around, self.options.assume_classes));
                 None
             }

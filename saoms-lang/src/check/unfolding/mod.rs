@@ -24,6 +24,7 @@ use crate::check::values::replica::Replica;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::{Budget, PATH_ELEMENTS, REPLICAS};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
+use crate::source::Location;
 
 /// Collects the components and checks that names are unique.
 pub(crate) fn unfold<'a>(
@@ -56,6 +57,7 @@ pub(crate) fn unfold<'a>(
         fleet,
         open: Vec::new(),
         is_full: false,
+        wrong_prefixes: HashSet::new(),
         options,
         report,
         lowers_attributes: severities.mentions(&codes::UNKNOWN_ATTRIBUTE),
@@ -111,6 +113,8 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     pub(crate) open: Vec<Open<'a>>,
     /// True if there are too many components; reported.
     pub(crate) is_full: bool,
+    /// The declarations of prefixes for which names lead nowhere; reported.
+    wrong_prefixes: HashSet<Location>,
     pub(crate) options: &'a Options,
     pub(crate) report: &'r mut Report<'s>,
     /// True if errors about unknown attributes may be let pass.

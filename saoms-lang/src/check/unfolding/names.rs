@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::check::fleet::Fleet;
 use crate::check::report::{Report, replacing};
-use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, quoted};
+use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Composite, Missing, Naming, Version};
 use crate::source::{Location, Span};
 use crate::syntax::{Element, escaped};
@@ -126,6 +126,24 @@ fn code(naming: Naming<'_>, around: &Composite) -> &'static Code {
     }
 }
 
+/// The namespace that a prefix stands for, at its declaration, and the one that is meant: where there is a composite of
+/// the name.
+pub(super) fn wrong_prefix<'m>(
+    naming: Naming<'_>,
+    missing: &'m Missing,
+    around: &Composite,
+) -> Option<(Location, &'m str)> {
+    let (prefix, _) = naming.name.split_once(':')?;
+    let meant = missing.elsewhere.as_deref().filter(|meant| missing.near.is_empty() && !meant.is_empty())?;
+    let named = naming.origin.element(&around.document);
+    let mut declared =
+        std::iter::successors(Some(named), |one| one.parent()).flat_map(|one| one.namespace_declarations());
+    let declared = declared.find(|one| one.name().strip_prefix("xmlns:") == Some(prefix))?;
+    // It may be that of other composites.
+    nearest(&declared.value(), [meant])?;
+    Some((declared.value_span().in_file(around.file()), meant))
+}
+
 /// The fault of a name that leads nowhere.
 pub(crate) fn not_found(
     naming: Naming<'_>,
@@ -163,6 +181,10 @@ pub(crate) fn not_found(
     for near in &missing.near {
         let meant = prefix.map_or_else(|| near.clone(), |prefix| format!("{prefix}:{near}"));
         one = one.replace(name, name.location, &meant);
+    }
+    if let Some((at, meant)) = wrong_prefix(naming, missing, composite) {
+        let of = namespaces.iter().flatten().next().map_or("", |namespace| namespace.as_str());
+        one = one.suggest(replacing(of, meant), at, escaped(meant));
     }
     for searched in &missing.searched {
         one = one.help(searched.clone());

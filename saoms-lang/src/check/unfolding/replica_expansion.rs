@@ -9,10 +9,10 @@ use super::replica_plan::{Plan, condition, first_index};
 use crate::check::judged::{Faulty, Judged};
 use crate::check::values::expression_scope::Names;
 use crate::check::values::replica::{Instance, Partial, Replica};
-use crate::diagnostic::{Diagnostic, codes};
-use crate::expression::{has_expression, pattern, render};
+use crate::diagnostic::{Diagnostic, codes, quoted};
+use crate::expression::{ExpressionFault, has_expression, pattern, render};
 use crate::model::{ComponentElement, Replicas, Table};
-use crate::source::Text;
+use crate::source::{Location, Text};
 
 impl<'a> Unfolding<'a, '_, '_> {
     /// Makes what stands next in the composite at hand.
@@ -43,12 +43,28 @@ impl<'a> Unfolding<'a, '_, '_> {
         self.fleet.groups.entry(group).or_default();
         if self.complex(component, &plan.instance(index)) {
             let (_, _, presence) = self.made(component, &plan.instance(index), None);
-            return self.partial(component, index, &names, presence);
+            return self.partial(component, Some(index), &names, presence);
         }
         if is_empty {
             let instance = plan.instance(index);
             let (made, faults) = instance.of(component, None);
-            self.faults(&names, &faults);
+            if !faults.is_empty() {
+                // What is no number without replicas is no fault of an expression; what is one is told.
+                let is_of_count = |one: &ExpressionFault| one.problem.is_arithmetic;
+                let faults = faults.into_iter().map(|(text, faults)| {
+                    (text, faults.into_iter().filter(|one| !is_of_count(one)).collect::<Vec<ExpressionFault>>())
+                });
+                let faults: Vec<(Text, Vec<ExpressionFault>)> =
+                    faults.filter(|(_, faults)| !faults.is_empty()).collect();
+                if !faults.is_empty() {
+                    self.faults(&names, &faults);
+                    return self.partial(component, Some(index), &names, Presence::Absent);
+                }
+                let partial = Some(Partial { has_table: true, lacks_index: false });
+                let instance = Instance { partial, ..instance };
+                let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });
+                return self.member(component, made, Some(instance), Presence::Absent);
+            }
             if let Some(asked) = component.condition.as_ref() {
                 _ = condition(asked, &names, &mut |name| instance.value(name), self.report);
             }
@@ -68,7 +84,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         let instance = plan.instance(index);
         let (made, is_faulty, presence) = self.made(plan.component, &instance, plan.row(index));
         if is_faulty && index == plan.first {
-            self.partial(plan.component, index, &plan.names, presence);
+            self.partial(plan.component, Some(index), &plan.names, presence);
             // In how many others it is.
             plan.left.clone().for_each(|other| _ = self.made(plan.component, &plan.instance(other), plan.row(other)));
             return false;
@@ -100,6 +116,9 @@ impl<'a> Unfolding<'a, '_, '_> {
             // A whole path is from the folder of who writes it, a part of one from that of the rest.
             let property = file.strip_prefix("${").and_then(|rest| rest.strip_suffix('}'));
             let value = property.and_then(|name| names.place(name.trim())).unwrap_or(file.location);
+            if name.contains('\n') {
+                return self.contents_for_name(property.unwrap_or_default().trim(), value);
+            }
             let table = self.fleet.contribution.table(value.file, &name);
             if table.is_none() {
                 self.fleet.wanted_tables.push((Text::new(name.into(), value), file.location));
@@ -113,6 +132,30 @@ impl<'a> Unfolding<'a, '_, '_> {
         table.map(Some).ok_or(Faulty)
     }
 
+    /// Reports a table whose name comes from a file, in which its contents are.
+    fn contents_for_name(&mut self, property: &str, value: Location) -> Judged<Option<&'a Table>> {
+        let unit = self.open.last().map(|open| &self.fleet.units[open.unit]);
+        let owner = unit.and_then(|unit| self.fleet.scopes[unit.scope].owner).map(|owner| &self.fleet.members[owner]);
+        let given = owner.and_then(|owner| {
+            let given = owner.component.properties.iter().find(|one| one.name == *property)?;
+            let attribute = given.origin.element(&owner.composite.document).attribute("file")?;
+            Some((given.file()?, attribute.name_location()))
+        });
+        let one = |at, what: &str| {
+            let message =
+                format!("found the contents of {what} for {}, expected the name of a table", quoted(property));
+            Diagnostic::new(&codes::OVERRIDES, at, message)
+        };
+        self.report.push(match given {
+            Some((file, attribute)) => {
+                let one = one(file.location, &format!("the file {}", quoted(file)));
+                one.suggest("replace `file` with `value`", attribute, "value")
+            }
+            None => one(value, "a file").help("give the name of the file"),
+        });
+        Err(Faulty)
+    }
+
     /// Looks at a component whose number of replicas is not known.
     fn unplanned(&mut self, component: &'a ComponentElement, replicas: &Replicas, names: &Rc<Names>) {
         let first = first_index(replicas, names);
@@ -123,7 +166,7 @@ impl<'a> Unfolding<'a, '_, '_> {
             self.complex(component, &instance);
             (_, _, presence) = self.made(component, &instance, None);
         }
-        self.partial(component, index, names, presence);
+        self.partial(component, first, names, presence);
     }
 
     /// One of the replicas, whether it has faults, which are reported, and whether its condition keeps it away.
@@ -144,12 +187,13 @@ impl<'a> Unfolding<'a, '_, '_> {
         (made, is_faulty, Presence::of(holds != Some(Ok(false))))
     }
 
-    /// Adds one that stands for replicas that are not made.
-    fn partial(&mut self, component: &'a ComponentElement, index: i64, names: &Rc<Names>, presence: Presence) {
+    /// Adds one that stands for replicas that are not made, with the index of the first, as far as it is known.
+    fn partial(&mut self, component: &'a ComponentElement, index: Option<i64>, names: &Rc<Names>, presence: Presence) {
         let Some(open) = self.open.last() else { return };
         let (unit, scope) = (open.unit, self.fleet.units[open.unit].scope);
         let has_table = component.replicas.as_ref().is_some_and(|replicas| replicas.overrides.is_some());
-        let instance = Instance { index, names: Rc::clone(names), partial: Some(Partial { has_table }) };
+        let partial = Some(Partial { has_table, lacks_index: index.is_none() });
+        let instance = Instance { index: index.unwrap_or(1), names: Rc::clone(names), partial };
         let (made, _) = instance.of(component, None);
         let Replica { component: made, instance } = self.replicas.add(Replica { component: made, instance });
         let group = pattern(&component.name);

@@ -153,11 +153,13 @@ impl<'a> Plan<'a> {
                             false => one,
                         }
                     }
-                    false => Diagnostic::new(&codes::OVERRIDES, row.key.location, message).help(format!(
-                        "use an index from {} to {}",
-                        self.first,
-                        self.left.end - 1
-                    )),
+                    false => {
+                        let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
+                        match names.get(row.key.as_str()) {
+                            Some(index) => one.replace(&row.key, row.key.location, &index.to_string()),
+                            None => one.help(format!("use an index from {} to {}", self.first, self.left.end - 1)),
+                        }
+                    }
                 };
                 // Fewer robots than the table knows are no mistake where the number is set from outside.
                 let severity = if is_possible { Severity::Warning } else { Severity::Error };

@@ -23,6 +23,8 @@ pub(crate) struct Instance {
 pub(crate) struct Partial {
     /// True if a table may give it more properties.
     pub(crate) has_table: bool,
+    /// True if its index is not known.
+    pub(crate) lacks_index: bool,
 }
 
 /// A component of a replica.
@@ -38,6 +40,9 @@ impl Instance {
     /// The value of a name in an expression.
     pub(crate) fn value(&self, name: &str) -> Result<ExpressionValue, ExpressionError> {
         match name {
+            INDEX if self.partial.is_some_and(|partial| partial.lacks_index) => {
+                Err(ExpressionError::new("the first index is not known"))
+            }
             INDEX => Ok(ExpressionValue::Integer(self.index)),
             name => self.names.value(name).map_err(|problem| match nearest(name, [INDEX]) {
                 Some(_) => ExpressionError { help: None, ..problem.instead(INDEX) },

@@ -7,6 +7,7 @@ use super::faulty_values::FaultyValues;
 use super::type_name::local;
 use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Diagnostic, Severity, codes, meant_boolean, quoted};
+use crate::expression::has_expression;
 use crate::load::vocabulary::XML_SCHEMA;
 use crate::model::{Part, Property};
 use crate::source::{Location, Text};
@@ -75,6 +76,7 @@ fn holds(
     let one = Diagnostic::new(code, at, message).label(named.location, "the type");
     report.push(match meant_boolean(value).filter(|_| of.name == "boolean") {
         Some(meant) => one.suggest(replacing(value, meant), at, meant),
+        None if has_expression(value) => one.help("`${...}` is evaluated only in components with a `saoms:count`"),
         None => one.help("change the value, or the type"),
     });
     false

@@ -41,6 +41,14 @@ pub(crate) fn misread(text: &str, scope: usize, side: Side, fleet: &Fleet<'_>) -
         let help = "separate several names with blanks".to_owned();
         return named.iter().any(is_known).then(|| Misread { meant: Some(named.join(" ")), help });
     }
+    if let Some((around, inner)) = text.split_once('/')
+        && fleet.find(scope, around).is_none()
+        && fleet.group(scope, around).is_none()
+        && fleet.find(scope, parts(inner).0).is_some()
+    {
+        let help = "write the name of a component in this composite without what is around it".to_owned();
+        return Some(Misread { meant: Some(inner.to_owned()), help });
+    }
     let places = text.char_indices().filter(|(_, character)| BEHIND.contains(character));
     let mut split = places.map(|(at, _)| (&text[..at], text[at..].trim_start_matches(BEHIND)));
     let is_known = |name: &str| fleet.find(scope, name).is_some() || fleet.group(scope, name).is_some();
@@ -89,7 +97,7 @@ pub(crate) fn inside(member: usize, behind: &[&str], side: Side, fleet: &Fleet<'
 pub(crate) fn unknown_component(
     name: &str,
     (scope, own): (usize, Option<usize>),
-    is_promoted: bool,
+    (side, is_promoted): (Side, bool),
     at: Location,
     message: String,
     fleet: &Fleet<'_>,
@@ -97,8 +105,16 @@ pub(crate) fn unknown_component(
 ) -> Diagnostic {
     let own = own.map(|own| fleet.members[own].component.name.as_str());
     let group = format!("{name}*");
-    if is_promoted && fleet.group(scope, &group).is_some() {
-        return Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).replace(name, at, &group);
+    if let Some(replicas) = fleet.group(scope, &group) {
+        let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message);
+        // A reference usually takes one target.
+        return match replicas.first().filter(|_| side == Side::Service && !is_promoted) {
+            Some(first) => {
+                let first = fleet.members[*first].component.name.as_str();
+                one.replace(name, at, first).help(format!("{} names all replicas", quoted(&group)))
+            }
+            None => one.replace(name, at, &group),
+        };
     }
     if let Some((meant, help)) = nearest_replica(name, scope, fleet) {
         let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help);

@@ -43,7 +43,7 @@ pub(crate) fn target(
     if scope == 0 && options.assume_classes && is_elsewhere() {
         let at = report.part(text, 0..uri.component.len());
         let message = format!("there is no component {} in these composites", quoted(uri.component));
-        let one = unknown_component(uri.component, (scope, own), false, at, message, fleet, report);
+        let one = unknown_component(uri.component, (scope, own), (Side::Service, false), at, message, fleet, report);
         let help = "it is not checked: another composite of the domain may have it";
         report.push(one.severity(Severity::Warning).help(help));
         return Target::Open;

@@ -111,7 +111,15 @@ impl<'t> Uri<'t> {
                 Some(misread) => misread.add_to(Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message), text),
                 None => {
                     let is_promoted = rule == Some(Side::Reference.rule());
-                    let one = unknown_component(self.component, (scope, own), is_promoted, at, message, fleet, report);
+                    let one = unknown_component(
+                        self.component,
+                        (scope, own),
+                        (self.side, is_promoted),
+                        at,
+                        message,
+                        fleet,
+                        report,
+                    );
                     match self.wants.and_then(|wants| to_add(wants, scope, fleet)) {
                         Some(help) if one.suggestions.is_empty() => one.help(help),
                         _ => one,

@@ -57,7 +57,8 @@ fn each_site_has_its_own_topics_and_its_own_ids() {
     // Without sites both halls are one.
     let fleet = fleet.replace("saoms:site=\"South\"", "").replace("saoms:site=\"North\"", "");
     let found = topics(&[&fleet, &hall("", "")]);
-    assert!(found.contains("have the same `ID` `Robot1`") && found.contains("`saoms:site`"), "{found}");
+    assert!(found.contains("in one site, and both have a component `Robot1`"), "{found}");
+    assert_eq!(found.matches("error ").count(), 1, "{found}");
 }
 
 #[test]

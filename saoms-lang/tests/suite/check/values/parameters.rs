@@ -195,11 +195,9 @@ fn values_from_outside_are_of_the_type_of_the_property() {
         2:122-125 error S2042: the property `speed` has the type `xsd:int`: found `1.5`, expected a whole number of 32 bits
           inner:2:30-37 the type
           help: change the value, or the type
-        inner:3:88-89 error S3013: components `A/R` and `B/R` have the same `ID` `R`
-          2:54-55 used here
-          3:18-19 used here
-          help: give every robot its own `ID`
-          help: both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`
+        3:18-19 error S3013: `A` and `B` are uses of one composite in one site, and both have a component `R`
+          2:54-55 the first
+          help: give each its own site, as in `saoms:site="B"`: IDs need to differ only within a site; to let them work together, give their components IDs of their own by a property of the composite
     "#]]
     .assert_eq(&outcome(&[&outer, &part("inner", "", &typed)], &[]));
 }
