@@ -17,6 +17,8 @@ struct Entry<'a> {
     unit: String,
     effector: bool,
     flatten: bool,
+    /// Its changes are no effects in the journal.
+    quiet: bool,
     /// The constant that holds its place.
     place: Ident,
 }
@@ -130,6 +132,7 @@ impl<'a> Entry<'a> {
                 unit: String::new(),
                 effector: false,
                 flatten: false,
+                quiet: false,
                 place: format_ident!("AT_{}", entries.len(), span = Span::call_site()),
             };
             attributes.into_iter().try_for_each(|attribute| entry.take(attribute))?;
@@ -152,8 +155,10 @@ impl<'a> Entry<'a> {
                 self.effector = true;
             } else if meta.path.is_ident("flatten") {
                 self.flatten = true;
+            } else if meta.path.is_ident("quiet") {
+                self.quiet = true;
             } else {
-                return Err(meta.error("expected one of `name`, `unit`, `effector`, `flatten`"));
+                return Err(meta.error("expected one of `name`, `unit`, `effector`, `flatten`, `quiet`"));
             }
             Ok(())
         })
@@ -259,9 +264,10 @@ fn implementation(ident: &Ident, entries: &[Entry<'_>]) -> TokenStream {
             quote!(::saoms_api::Entries::set_bytes(&mut self.#field, entry - #place, bytes)),
         )
     });
-    let read = entries.iter().map(|Entry { field, flatten, .. }| match flatten {
-        true => quote!(::saoms_api::Entries::read(&self.#field, values);),
-        false => quote! {
+    let read = entries.iter().map(|Entry { field, flatten, quiet, .. }| match (flatten, quiet) {
+        (true, _) => quote!(::saoms_api::Entries::read(&self.#field, values);),
+        (false, true) => quote!(values.push(::saoms_api::Value::Nothing);),
+        (false, false) => quote! {
             values.push(::saoms_api::Field::as_value(&self.#field).unwrap_or(::saoms_api::Value::Nothing));
         },
     });

@@ -14,6 +14,7 @@ use crate::{Failure, Value};
 /// | `unit = "m"` | shown to people |
 /// | `effector` | an output: of the loops of a component only one may change it |
 /// | `flatten` | the field is a struct that derives `Entries`; its entries stand in the place of the field |
+/// | `quiet` | what changes all the time, or follows from others: its changes are not written to the journal |
 ///
 /// ```
 /// use saoms_api::Entries;
@@ -61,7 +62,7 @@ pub trait Entries: Send + Sized + 'static {
     /// There is no such entry, or these are not the bytes of one.
     fn set_bytes(&mut self, entry: u32, bytes: &[u8]) -> Result<(), Failure>;
 
-    /// Appends the values of all entries, [`Value::Nothing`] for those that are no single values.
+    /// Appends the values of all entries, [`Value::Nothing`] for those that are no single values, or quiet.
     fn read(&self, values: &mut Vec<Value>);
 }
 

@@ -136,7 +136,7 @@ impl dyn Knowledge {
         }
     }
 
-    /// Appends the values of all entries, [`Value::Nothing`] for those that are no single values.
+    /// Appends the values of all entries, [`Value::Nothing`] for those that are no single values, or quiet.
     pub fn values(&self, values: &mut Vec<Value>) {
         self.read(values);
         self.extras().groups().for_each(|group| group.read(values));

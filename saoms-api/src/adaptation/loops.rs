@@ -95,6 +95,19 @@ impl Loops {
         Ok(())
     }
 
+    /// Runs code as the loop that effects the entry of this name: what the code writes to the journal is that loop's,
+    /// and follows from its decision. For components that carry out the orders which loops write into entries. Without
+    /// such a loop it is the component's own.
+    pub fn act_for<T>(&self, entry: &str, context: &mut Context<'_>, code: impl FnOnce(&mut Context<'_>) -> T) -> T {
+        let place = self.loops.iter().position(|named| named.writable.has(entry));
+        if let Some(place) = place {
+            context.enter_loop(place as u32);
+        }
+        let result = code(context);
+        context.leave_loops();
+        result
+    }
+
     /// The loops with the numbers of their places.
     fn placed(&mut self) -> impl Iterator<Item = (u32, &mut Named)> {
         (0..).zip(&mut self.loops)

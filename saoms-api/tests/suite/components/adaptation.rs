@@ -254,6 +254,26 @@ fn what_loops_change_is_told_and_seen_by_others() {
     );
 }
 
+/// Entries of which one changes all the time.
+#[derive(Debug, Default, Entries)]
+struct Wheels {
+    #[entry]
+    block: Block,
+    #[entry(effector, quiet)]
+    turns: u32,
+}
+
+#[test]
+fn quiet_entries_are_read_and_set_by_name_but_are_no_effects() {
+    let mut wheels = Wheels::default();
+    Entries::set(&mut wheels, 1, Value::Integer(7)).unwrap();
+    assert_eq!(Entries::get(&wheels, 1), Some(Value::Integer(7)));
+    let mut compared = Vec::new();
+    Entries::read(&wheels, &mut compared);
+    assert_eq!(compared, [Value::Pair(0, 0), Value::Nothing]);
+    assert!(Wheels::DECLARED[1].effector);
+}
+
 #[test]
 fn an_effector_that_is_not_declared_cannot_be_changed() {
     let mut host = FakeHost::new();
@@ -354,7 +374,7 @@ fn knowledge_and_loops_declare_themselves() {
         )
     );
     assert_eq!(<Driver as LoopClass>::KNOWLEDGE, Some("example.Cart"));
-    assert!(Driver::DECLARATION.contains(r#""knowledge":"example.Cart","properties":[]"#));
+    assert!(Driver::DECLARATION.contains(r#""knowledge":"example.Cart","direct":true,"properties":[]"#));
     let class = <Car as Class>::DECLARATION;
     let loops = r#","loops":{"property":"mood","lists":{"calm":["example.Saver","example.Driver"],"wild":["example.Driver","example.Rogue"]}}}"#;
     assert_eq!(class.split_once(r#","knowledge":"#).unwrap().1, format!("{knowledge}{loops}"));
