@@ -189,6 +189,13 @@ impl Declared {
             );
             ::saoms_api::host::declaration::ConstText::Joined(PARTS)
         }});
+        text.text(quote! {
+            if <<#ident as ::saoms_api::Loop>::Knowledge as ::saoms_api::host::Subject>::NAME.is_some() {
+                ::saoms_api::host::declaration::ConstText::Plain(",\"direct\":true")
+            } else {
+                ::saoms_api::host::declaration::ConstText::EMPTY
+            }
+        });
         parts::properties(&mut text, properties);
         for (member, names) in [("senses", &self.senses), ("effects", &self.effects)] {
             text.plain(&format!(",\"{member}\":"));

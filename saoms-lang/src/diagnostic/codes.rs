@@ -188,12 +188,13 @@ codes! {
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";
     LOOP_CONTRADICTION = "S4503" Error "loop-contradiction": "The attributes of a loop contradict each other.";
     LOOP_ORDER = "S4504" Error "loop-order": "The order of loops is circular, or refers to a removed loop.";
-    LOOP_KNOWLEDGE = "S4505" Error "loop-knowledge": "A loop works on knowledge that the component does not have.";
+    LOOP_KNOWLEDGE = "S4505" Error "loop-knowledge": "A loop works on knowledge that the component does not have, or on that of another library.";
     UNKNOWN_ENTRY = "S4506" Error "unknown-entry": "A loop senses or effects an entry that the component does not have.";
     EFFECTOR_CLASH = "S4507" Error "effector-clash": "Two loops of a component change the same effector.";
     ENTRY_REPEATED = "S4508" Error "entry-repeated": "A loop adds an entry that already exists.";
     LOOP_REFERENCE = "S4509" Error "loop-reference": "A loop and its component have references with the same name, but with different interfaces.";
     LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "An element for a loop changes nothing.";
+    LOOP_UNSERVED = "S4511" Warning "loop-unserved" [OutlivesExpansion]: "A loop that replaces another one leaves entries that no loop effects or senses any more.";
 }
 
 /// The natures of a code of this table; `None` for that of a rule of a crate of components.

@@ -24,6 +24,10 @@ pub struct LoopDeclaration {
     pub doc: String,
     /// The name of the knowledge that it works on; `None` for any that has its entries.
     pub knowledge: Option<String>,
+    /// True if it works on the struct of the knowledge, and not entry by entry: it has to be built together with the
+    /// component.
+    #[serde(default)]
+    pub direct: bool,
     /// Its properties in order.
     #[serde(default)]
     pub properties: Vec<PropertyDeclaration>,

@@ -61,6 +61,8 @@
 //! - What follows the last dot of the name is the name of the loop within a component, unless the composite gives
 //!   another.
 //! - `knowledge` is absent for a loop that works on any knowledge that has the entries which it senses and effects.
+//! - `direct` is `true` for a loop that works on the struct of the knowledge and not entry by entry: it can work in
+//!   components alone whose class is built into the same library.
 //! - `entries` are those that it adds to the knowledge; it may change them without saying so under `effects`.
 //! - Its topics and references are those of the component that has the loop.
 //!

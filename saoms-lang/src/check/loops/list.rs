@@ -81,11 +81,12 @@ pub(super) fn plan<'a>(
                 }
                 loops[place].element = Some(one);
                 if let Some(class) = class {
-                    loops[place].class = class;
+                    let before = std::mem::replace(&mut loops[place].class, class);
+                    loops[place].replaced = before;
                 }
             }
             (None, Some(class)) if !one.is_removal() => {
-                loops.push(Planned { name: &one.name, class, element: Some(one) });
+                loops.push(Planned { name: &one.name, class, element: Some(one), replaced: None });
             }
             (None, _) => {
                 report_unknown(&one.name, member, &names, one.is_removal(), report);
@@ -111,7 +112,7 @@ fn by_default<'a>(
         match registry.get_loop(name) {
             Some(class) => {
                 let name = class.declaration().short_name();
-                loops.push(Planned { name, class: Some(class), element: None });
+                loops.push(Planned { name, class: Some(class), element: None, replaced: None });
             }
             None => {
                 let (class, name) = (quoted(class.class.name()), quoted(name));

@@ -3,6 +3,7 @@
 mod list;
 mod order;
 mod team;
+mod unserved;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -53,6 +54,8 @@ struct Planned<'a> {
     /// `None` where it is unknown, which is reported.
     class: Option<&'a Arc<RegisteredLoop>>,
     element: Option<&'a LoopElement>,
+    /// The loop of the class whose place it takes.
+    replaced: Option<&'a Arc<RegisteredLoop>>,
 }
 
 /// Finds the loops of all components. The class of a component with loops becomes one that uses the topics and
@@ -89,6 +92,9 @@ pub(crate) fn resolve<'a>(
         }
         let (loops, is_planned) = list::plan(member, class, given, (registry, options), report);
         let is_team = is_planned && team::check(member, class, &loops, report);
+        if is_team {
+            unserved::check(class, &loops, report);
+        }
         let used: Vec<&Arc<RegisteredLoop>> = loops.iter().filter_map(|one| one.class).collect();
         let mut with = index;
         if !used.is_empty() {

@@ -1,11 +1,14 @@
 //! Rules on the loops of a component together, reported at the exact places.
 
+use std::path::Path;
+use std::sync::Arc;
+
 use super::Planned;
 use crate::check::fleet::Member;
 use crate::check::fleet::class_index::ClassIndex;
 use crate::check::report::{Report, list};
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
-use crate::registry::{LoopDeclaration, Team, TeamFault};
+use crate::registry::{LoopDeclaration, RegisteredLoop, Team, TeamFault};
 use crate::source::Location;
 
 /// Checks the loops of a component against each other; `false` where they do not fit.
@@ -29,7 +32,10 @@ pub(super) fn check(
     for fault in &faults {
         report.push(diagnostics.diagnostic(fault));
     }
-    faults.is_empty()
+    let strangers = diagnostics.strangers();
+    let fits = faults.is_empty() && strangers.is_empty();
+    strangers.into_iter().for_each(|one| report.push(one));
+    fits
 }
 
 struct TeamDiagnostics<'t, 'a> {
@@ -48,6 +54,36 @@ impl TeamDiagnostics<'_, '_> {
 
     fn place_or_component(&self, at: usize) -> Location {
         self.place(at).unwrap_or(self.member.component.name.location)
+    }
+
+    /// Loops that work on the struct of the knowledge, where the class of the component comes from another library: its
+    /// struct is another one, whatever its name. What the class itself has is built into its library.
+    fn strangers(&self) -> Vec<Diagnostic> {
+        let class = &self.class.class;
+        let own = |name: &str| class.declaration().loops.all().any(|(_, list)| list.iter().any(|known| known == name));
+        let is_stranger =
+            |one: &Arc<RegisteredLoop>| one.declaration().direct && one.origin() != class.origin() && !own(one.name());
+        let found = self.loops.iter().enumerate().filter(|(_, one)| one.class.is_some_and(is_stranger));
+        found.map(|(at, _)| self.stranger(at)).collect()
+    }
+
+    fn stranger(&self, at: usize) -> Diagnostic {
+        let (class, component) = (&self.class.class, quoted(&self.member.component.name));
+        let origin = |path: Option<&Path>| match path.and_then(Path::file_name) {
+            Some(file) => format!("the library {}", quoted(&file.to_string_lossy())),
+            None => "the program".to_owned(),
+        };
+        let from = origin(self.loops[at].class.and_then(|one| one.origin()));
+        let message = format!(
+            "the loop {} of {from} works on the struct of its knowledge, but that of component {component} is built \
+             into {}",
+            self.name(at),
+            origin(class.origin())
+        );
+        let one = Diagnostic::new(&codes::LOOP_KNOWLEDGE, self.place_or_component(at), message);
+        one.help(
+            "a loop for components of other libraries has `type Knowledge = dyn Knowledge`, and reaches entries by name",
+        )
     }
 
     fn name(&self, at: usize) -> String {

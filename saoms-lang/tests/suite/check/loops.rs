@@ -180,6 +180,40 @@ fn two_loops_cannot_change_one_effector() {
 }
 
 #[test]
+fn what_no_loop_serves_after_a_replacement_is_told() {
+    let saver = |name: &str| {
+        format!(
+            "<saoms:loop name=\"{name}\" class=\"example.BatterySaver\"><property name=\"threshold\">1</property></saoms:loop>"
+        )
+    };
+    assert_eq!(
+        faults(&saver("CollisionMS")),
+        "3:39-59 warning S4511: no loop effects `stopped` any more: `example.BatterySaver` replaces \
+        `example.CollisionMS`, which does
+  help: the entry stays as it is; let `example.BatterySaver` serve it and declare `effects(...)`, or add a loop that does
+"
+    );
+    let racer = "<saoms:loop name=\"CollisionMS\" remove=\"true\"/>
+<saoms:loop name=\"BatteryMS\" class=\"example.Courteous\"/>";
+    let battery = "4:37-54 warning S4511: no loop effects `battery` any more: `example.Courteous` replaces \
+        `example.BatteryMS`, which does
+  help: the entry stays as it is; let `example.Courteous` serve it and declare `effects(...)`, or add a loop that does
+";
+    assert_eq!(faults(racer), battery, "nobody changes `busy`, which `BatteryMS` senses");
+    assert_eq!(
+        faults(&format!("{racer}{}", saver("Saver"))),
+        format!(
+            "{battery}4:37-54 warning S4511: no loop senses `busy` any more: `example.Courteous` replaces \
+            `example.BatteryMS`, which does
+  help: the entry has no effect; let `example.Courteous` serve it and declare `senses(...)`, or add a loop that does
+"
+        )
+    );
+    let other = "<saoms:loop name=\"Gives\" class=\"example.Courteous\"/>";
+    assert_eq!(faults(&format!("{}{other}", saver("CollisionMS"))), "", "another loop serves it");
+}
+
+#[test]
 fn loops_fit_the_component() {
     assert_eq!(
         faults(
