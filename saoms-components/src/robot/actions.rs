@@ -5,6 +5,7 @@ use crate::hardware::{Action, ActionKind, Progress};
 use crate::messages::{Collision, LuggageStage};
 
 use super::hardware_client::Reply;
+use super::knowledge::JobEnd;
 use super::{RobotKnowledge, Trouble, Variables};
 
 /// Number of consecutive failures to move or to deposit after which the hardware counts as broken.
@@ -39,7 +40,9 @@ impl RobotKnowledge {
         if action.kind != ActionKind::Move {
             self.show_ready(context, action);
         }
-        match self.hardware.begin(context, self.number, action)? {
+        let begun = self.hardware.begin(context, self.number, action);
+        self.note_running();
+        match begun? {
             Reply::Later => Ok(Outcome::NotBegun),
             Reply::Answer(progress) => {
                 self.begun = context.cause();
@@ -56,10 +59,12 @@ impl RobotKnowledge {
     /// What changes follows from the decision of the loop that began the action.
     pub(crate) fn poll(&mut self, context: &mut Context<'_>) -> Result<Option<(Action, Outcome)>, Failure> {
         let Some(action) = self.hardware.running() else { return Ok(None) };
-        let outcome = match self.hardware.poll(context, self.number)? {
+        let polled = self.hardware.poll(context, self.number);
+        self.note_running();
+        let outcome = match polled? {
             Reply::Later => Outcome::Running,
             Reply::Answer(progress) => {
-                let before = (self.block, self.next, self.variables);
+                let before = self.noted();
                 context.because(self.begun);
                 let outcome = self.take_in(context, action, progress)?;
                 self.note_changes(context, before);
@@ -69,8 +74,13 @@ impl RobotKnowledge {
         Ok(Some((action, outcome)))
     }
 
+    /// What an action can change.
+    pub(super) fn noted(&self) -> (Block, Block, Variables) {
+        (self.block, self.next, self.variables)
+    }
+
     /// Writes to the journal what an action changed outside of a loop's execution, where nobody else looks.
-    fn note_changes(&self, context: &mut Context<'_>, before: (Block, Block, Variables)) {
+    pub(super) fn note_changes(&self, context: &mut Context<'_>, before: (Block, Block, Variables)) {
         let (block, next, was) = before;
         let now = &self.variables;
         context.changed("block", block, self.block);
@@ -85,6 +95,7 @@ impl RobotKnowledge {
     /// reached.
     pub(crate) fn retire(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
         let Reply::Answer(block) = self.hardware.retire(context, self.number)? else { return Ok(false) };
+        self.note_running();
         self.block = block.unwrap_or(self.block);
         Ok(true)
     }
@@ -93,6 +104,7 @@ impl RobotKnowledge {
     /// shutdown is tried again.
     pub(crate) fn leave_hardware(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.block = self.hardware.leave(context, self.number)?.unwrap_or(self.block);
+        self.note_running();
         Ok(())
     }
 
@@ -128,7 +140,7 @@ impl RobotKnowledge {
             ActionKind::Deposit => {
                 context.console(format_args!("{name} says: Luggage deposited."));
                 context.info(format_args!("deposited luggage {luggage} at {block}"));
-                self.untold = self.job.map(|job| (job, LuggageStage::Delivered));
+                self.untold = self.job.map(|job| JobEnd { job, stage: LuggageStage::Delivered });
                 self.tally.delivered += u64::from(self.job.is_some());
                 if self.job.is_some() && !self.hardware.is_wired() {
                     context.count("luggage.delivered", 1);
@@ -157,7 +169,8 @@ impl RobotKnowledge {
                     return;
                 }
                 context.warn(format_args!("could not collect luggage {luggage} at {block}: gives up the job"));
-                self.untold = self.job.map(|job| (job, LuggageStage::Refused));
+                self.untold = self.job.map(|job| JobEnd { job, stage: LuggageStage::Refused });
+                self.lists.requests.refuse(luggage);
                 self.failures = 0;
                 self.drop_job();
             }

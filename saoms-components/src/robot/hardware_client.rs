@@ -12,6 +12,8 @@ pub(crate) struct HardwareClient {
     entered: bool,
     /// True while the component behind the reference is not started.
     absent: bool,
+    /// True once it is out of service.
+    retired: bool,
     running: Option<Action>,
 }
 
@@ -27,7 +29,7 @@ impl HardwareClient {
     pub(crate) fn new(context: &mut Context<'_>) -> Result<HardwareClient, Failure> {
         let hardware: HardwareReference = context.reference("world")?;
         let wired = context.is_wired(&hardware);
-        Ok(HardwareClient { hardware, wired, entered: !wired, absent: false, running: None })
+        Ok(HardwareClient { hardware, wired, entered: !wired, absent: false, retired: false, running: None })
     }
 
     /// True if there is hardware.
@@ -77,6 +79,11 @@ impl HardwareClient {
     /// The running action.
     pub(crate) fn running(&self) -> Option<Action> {
         self.running
+    }
+
+    /// True if the hardware is out of service.
+    pub(crate) fn is_retired(&self) -> bool {
+        self.retired
     }
 
     /// True if the gripper is working.
@@ -133,12 +140,9 @@ impl HardwareClient {
     }
 
     fn call_retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Option<Block>, CallError> {
-        if !self.wired || !self.entered {
-            return Ok(None);
-        }
-        let block = self.hardware.retire(context, robot)?;
-        self.running = None;
-        Ok(Some(block))
+        let block = if self.wired && self.entered { Some(self.hardware.retire(context, robot)?) } else { None };
+        (self.running, self.retired) = (None, true);
+        Ok(block)
     }
 }
 

@@ -1,19 +1,17 @@
 use std::time::Duration;
 
-use saoms_api::{Cause, Context, Entries, Extras, Failure, Knowledge, Publisher, Time};
+use saoms_api::{Cause, Entries, Extras, Field, Knowledge, Publisher, Time};
 
 use crate::grid::Block;
 use crate::hardware::Action;
-use crate::messages::{
-    Collision, CriticalKind, CriticalSituation, EventLuggage, LuggageStage, Position, Priority, RobotList,
-};
+use crate::messages::{Collision, LuggageStage};
 use crate::validation::MessageValidator;
 
 use super::actions::Outcome;
 use super::hardware_client::HardwareClient;
-use super::safe::{Energy, Leg, Traffic};
+use super::safe::{Energy, Leg, RESERVE, Traffic};
 use super::tally::Tally;
-use super::{Battery, Job, Lists, Routes};
+use super::{Battery, Job, Lists, Policy, Routes};
 
 /// Knowledge of a robot about itself, its job, the other robots, and the area. Its loops share it.
 #[derive(Debug, Knowledge)]
@@ -28,10 +26,12 @@ pub struct RobotKnowledge {
     /// Period of the robot, in microseconds.
     #[entry(unit = "us")]
     pub period: u64,
+    /// Rules by which it acts.
+    pub(super) policy: Policy,
     /// Time of the present execution.
-    executed_at: Option<Time>,
+    pub(super) executed_at: Option<Time>,
     /// Time from the last execution to the present one.
-    elapsed: Duration,
+    pub(super) elapsed: Duration,
     /// What it did so far, for the report.
     pub(super) tally: Tally,
     /// Position of the robot.
@@ -40,18 +40,45 @@ pub struct RobotKnowledge {
     /// Block that the robot moves to next; the same as `block` if it does not move.
     #[entry(effector)]
     pub next: Block,
+    /// Block that it wants to enter next; no block if it wants to stay.
+    #[entry(effector, quiet)]
+    pub wanted: Option<Block>,
+    /// What its hardware is to do at the end of the execution.
+    #[entry(flatten)]
+    pub orders: Orders,
     /// Block of its charger.
     #[entry]
     pub charge_block: Block,
     /// Battery of the robot.
     pub battery: Battery,
-    /// Battery level of the robot.
+    /// Battery level of the robot. It counts by itself; a loop that measures the battery sets it.
     #[entry(name = "battery", unit = "%")]
     pub(super) charge: f64,
+    /// Battery level when this execution began.
+    pub(super) level_before: f64,
+    /// True if the battery was not full, and gains in this execution.
+    #[entry(quiet)]
+    pub(super) charging: bool,
+    /// Number of executions that the battery lasts while the robot drives.
+    #[entry(quiet, unit = "executions")]
+    pub(super) lasts: u32,
+    /// Number of executions that the way to the charger takes. With `classic`, which knows no walls, the distance.
+    #[entry(quiet, unit = "executions")]
+    pub(super) way_home: u32,
     /// Battery level at which the robot charges after its job, even if the battery would last longer. No loop that
     /// ships changes it.
     #[entry(effector, unit = "%")]
     pub charge_at: f64,
+    /// True if a loop set `readyToGoUnderCharge`: with `safe`, which otherwise shows there what the robot does anyway,
+    /// the robot goes to its charger once it has no job.
+    #[entry(quiet)]
+    pub(super) asked_to_charge: bool,
+    /// Number of executions that the battery has to last beyond the way to the charger.
+    #[entry(quiet, unit = "executions")]
+    pub reserve: u32,
+    /// True if the robot has to go to its charger now, in spite of its job, or to stay there.
+    #[entry(effector, quiet)]
+    pub must_charge: bool,
     /// Luggage that the robot brings, or is interested in.
     #[entry]
     pub job: Option<Job>,
@@ -61,12 +88,15 @@ pub struct RobotKnowledge {
     /// True if the robot broke and does nothing any more.
     pub shut_down: bool,
     /// Robot that it substitutes, if it was woken for that.
+    #[entry(quiet)]
     pub stands_in_for: Option<u32>,
     /// True if it was sent to charge, so that it needs no substitute.
+    #[entry(quiet)]
     pub relieved: bool,
     /// Validator of messages from other robots.
     pub(super) validator: MessageValidator,
     /// State of other robots, as they reported it.
+    #[entry(flatten)]
     pub lists: Lists,
     /// The area and the ways through it.
     pub routes: Routes,
@@ -78,16 +108,30 @@ pub struct RobotKnowledge {
     pub(super) begun: Cause,
     /// The hardware's action that was running when this execution started, and its outcome.
     pub(super) polled: Option<(Action, Outcome)>,
+    /// True if its wheels are moving it to `next`.
+    #[entry(quiet)]
+    pub(super) moving: bool,
+    /// True if its gripper is working.
+    #[entry(quiet)]
+    pub(super) handling: bool,
+    /// What its loops ask the hardware about themselves; the robot asks about the rest.
+    pub(super) polling: Polling,
     /// True if it offered to help another robot.
-    pub(super) offers_help: bool,
+    #[entry(quiet)]
+    pub offers_help: bool,
     /// Reason why the robot cannot continue.
-    pub(super) trouble: Option<Trouble>,
+    #[entry(quiet)]
+    pub trouble: Option<Trouble>,
     /// Number of consecutive failures of the hardware.
     pub(super) failures: u32,
     /// Luggage that it delivered, or could not collect, and has not reported yet.
-    pub(super) untold: Option<(Job, LuggageStage)>,
+    #[entry]
+    pub untold: Option<JobEnd>,
     /// True if it still holds luggage that it gave up, so that it cannot take any other.
-    pub(super) is_loaded: bool,
+    #[entry(quiet)]
+    pub loaded: bool,
+    /// True if `readyToGoUnderCharge` is set for a reason of the robot's own.
+    pub(super) said_homeward: bool,
     /// State of the energy management.
     pub(super) energy: Energy,
     /// The robots around it.
@@ -105,15 +149,25 @@ impl RobotKnowledge {
             name,
             number,
             period: 0,
+            policy: Policy::Safe,
             executed_at: None,
             elapsed: Duration::ZERO,
             tally: Tally::default(),
             block: charge_block,
             next: charge_block,
+            wanted: None,
+            orders: Orders::default(),
             charge_block,
             charge: battery.percent(),
+            level_before: battery.percent(),
             battery,
+            charging: false,
+            lasts: 0,
+            way_home: 0,
             charge_at: 0.0,
+            asked_to_charge: false,
+            reserve: RESERVE,
+            must_charge: false,
             job: None,
             variables: Variables::default(),
             shut_down: false,
@@ -126,11 +180,15 @@ impl RobotKnowledge {
             collisions: Publisher::default(),
             begun: Cause::default(),
             polled: None,
+            moving: false,
+            handling: false,
+            polling: Polling::default(),
             offers_help: false,
             trouble: None,
             failures: 0,
             untold: None,
-            is_loaded: false,
+            loaded: false,
+            said_homeward: false,
             energy: Energy::default(),
             traffic: Traffic::default(),
             leg: Leg::default(),
@@ -163,101 +221,40 @@ impl RobotKnowledge {
         let job = self.job.as_ref().filter(|_| self.variables.busy)?;
         Some(if self.variables.has_luggage { job.to } else { job.from })
     }
+}
 
-    /// Notes the time of this execution.
-    pub(super) fn note_time(&mut self, now: Time) {
-        self.elapsed = self.executed_at.map_or(Duration::ZERO, |last| now.since(last));
-        self.executed_at = Some(now);
-    }
+/// Orders to the hardware. The robot carries them out at the end of the execution in which a loop gives them: an order
+/// that came to nothing has to be given again. The loops that ship call the hardware in the middle of the execution.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Entries)]
+pub struct Orders {
+    /// Order to the wheels: the adjacent block to enter.
+    #[entry(effector, quiet)]
+    pub drive: Option<Block>,
+    /// Order to the gripper: to collect the luggage of the job, or to deposit it if the robot carries it.
+    #[entry(effector, quiet)]
+    pub grip: bool,
+}
 
-    /// Time from the last execution to the present one.
-    pub(super) fn elapsed(&self) -> Duration {
-        self.elapsed
-    }
+/// What loops ask the hardware about.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Polling {
+    /// Moves.
+    pub(super) moves: bool,
+    /// Collecting and depositing.
+    pub(super) handling: bool,
+}
 
-    /// Discharges the battery by the time since the last execution.
-    pub(super) fn use_battery(&mut self) {
-        self.battery.drain(self.elapsed);
-        self.charge = self.battery.percent();
-    }
-
-    /// Discharges the battery by a move to the next block.
-    pub(super) fn use_battery_to_drive(&mut self) {
-        self.battery.drive();
-        self.charge = self.battery.percent();
-    }
-
-    /// Charges the battery by the time since the last execution.
-    pub(super) fn charge_battery(&mut self) {
-        self.battery.charge(self.elapsed);
-        self.charge = self.battery.percent();
-    }
-
-    /// Reports the outcome of a job. Luggage that this robot could not collect waits again for the others.
-    pub(super) fn report_outcome(
-        &mut self,
-        luggage: Publisher<EventLuggage>,
-        context: &mut Context<'_>,
-    ) -> Result<(), Failure> {
-        let Some((job, stage)) = self.untold.take() else { return Ok(()) };
-        context.send(&luggage, job.response(self.number, self.block, stage))?;
-        if stage == LuggageStage::Refused {
-            self.lists.requests.refuse(job.luggage);
-            context.send(&luggage, EventLuggage::request(job.luggage, job.from, job.to))?;
-        }
-        Ok(())
-    }
-
-    /// Its position message if it wants no block beyond those that it holds.
-    pub fn position(&self) -> Position {
-        Position {
-            robot: self.number,
-            block: self.block,
-            next: self.next,
-            wanted: self.next,
-            priority: Priority { rank: 0, robot: self.number },
-        }
-    }
-
-    /// Kind of its critical situation.
-    pub fn critical_kind(&self) -> CriticalKind {
-        match self.job {
-            Some(_) if self.variables.has_luggage => CriticalKind::CarriesLuggage,
-            Some(_) => CriticalKind::OnTheWay,
-            None => CriticalKind::Idle,
-        }
-    }
-
-    /// Its request for a healer.
-    pub fn situation(&self, kind: CriticalKind) -> CriticalSituation {
-        let (luggage, from, to) = self.job.map_or((0, self.block, self.block), |job| (job.luggage, job.from, job.to));
-        CriticalSituation {
-            critical: self.number,
-            block: self.block,
-            luggage,
-            from,
-            to,
-            kind,
-            ..CriticalSituation::default()
-        }
-    }
-
-    /// Its state message.
-    pub fn robot(&self, active: bool) -> RobotList {
-        RobotList {
-            robot: self.number,
-            active,
-            battery: self.battery.percent(),
-            in_charge: self.variables.in_charge,
-            asleep: self.variables.asleep,
-            charger: self.charge_block,
-            period: self.period,
-        }
-    }
+/// The end of a job, for the other robots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+pub struct JobEnd {
+    /// The job.
+    pub job: Job,
+    /// `Delivered`, or `Refused` if it could not be collected.
+    pub stage: LuggageStage,
 }
 
 /// Reasons why a robot cannot continue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
 pub enum Trouble {
     /// The robot broke down.
     Breakdown,

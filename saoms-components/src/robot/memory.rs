@@ -15,7 +15,7 @@ struct Memory {
     battery: f64,
     asleep: bool,
     relieved: bool,
-    is_loaded: bool,
+    loaded: bool,
     charge_block: Block,
     luggage: Vec<EventLuggage>,
     critical: Vec<CriticalSituation>,
@@ -44,7 +44,7 @@ impl RobotKnowledge {
             battery: self.battery.percent(),
             asleep: self.variables.asleep,
             relieved: self.relieved,
-            is_loaded: self.is_loaded,
+            loaded: self.loaded,
             charge_block: self.charge_block,
             luggage: luggage.collect(),
             critical: critical.collect(),
@@ -62,7 +62,7 @@ impl RobotKnowledge {
         (self.variables.asleep, self.variables.in_charge) = (memory.asleep, memory.asleep);
         let waited = Duration::from_nanos(memory.waited_ns);
         self.tally = Tally { delivered: memory.delivered, blocks: memory.blocks, waited };
-        (self.relieved, self.is_loaded) = (memory.relieved, memory.is_loaded);
+        (self.relieved, self.loaded) = (memory.relieved, memory.loaded);
         if memory.charge_block != self.charge_block {
             self.use_charger(memory.charge_block);
         }

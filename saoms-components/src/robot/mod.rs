@@ -15,26 +15,30 @@ mod job;
 mod knowledge;
 mod lists;
 mod memory;
+mod orders;
 mod properties;
 mod receive;
 mod routes;
 pub mod safe;
+mod sayings;
 mod tally;
+mod upkeep;
 
 use saoms_api::{Class, Component, Context, Failure, Loops, Saved};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::COLLISION;
+use crate::messages::{COLLISION, EVENT_LUGGAGE, POSITION, ROBOT_LIST};
 
 pub use battery::{Battery, Consumption};
 pub use job::Job;
-pub use knowledge::{RobotKnowledge, Trouble, Variables};
-pub use lists::{Help, Helps, Lists, Peers, Request, Requests, Rival};
+pub use knowledge::{JobEnd, Orders, RobotKnowledge, Trouble, Variables};
+pub use lists::{Help, Helps, Lists, Peers, Request, Requests, Rival, WaitingLuggage};
 pub use properties::{Policy, RobotProperties};
 pub use routes::Routes;
 
 use hardware_client::{HardwareClient, Reply};
+use receive::Topics;
 
 /// Brings luggage from one block to another, together with other robots.
 ///
@@ -68,6 +72,7 @@ use hardware_client::{HardwareClient, Reply};
         )
     ),
     publishes(COLLISION),
+    subscribes(ROBOT_LIST, EVENT_LUGGAGE, POSITION),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
@@ -85,6 +90,7 @@ pub struct Robot {
     // Boxed, since it is large and a robot is moved while it is built.
     knowledge: Box<RobotKnowledge>,
     loops: Loops,
+    topics: Topics,
 }
 
 impl Component for Robot {
@@ -96,9 +102,10 @@ impl Component for Robot {
         let battery = Battery::new(properties.battery, properties.consumption()?);
         let name = properties.id.trim().to_owned();
         let mut knowledge = Box::new(RobotKnowledge::new(name, number, charge_block, battery));
+        knowledge.policy = properties.policy;
         knowledge.variables.asleep = properties.asleep;
         knowledge.variables.in_charge = properties.asleep;
-        Ok(Robot { knowledge, loops: Loops::default() })
+        Ok(Robot { knowledge, loops: Loops::default(), topics: Topics::default() })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -106,6 +113,7 @@ impl Component for Robot {
         self.knowledge.hardware = HardwareClient::new(context)?;
         self.knowledge.validator.note_speaker(self.knowledge.number, context.sender());
         self.knowledge.collisions = context.publish(&COLLISION)?;
+        self.topics = Topics::subscribe(context)?;
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
         self.enter(context)?;
@@ -114,7 +122,7 @@ impl Component for Robot {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         if self.knowledge.shut_down {
-            return Ok(());
+            return self.knowledge.stop_for_good(context);
         }
         let entered = self.enter(context)?;
         if entered {
@@ -125,13 +133,18 @@ impl Component for Robot {
                 Timestamp::now(context)
             ));
         }
-        self.knowledge.polled = None;
-        self.knowledge.note_time(context.now());
+        let was_critical = self.knowledge.variables.critical;
+        self.knowledge.hear(&self.topics, context);
+        self.knowledge.begin_execution(context.now());
         self.loops.monitor(&mut *self.knowledge, context)?;
         if entered {
+            self.knowledge.poll_unwatched(&self.loops, context)?;
+            self.knowledge.measure();
             self.knowledge.show_lists(context);
             let in_charge = self.knowledge.variables.in_charge;
             self.loops.adapt(&mut *self.knowledge, context)?;
+            self.knowledge.carry_out(&self.loops, context)?;
+            self.knowledge.end_execution(was_critical, context)?;
             self.knowledge.note_waiting();
             // As in figures 8.6 and 8.15, a robot that arrives at its charger shows only that.
             if in_charge || !self.knowledge.variables.in_charge {

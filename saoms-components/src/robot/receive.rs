@@ -1,10 +1,28 @@
 //! Messages that robots receive from other robots, after validation.
 
-use saoms_api::{Context, Header, Subscription};
+use saoms_api::{Context, Failure, Header, Subscription};
 
-use super::RobotKnowledge;
-use crate::messages::{EventLuggage, Position, RobotList};
+use super::{Policy, RobotKnowledge};
+use crate::messages::{EVENT_LUGGAGE, EventLuggage, IMMOVABLE, POSITION, Position, ROBOT_LIST, RobotList};
 use crate::validation::Validate;
+
+/// The topics that a robot hears by itself.
+#[derive(Debug, Default)]
+pub(super) struct Topics {
+    robots: Subscription<RobotList>,
+    luggage: Subscription<EventLuggage>,
+    positions: Subscription<Position>,
+}
+
+impl Topics {
+    pub(super) fn subscribe(context: &mut Context<'_>) -> Result<Topics, Failure> {
+        Ok(Topics {
+            robots: context.subscribe(&ROBOT_LIST)?,
+            luggage: context.subscribe(&EVENT_LUGGAGE)?,
+            positions: context.subscribe(&POSITION)?,
+        })
+    }
+}
 
 impl RobotKnowledge {
     /// True if the message is possible and sent by the robot that it names. Rejected messages are logged.
@@ -12,32 +30,62 @@ impl RobotKnowledge {
         self.validator.accepts(message, header, self.routes.map(), context)
     }
 
+    /// Handles what other robots said about themselves, and what was said about luggage. All loops rely on it, so that
+    /// the robot hears it by itself.
+    pub(super) fn hear(&mut self, topics: &Topics, context: &mut Context<'_>) {
+        self.hear_robots(topics.robots, context);
+        self.hear_luggage(topics.luggage, context);
+        self.hear_positions(topics.positions, context);
+        if self.policy == Policy::Safe {
+            self.learn_obstacles();
+        }
+    }
+
     /// Handles the positions of other robots.
-    pub(super) fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
+    fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
         let RobotKnowledge { validator, lists, routes, .. } = self;
         let heard = context.receive(&positions).with_headers();
         let sound = heard.filter(|(header, position)| validator.accepts(*position, *header, routes.map(), context));
         lists.peers.hear(sound.map(|(_, position)| position));
     }
 
-    /// Handles the states of other robots, and passes each to `learn`.
-    pub(super) fn hear_robots<'a>(
-        &mut self,
-        robots: Subscription<RobotList>,
-        context: &mut Context<'a>,
-        mut learn: impl FnMut(&mut RobotKnowledge, &'a RobotList),
-    ) {
+    /// Handles the states of other robots.
+    fn hear_robots(&mut self, robots: Subscription<RobotList>, context: &mut Context<'_>) {
         for (header, robot) in context.receive(&robots).with_headers() {
             if self.accepts(robot, header, context) {
                 self.lists.hear_robot(robot);
                 self.routes.learn_charger(robot.charger);
-                learn(self, robot);
+                if self.policy == Policy::Safe && robot.robot != self.number {
+                    self.learn_lost(robot);
+                }
             }
         }
     }
 
+    /// Learns that a robot cannot move any more, or that it can.
+    fn learn_lost(&mut self, robot: &RobotList) {
+        self.lists.lost.retain(|lost| *lost != robot.robot);
+        if robot.active {
+            self.routes.forget_obstacle(robot.robot);
+        } else {
+            self.lists.lost.push(robot.robot);
+        }
+    }
+
+    /// Records the positions of robots that cannot move any more as obstacles.
+    fn learn_obstacles(&mut self) {
+        let RobotKnowledge { lists, routes, .. } = self;
+        lists.lost.retain(|robot| {
+            let peer = lists.peers.get(*robot).filter(|peer| peer.priority == IMMOVABLE);
+            if let Some(peer) = peer {
+                routes.learn_obstacle(*robot, peer.block);
+            }
+            peer.is_none()
+        });
+    }
+
     /// Handles messages about luggage.
-    pub(super) fn hear_luggage(&mut self, luggage: Subscription<EventLuggage>, context: &mut Context<'_>) {
+    fn hear_luggage(&mut self, luggage: Subscription<EventLuggage>, context: &mut Context<'_>) {
         for (header, event) in context.receive(&luggage).with_headers() {
             if self.accepts(event, header, context) {
                 self.lists.requests.hear(event, header);

@@ -77,6 +77,11 @@ impl Routes {
         }
     }
 
+    /// The robot's charger, if the map is known.
+    pub fn charge_block(&self) -> Option<Block> {
+        self.area.as_ref().map(|area| area.charge_block)
+    }
+
     /// Adds a robot that does not move any more as an obstacle.
     pub fn learn_obstacle(&mut self, robot: u32, block: Block) {
         if self.obstacles.contains(&(robot, block)) {

@@ -21,7 +21,7 @@ impl RobotKnowledge {
     /// Notes whether the robot waits in this execution.
     pub(super) fn note_waiting(&mut self) {
         if self.variables.stop_a_period {
-            self.tally.waited += self.elapsed();
+            self.tally.waited += self.elapsed;
         }
     }
 

@@ -15,7 +15,7 @@ use super::MasterRobotKnowledge;
 #[looping(
     name = "saoms.master.AwakeAsleepMS",
     knowledge = MasterRobotKnowledge,
-    senses("piecesPerRobot", "counter", "robots", "asleep"),
+    senses("piecesPerRobot", "counter", "robots", "asleep", "active"),
     effects("onShift"),
     subscribes(EXCEPTIONAL_EVENT),
     publishes(ROBOT_STATE)

@@ -1,9 +1,12 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use saoms_api::{Cause, Extras, Knowledge};
+use saoms_api::host::cdr::{DecodeError, Reader, Writer};
+use saoms_api::host::declaration::ConstText;
+use saoms_api::{Cause, Context, Extras, Field, Knowledge, Subscription};
 
 use crate::messages::RobotList;
+use crate::validation::MessageValidator;
 
 /// Knowledge of the master of the robots: the active robots, and the shifts for which more of them are needed.
 #[derive(Debug, Knowledge)]
@@ -24,12 +27,15 @@ pub struct MasterRobotKnowledge {
     /// Number of robots that were woken for luggage that is still expected.
     #[entry]
     pub on_shift: u32,
-    /// The active robots, by number.
-    active: BTreeMap<u32, RobotList>,
+    /// The active robots, by number, as they announced themselves.
+    #[entry]
+    active: ActiveRobots,
     /// Robots that were woken (`true`) or sent to charge and have not reacted yet.
     called: BTreeMap<u32, bool>,
     /// The shifts, in the order in which they were woken.
     pub shifts: Vec<Shift>,
+    /// Checks what robots say.
+    validator: MessageValidator,
     #[extras]
     extras: Extras,
 }
@@ -45,6 +51,25 @@ pub struct Shift {
     pub cause: Cause,
 }
 
+/// The active robots, by number. As an entry it is a list of their messages.
+#[derive(Debug, Default)]
+struct ActiveRobots(BTreeMap<u32, RobotList>);
+
+impl Field for ActiveRobots {
+    const TYPE: ConstText = <Vec<RobotList> as Field>::TYPE;
+    const LEAST_SIZE: usize = <Vec<RobotList> as Field>::LEAST_SIZE;
+
+    fn write(&self, writer: &mut Writer) {
+        let all: Vec<RobotList> = self.0.values().cloned().collect();
+        all.write(writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let all = Vec::<RobotList>::read(reader)?;
+        Ok(ActiveRobots(all.into_iter().map(|robot| (robot.robot, robot)).collect()))
+    }
+}
+
 impl MasterRobotKnowledge {
     /// Initial knowledge, without any robot.
     pub fn new(pieces_per_robot: u32, counter: u32) -> MasterRobotKnowledge {
@@ -54,10 +79,20 @@ impl MasterRobotKnowledge {
             robots: 0,
             asleep: 0,
             on_shift: 0,
-            active: BTreeMap::new(),
+            active: ActiveRobots::default(),
             called: BTreeMap::new(),
             shifts: Vec::new(),
+            validator: MessageValidator::default(),
             extras: Extras::default(),
+        }
+    }
+
+    /// Handles what robots said about themselves. All loops rely on it, so that the master hears it by itself.
+    pub(super) fn hear_robots(&mut self, robots: Subscription<RobotList>, context: &mut Context<'_>) {
+        for (header, robot) in context.receive(&robots).with_headers() {
+            if self.validator.accepts(robot, header, None, context) {
+                self.hear(robot);
+            }
         }
     }
 
@@ -65,21 +100,21 @@ impl MasterRobotKnowledge {
     pub fn hear(&mut self, robot: &RobotList) {
         let number = robot.robot;
         if robot.active {
-            self.active.insert(number, robot.clone());
+            self.active.0.insert(number, robot.clone());
         } else {
-            self.active.remove(&number);
+            self.active.0.remove(&number);
         }
         let done = |awake: &bool| !robot.active || *awake != robot.asleep;
         if self.called.get(&number).is_some_and(done) {
             self.called.remove(&number);
         }
-        self.robots = count(self.active.len());
-        self.asleep = count(self.active.values().filter(|robot| robot.asleep).count());
+        self.robots = count(self.active.0.len());
+        self.asleep = count(self.active.0.values().filter(|robot| robot.asleep).count());
     }
 
     /// The active robots, by number.
     pub fn active(&self) -> impl Iterator<Item = &RobotList> + Clone {
-        self.active.values()
+        self.active.0.values()
     }
 
     /// The robot to wake next: the one with the highest battery level, then the one with the lowest number.

@@ -4,9 +4,10 @@ mod awake_asleep;
 mod knowledge;
 mod robot_list;
 
-use saoms_api::{Class, Component, Context, Failure, Loops, Properties};
+use saoms_api::{Class, Component, Context, Failure, Loops, Properties, Subscription};
 
 use crate::console::Timestamp;
+use crate::messages::{ROBOT_LIST, RobotList};
 
 pub use awake_asleep::MasterAwakeAsleep;
 pub use knowledge::{MasterRobotKnowledge, Shift};
@@ -33,11 +34,13 @@ pub struct MasterRobotProperties {
     periodic,
     knowledge = MasterRobotKnowledge,
     loops(MasterRobotList, MasterAwakeAsleep),
+    subscribes(ROBOT_LIST),
     also("unibg.saoms.MasterRobotManagingSystem")
 )]
 pub struct MasterRobot {
     knowledge: MasterRobotKnowledge,
     loops: Loops,
+    robots: Subscription<RobotList>,
 }
 
 impl Component for MasterRobot {
@@ -45,17 +48,19 @@ impl Component for MasterRobot {
 
     fn new(properties: MasterRobotProperties) -> Result<Self, Failure> {
         let knowledge = MasterRobotKnowledge::new(properties.pieces_per_robot, properties.counter);
-        Ok(MasterRobot { knowledge, loops: Loops::default() })
+        Ok(MasterRobot { knowledge, loops: Loops::default(), robots: Subscription::default() })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.loops = context.loops()?;
+        self.robots = context.subscribe(&ROBOT_LIST)?;
         let now = Timestamp::now(context);
         context.console(format_args!("MasterRobotManagingSystem starts at {now}"));
         self.loops.initialize(&mut self.knowledge, context)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.knowledge.hear_robots(self.robots, context);
         self.loops.monitor(&mut self.knowledge, context)?;
         self.loops.adapt(&mut self.knowledge, context)
     }
@@ -65,6 +70,6 @@ impl Component for MasterRobot {
     }
 
     fn waits_for(&self) -> Option<String> {
-        self.knowledge.shifts.is_empty().then(|| "landings and take-offs".to_owned())
+        (self.knowledge.on_shift == 0).then(|| "landings and take-offs".to_owned())
     }
 }

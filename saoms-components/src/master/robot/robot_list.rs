@@ -1,21 +1,15 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Subscription, record};
-
-use crate::messages::{ROBOT_LIST, RobotList};
-use crate::validation::MessageValidator;
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, record};
 
 use super::MasterRobotKnowledge;
 
-/// Keeps the list of active and sleeping robots.
+/// Tells how many robots are active, and how many of them sleep.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.master.RobotListMS",
     knowledge = MasterRobotKnowledge,
-    effects("robots", "asleep"),
-    subscribes(ROBOT_LIST)
+    senses("robots", "asleep")
 )]
 pub struct MasterRobotList {
-    validator: MessageValidator,
-    robots: Subscription<RobotList>,
     known: u32,
 }
 
@@ -27,20 +21,6 @@ impl Loop for MasterRobotList {
 
     fn new((): ()) -> Result<Self, Failure> {
         Ok(MasterRobotList::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut MasterRobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.robots = context.subscribe(&ROBOT_LIST)?;
-        Ok(())
-    }
-
-    fn monitor(&mut self, knowledge: &mut MasterRobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        for (header, robot) in context.receive(&self.robots).with_headers() {
-            if self.validator.accepts(robot, header, None, context) {
-                knowledge.hear(robot);
-            }
-        }
-        Ok(())
     }
 
     fn analyze(

@@ -5,13 +5,13 @@ use crate::robot::RobotKnowledge;
 /// Battery level at which a robot has to charge, in percent.
 const LOW: f64 = 35.0;
 
-/// Discharges the battery, and sends the robot to charge when it is low.
+/// Sends the robot to charge when its battery is low, and lets it sleep when the battery is full.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.BatteryMS",
     knowledge = RobotKnowledge,
-    senses("block", "chargeBlock", "chargeAt"),
-    effects("battery", "inCharge", "busy", "asleep", "readyToGoUnderCharge")
+    senses("block", "chargeBlock", "chargeAt", "charging"),
+    effects("busy", "readyToGoUnderCharge")
 )]
 pub struct ClassicBattery;
 
@@ -63,10 +63,7 @@ impl Loop for ClassicBattery {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.variables.in_charge {
-            knowledge.variables.busy |= !knowledge.battery.is_full();
-            knowledge.charge_battery();
-        } else if knowledge.block != knowledge.charge_block {
-            knowledge.use_battery();
+            knowledge.variables.busy |= knowledge.charging;
         }
         Ok(())
     }

@@ -1,7 +1,6 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
 
 use crate::grid::Block;
-use crate::messages::{POSITION, Position};
 use crate::robot::RobotKnowledge;
 
 /// Stops for a period if another robot announced the same next block and has the lower number (listing 6.11).
@@ -9,13 +8,10 @@ use crate::robot::RobotKnowledge;
 #[looping(
     name = "saoms.classic.CollisionMS",
     knowledge = RobotKnowledge,
-    senses("busy", "next"),
-    effects("stopAPeriod"),
-    subscribes(POSITION)
+    senses("busy", "next", "positions"),
+    effects("stopAPeriod")
 )]
-pub struct ClassicCollision {
-    positions: Subscription<Position>,
-}
+pub struct ClassicCollision;
 
 /// State of the robot's next block.
 #[derive(Clone, Copy, Debug)]
@@ -79,17 +75,7 @@ impl Loop for ClassicCollision {
     type Decision = ClassicCollisionDecision;
 
     fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicCollision::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.positions = context.subscribe(&POSITION)?;
-        Ok(())
-    }
-
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        knowledge.hear_positions(self.positions, context);
-        Ok(())
+        Ok(ClassicCollision)
     }
 
     fn analyze(

@@ -1,6 +1,6 @@
 use std::cmp::Reverse;
 
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
@@ -13,14 +13,12 @@ use crate::robot::{Job, Request, RobotKnowledge};
 #[looping(
     name = "saoms.classic.EventLuggageMS",
     knowledge = RobotKnowledge,
-    senses("block", "inCharge", "readyToGoUnderCharge"),
+    senses("block", "inCharge", "readyToGoUnderCharge", "requests"),
     effects("busy", "transporter", "job"),
-    publishes(EVENT_LUGGAGE),
-    subscribes(EVENT_LUGGAGE)
+    publishes(EVENT_LUGGAGE)
 )]
 pub struct ClassicEventLuggage {
     luggage: Publisher<EventLuggage>,
-    luggage_heard: Subscription<EventLuggage>,
     /// Cause of its interest; its next decision about that luggage follows from it.
     said: Cause,
 }
@@ -87,12 +85,10 @@ impl Loop for ClassicEventLuggage {
 
     fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.luggage_heard = context.subscribe(&EVENT_LUGGAGE)?;
         Ok(())
     }
 
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        knowledge.hear_luggage(self.luggage_heard, context);
+    fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hardware.has_entered() {
             knowledge.lists.requests.drop_contested();
         }

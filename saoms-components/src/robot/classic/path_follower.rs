@@ -15,8 +15,11 @@ use crate::robot::actions::Outcome;
 #[looping(
     name = "saoms.classic.PathFollowerMS",
     knowledge = RobotKnowledge,
-    senses("chargeBlock", "readyToGoUnderCharge", "busy"),
-    effects("block", "next", "job", "busy", "transporter", "hasLuggage", "reachingCharge", "inCharge"),
+    senses("chargeBlock", "readyToGoUnderCharge", "busy", "job", "moving", "handling"),
+    effects(
+        "drive", "grip", "next", "untold", "busy", "reachingCharge", "readyToGoUnderCharge", "inCharge", "asleep",
+        "relieved"
+    ),
     publishes(POSITION, EVENT_LUGGAGE, CRITICAL_SITUATION)
 )]
 pub struct ClassicPathFollower {
@@ -115,7 +118,8 @@ impl Loop for ClassicPathFollower {
         Ok(ClassicPathFollower::default())
     }
 
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        (knowledge.polling.moves, knowledge.polling.handling) = (true, true);
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         self.positions = context.publish(&POSITION)?;
         self.situations = context.publish(&CRITICAL_SITUATION)?;

@@ -1,20 +1,18 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, record};
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
 
-/// Keeps the list of active robots, and announces in each execution that this robot is active.
+/// Announces in each execution that this robot is active.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.classic.RobotListMS",
     knowledge = RobotKnowledge,
-    senses("battery", "inCharge", "asleep"),
-    publishes(ROBOT_LIST),
-    subscribes(ROBOT_LIST)
+    senses("battery", "inCharge", "asleep", "robots"),
+    publishes(ROBOT_LIST)
 )]
 pub struct ClassicRobotList {
     robots: Publisher<RobotList>,
-    robots_heard: Subscription<RobotList>,
     known: usize,
 }
 
@@ -30,12 +28,6 @@ impl Loop for ClassicRobotList {
 
     fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robots = context.publish(&ROBOT_LIST)?;
-        self.robots_heard = context.subscribe(&ROBOT_LIST)?;
-        Ok(())
-    }
-
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        knowledge.hear_robots(self.robots_heard, context, |_, _| {});
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use crate::robot::RobotKnowledge;
     name = "saoms.classic.RobotMS",
     knowledge = RobotKnowledge,
     senses("healer"),
-    effects("inCharge", "asleep", "busy", "readyToGoUnderCharge"),
+    effects("inCharge", "asleep", "busy", "readyToGoUnderCharge", "standsInFor", "relieved"),
     subscribes(ROBOT_STATE)
 )]
 pub struct ClassicRobotState {

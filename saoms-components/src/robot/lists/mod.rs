@@ -3,8 +3,11 @@
 mod helps;
 mod peers;
 mod requests;
+mod shown;
 #[cfg(test)]
 mod tests;
+
+use saoms_api::Entries;
 
 use crate::grid::Block;
 use crate::messages::RobotList;
@@ -12,18 +15,22 @@ use crate::messages::RobotList;
 pub use helps::{Help, Helps};
 pub use peers::Peers;
 pub use requests::{Request, Requests, Rival};
+pub use shown::WaitingLuggage;
 
 /// The lists of a robot.
-#[derive(Debug)]
+#[derive(Debug, Entries)]
 pub struct Lists {
     number: u32,
-    /// Other robots that are active, by number.
+    /// Other robots that are active, by number, as they announced themselves.
+    #[entry(name = "robots")]
     pub active: Vec<RobotList>,
-    /// Luggage that waits, oldest first.
+    /// Luggage that waits for a robot, oldest first, without that in which this robot takes an interest.
+    #[entry]
     pub requests: Requests,
     /// Robots that wait for a healer, oldest first.
     pub helps: Helps,
-    /// Positions and next blocks of the other robots.
+    /// Blocks that the other robots hold and want, by number of the robot.
+    #[entry(name = "positions")]
     pub peers: Peers,
     /// Chargers of the other robots, including those that are not active any more, by number.
     pub chargers: Vec<(u32, Block)>,

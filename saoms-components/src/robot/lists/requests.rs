@@ -1,14 +1,14 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use saoms_api::{Cause, Header, Time};
+use saoms_api::{Cause, Field, Header, Time};
 
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage};
 use crate::robot::Job;
 
 /// Another robot that took an interest in the same luggage, or offered the same help.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub struct Rival {
     /// Number of the robot.
     pub robot: u32,
@@ -77,13 +77,14 @@ impl Requests {
         Requests { number, open: Vec::new(), claimed: None, refused: Vec::new(), refusals: BTreeSet::new() }
     }
 
-    /// Handles a request or a response, without the robot's own responses.
+    /// Handles a request or a response. Of the robot's own responses those count that end its interest for good:
+    /// whichever loop sent them, the luggage does not wait for this robot any more.
     pub fn hear(&mut self, event: &EventLuggage, header: Header) {
         if event.stage == LuggageStage::Request {
             return self.hear_request(event, header);
         }
         if event.robot == self.number {
-            return;
+            return self.hear_own(event);
         }
         match event.stage {
             LuggageStage::Refused => _ = self.refusals.insert((event.luggage, event.robot)),
@@ -103,6 +104,19 @@ impl Requests {
             if gone {
                 self.open.remove(place);
             }
+        }
+    }
+
+    fn hear_own(&mut self, event: &EventLuggage) {
+        match event.stage {
+            // A robot also refuses the job of a broken robot, which may wait as luggage later.
+            LuggageStage::Refused if self.open.iter().any(|open| open.job.luggage == event.luggage) => {
+                self.refuse(event.luggage);
+            }
+            LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp => {
+                self.open.retain(|open| open.job.luggage != event.luggage);
+            }
+            LuggageStage::Request | LuggageStage::Interest | LuggageStage::Release | LuggageStage::Refused => {}
         }
     }
 
@@ -188,6 +202,8 @@ impl Requests {
     /// Refuses luggage for good.
     pub fn refuse(&mut self, luggage: u32) {
         self.open.retain(|open| open.job.luggage != luggage);
-        self.refused.push(luggage);
+        if !self.refused.contains(&luggage) {
+            self.refused.push(luggage);
+        }
     }
 }

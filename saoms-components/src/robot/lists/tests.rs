@@ -40,9 +40,17 @@ fn taken_luggage_leaves_the_list() {
     lists.requests.hear(&response(2, 1, LuggageStage::Taken), at(4));
     lists.requests.hear(&response(3, MINE, LuggageStage::Taken), at(4));
     lists.requests.hear(&response(8, 1, LuggageStage::Taken), at(4));
-    assert_eq!(open(&lists), [1, 3]);
+    assert_eq!(open(&lists), [1], "whichever loop of this robot took it");
     lists.requests.hear(&response(1, 1, LuggageStage::Delivered), at(5));
-    assert_eq!(open(&lists), [3]);
+    assert_eq!(open(&lists), [0; 0]);
+}
+
+#[test]
+fn luggage_that_this_robot_refused_does_not_wait_for_it_again() {
+    let mut lists = lists();
+    lists.requests.hear(&response(2, MINE, LuggageStage::Refused), at(4));
+    lists.requests.hear(&request(2), at(5));
+    assert_eq!(open(&lists), [1, 3]);
 }
 
 #[test]

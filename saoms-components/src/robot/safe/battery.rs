@@ -3,7 +3,7 @@ use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, re
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{RobotKnowledge, Trouble};
 
-/// Discharges the battery, and returns to the charger in time.
+/// Returns to the charger in time, and leaves it when the battery lasts for the robot's work.
 ///
 /// The robot knows how many executions the battery lasts, and how many the way to the charger takes, with a reserve for
 /// waiting and making way. A job that ends before the battery is that low is finished.
@@ -11,8 +11,11 @@ use crate::robot::{RobotKnowledge, Trouble};
 #[looping(
     name = "saoms.BatteryMS",
     knowledge = RobotKnowledge,
-    senses("block", "next", "job", "chargeAt"),
-    effects("battery", "inCharge", "chargeBlock")
+    senses(
+        "block", "next", "job", "chargeAt", "askedToCharge", "charging", "lasts", "wayHome", "reserve", "robots",
+        "positions"
+    ),
+    effects("mustCharge", "inCharge", "chargeBlock", "trouble", "reserve")
 )]
 pub struct SafeBattery {
     charging: bool,
@@ -41,6 +44,8 @@ pub enum SafeBatterySymptom {
         /// Number of executions that the way to the charger takes.
         home: u32,
     },
+    /// A loop asked the robot to charge, and it has no job.
+    Asked,
     /// The battery is empty, away from a charger.
     Empty,
     /// No way leads to the charger any more, and another charger can be reached.
@@ -99,6 +104,7 @@ impl Recordable for SafeBatterySymptom {
                 left,
                 home
             ),
+            SafeBatterySymptom::Asked => record!(asked_to_charge: "is to charge, and has no job"),
             SafeBatterySymptom::Empty => record!(battery_empty: "battery is empty"),
             SafeBatterySymptom::OutOfReach { charger, other } => record!(
                 charger_out_of_reach: "its charger at {charger} is out of reach, and the one at {other} is free",
@@ -151,7 +157,7 @@ impl Loop for SafeBattery {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hardware.has_entered() {
-            self.use_battery(knowledge, context);
+            self.look_at_battery(knowledge, context);
         }
         Ok(())
     }
@@ -164,7 +170,6 @@ impl Loop for SafeBattery {
         if knowledge.trouble.is_some() {
             return Ok(None);
         }
-        knowledge.energy.pace().note_action(knowledge.polled);
         let changes = knowledge.routes.changes();
         if std::mem::replace(&mut self.changes, changes) != changes
             && let Some(other) = knowledge.other_charger()
@@ -173,7 +178,7 @@ impl Loop for SafeBattery {
             return Ok(Some(SafeBatterySymptom::CutOff { charger, other }));
         }
         let battery = knowledge.battery.percent();
-        let must_charge = knowledge.energy.must_charge();
+        let must_charge = knowledge.must_charge;
         let symptom = if knowledge.is_at_charger() {
             let lasts = self.own.is_none_or(|own| knowledge.lasts_to(own));
             (must_charge && lasts && knowledge.may_leave()).then_some(SafeBatterySymptom::Charged { battery })
@@ -189,6 +194,8 @@ impl Loop for SafeBattery {
             })
         } else if knowledge.goes_on() {
             None
+        } else if knowledge.asked_to_charge && !knowledge.variables.busy {
+            Some(SafeBatterySymptom::Asked)
         } else {
             let (left, home) = (knowledge.executions_left(), knowledge.home(knowledge.next));
             Some(SafeBatterySymptom::Low { battery, left, home })
@@ -205,7 +212,7 @@ impl Loop for SafeBattery {
         _context: &mut Context<'_>,
     ) -> Result<Option<SafeBatteryDecision>, Failure> {
         Ok(Some(match symptom {
-            SafeBatterySymptom::Low { .. } => SafeBatteryDecision::Charge,
+            SafeBatterySymptom::Low { .. } | SafeBatterySymptom::Asked => SafeBatteryDecision::Charge,
             SafeBatterySymptom::Empty => SafeBatteryDecision::Stop,
             SafeBatterySymptom::Charged { .. } => SafeBatteryDecision::Leave,
             SafeBatterySymptom::CutOff { other, .. } => SafeBatteryDecision::Use(other),
@@ -226,7 +233,7 @@ impl Loop for SafeBattery {
             SafeBatteryDecision::BeInCharge(_) => {}
             SafeBatteryDecision::Charge => {
                 knowledge.energy.turned = context.cause();
-                knowledge.energy.turn_back();
+                knowledge.turn_back();
                 let (name, battery) = (&knowledge.name, &knowledge.battery);
                 context.console(format_args!("{name} has low battery and is going under charge..."));
                 context.info(format_args!("battery is low ({battery} %): goes to charge"));
@@ -238,7 +245,7 @@ impl Loop for SafeBattery {
                 context.log(Level::Error, format_args!("is stranded at {block}: its battery is empty"));
             }
             SafeBatteryDecision::Leave => {
-                knowledge.energy.may_go();
+                knowledge.may_go();
                 if let Some(own) = self.own.take().filter(|own| !knowledge.routes.is_obstacle(*own)) {
                     knowledge.use_charger(own);
                 }
@@ -299,23 +306,20 @@ impl RobotKnowledge {
 }
 
 impl SafeBattery {
-    /// Discharges or charges the battery by the time since the last execution.
-    fn use_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
+    /// Sees whether the battery gains.
+    fn look_at_battery(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) {
         if !knowledge.is_at_charger() {
             (self.charging, self.in_charge) = (false, false);
-            knowledge.use_battery();
             return self.note_level(knowledge, context);
         }
-        let charging = !knowledge.battery.is_full();
+        let charging = knowledge.charging;
         let charged = std::mem::replace(&mut self.charging, charging);
         if charging && !charged {
-            let (name, battery) = (&knowledge.name, &knowledge.battery);
+            let (name, battery) = (&knowledge.name, knowledge.level_before);
             context.console(format_args!("{name} says: I've arrived to charge position."));
-            context.info(format_args!("starts charging (battery {battery} %)"));
+            context.info(format_args!("starts charging (battery {battery:.1} %)"));
         }
-        if charging {
-            knowledge.charge_battery();
-        } else if charged {
+        if !charging && charged {
             let (name, asleep) = (&knowledge.name, knowledge.variables.asleep);
             let still = if asleep { " (but still asleep)" } else { "" };
             context.console(format_args!("{name} is now fully charged and ready{still}"));

@@ -1,7 +1,6 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
 
 use crate::grid::Block;
-use crate::messages::{IMMOVABLE, POSITION, Position};
 use crate::robot::RobotKnowledge;
 
 /// Lets the robot enter the block that it wants only once no other robot holds or wants it.
@@ -11,12 +10,10 @@ use crate::robot::RobotKnowledge;
 #[looping(
     name = "saoms.CollisionMS",
     knowledge = RobotKnowledge,
-    senses("next"),
-    effects("stopAPeriod"),
-    subscribes(POSITION)
+    senses("next", "wanted", "positions"),
+    effects("stopAPeriod")
 )]
 pub struct SafeCollision {
-    positions: Subscription<Position>,
     /// Block and robot that the robot waits for.
     waits: Option<(Block, u32)>,
 }
@@ -74,24 +71,12 @@ impl Loop for SafeCollision {
         Ok(SafeCollision::default())
     }
 
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.positions = context.subscribe(&POSITION)?;
-        Ok(())
-    }
-
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        knowledge.hear_positions(self.positions, context);
-        knowledge.learn_obstacles();
-        Ok(())
-    }
-
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<Option<SafeCollisionSymptom>, Failure> {
-        let RobotKnowledge { traffic, lists, next, .. } = knowledge;
-        traffic.look(&lists.peers, *next);
+        let RobotKnowledge { traffic, next, .. } = knowledge;
         let taken = traffic.wanted(*next).and_then(|block| Some((block, traffic.in_the_way(block)?)));
         if taken == self.waits {
             return Ok(None);
@@ -131,19 +116,5 @@ impl Loop for SafeCollision {
         };
         knowledge.variables.stop_a_period = self.waits.is_some();
         Ok(())
-    }
-}
-
-impl RobotKnowledge {
-    /// Records the positions of robots that cannot move any more as obstacles.
-    fn learn_obstacles(&mut self) {
-        let RobotKnowledge { lists, routes, .. } = self;
-        lists.lost.retain(|robot| {
-            let peer = lists.peers.get(*robot).filter(|peer| peer.priority == IMMOVABLE);
-            if let Some(peer) = peer {
-                routes.learn_obstacle(*robot, peer.block);
-            }
-            peer.is_none()
-        });
     }
 }

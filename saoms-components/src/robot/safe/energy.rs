@@ -5,13 +5,14 @@ use std::time::Duration;
 use saoms_api::Cause;
 
 use crate::grid::Block;
-use crate::robot::{Job, RobotKnowledge};
+use crate::robot::{Job, RobotKnowledge, Variables};
 
+use super::leg::Urgency;
 use super::pace::Pace;
 
 /// Number of moves that are reserved for waiting and making way on the way to the charger, if the battery allows it.
 /// With less than 12, robots in the simulated fleets of the tests sometimes ran out of battery.
-const RESERVE: u32 = 14;
+pub(in crate::robot) const RESERVE: u32 = 14;
 
 /// Minimum reserve, in executions.
 const LEAST_RESERVE: u32 = 2;
@@ -23,22 +24,19 @@ const IN_VAIN: u32 = 3;
 const YIELD_FROM: u32 = 3;
 
 /// State of a robot's energy management.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Energy {
-    must_charge: bool,
     /// Cause of the return to the charger; what happens on the way follows from it.
     pub(super) turned: Cause,
     pace: Pace,
-    /// Current reserve in executions: less than usual on a way that takes nearly the whole battery.
-    reserve: u32,
     /// Number of returns to the charger during the current job.
     returns: u32,
-}
-
-impl Default for Energy {
-    fn default() -> Energy {
-        Energy { must_charge: false, turned: Cause::default(), pace: Pace::default(), reserve: RESERVE, returns: 0 }
-    }
+    /// True if the present return is counted.
+    counted: bool,
+    /// Luggage for whose job the reserve was set.
+    set_out_for: Option<u32>,
+    /// True if the robot was free when this execution began.
+    was_free: bool,
 }
 
 /// Result of comparing the battery with a job.
@@ -53,20 +51,12 @@ pub(super) enum Feasibility {
 }
 
 impl Energy {
-    /// True if the robot has to go to its charger now, or to stay there.
-    pub(super) fn must_charge(&self) -> bool {
-        self.must_charge
-    }
-
-    /// Sends the robot to its charger.
-    pub(super) fn turn_back(&mut self) {
-        self.must_charge = true;
-        self.returns = self.returns.saturating_add(1);
-    }
-
-    /// Lets the robot leave its charger.
-    pub(super) fn may_go(&mut self) {
-        self.must_charge = false;
+    /// Counts a return to the charger.
+    fn note_return(&mut self, must_charge: bool) {
+        if must_charge && !self.counted {
+            self.returns = self.returns.saturating_add(1);
+        }
+        self.counted = must_charge;
     }
 
     /// Number of executions that a move takes.
@@ -75,14 +65,66 @@ impl Energy {
     }
 
     /// Measured speed of the robot.
-    pub(super) fn pace(&mut self) -> &mut Pace {
+    pub(in crate::robot) fn pace(&mut self) -> &mut Pace {
         &mut self.pace
     }
 }
 
 impl RobotKnowledge {
+    /// Sends the robot to its charger.
+    pub(super) fn turn_back(&mut self) {
+        self.must_charge = true;
+        self.energy.note_return(true);
+    }
+
+    /// Lets the robot leave its charger.
+    pub(super) fn may_go(&mut self) {
+        self.must_charge = false;
+        self.energy.note_return(false);
+    }
+
+    /// Looks at the battery before the loops decide.
+    pub(in crate::robot) fn measure_energy(&mut self) {
+        if self.trouble.is_none() {
+            self.energy.pace.note_action(self.polled);
+        }
+        if self.is_at_charger() {
+            // What a loop asked for is done.
+            self.said_homeward = self.variables.ready_to_go_under_charge;
+        }
+        self.asked_to_charge = self.is_asked_home();
+        self.lasts = self.executions_left();
+        self.way_home = self.home(self.next);
+        self.energy.was_free = self.takes_jobs();
+    }
+
+    /// Follows what the loops decided about the robot's jobs and its battery, whichever loops it has.
+    pub(in crate::robot) fn follow_decisions(&mut self) {
+        self.energy.note_return(self.must_charge);
+        match self.job {
+            Some(job) if self.energy.set_out_for != Some(job.luggage) => self.set_out(&job),
+            Some(_) => {}
+            None => {
+                self.energy.set_out_for = None;
+                if self.energy.was_free && self.takes_jobs() {
+                    self.keep_usual_reserve();
+                }
+            }
+        }
+        if !self.is_bound() {
+            self.energy.pace.note_end(self.leg_now().1 != Urgency::None);
+        }
+    }
+
+    /// True if it is awake, without a job, and free to take one.
+    fn takes_jobs(&self) -> bool {
+        let Variables { asleep, critical, .. } = self.variables;
+        let works = self.hardware.running().is_some();
+        self.is_free() && self.job.is_none() && !(asleep || critical || self.must_charge || self.relieved || works)
+    }
+
     /// Number of executions that the battery lasts.
-    pub(super) fn executions_left(&self) -> u32 {
+    pub(in crate::robot) fn executions_left(&self) -> u32 {
         self.battery.executions_left(self.period(), self.energy.pace.moving)
     }
 
@@ -107,11 +149,11 @@ impl RobotKnowledge {
     /// True if the robot need not return to its charger yet: the battery lasts to do so later, or to finish its job
     /// before.
     pub(super) fn goes_on(&mut self) -> bool {
-        if !self.variables.busy && self.battery.percent() <= self.charge_at {
+        if !self.variables.busy && (self.battery.percent() <= self.charge_at || self.asked_to_charge) {
             return false;
         }
         let left = self.executions_left();
-        let reserve = self.energy.reserve;
+        let reserve = self.reserve;
         if left >= self.home(self.next).saturating_add(reserve) {
             return true;
         }
@@ -128,7 +170,7 @@ impl RobotKnowledge {
 
     /// Compares the battery with a job that starts here and now.
     pub(super) fn means(&mut self, job: &Job) -> Feasibility {
-        if self.is_loaded {
+        if self.loaded {
             return Feasibility::Never;
         }
         let (left, full) = (self.executions_left(), self.executions_when_full());
@@ -154,12 +196,13 @@ impl RobotKnowledge {
         // A robot that returned in vain uses a smaller reserve the next time.
         let reserve = (spare / 4 * 3).min(self.usual_reserve());
         let reserve = reserve.checked_shr(self.energy.returns).unwrap_or(0);
-        self.energy.reserve = reserve.max(self.least_reserve(back));
+        self.reserve = reserve.max(self.least_reserve(back));
+        self.energy.set_out_for = Some(job.luggage);
     }
 
     /// Resets the reserve to the usual one, for a robot without a job.
     pub(super) fn keep_usual_reserve(&mut self) {
-        self.energy.reserve = self.usual_reserve();
+        self.reserve = self.usual_reserve();
         self.energy.returns = 0;
     }
 

@@ -2,15 +2,15 @@ use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable
 
 use crate::hardware::Action;
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
-use crate::robot::{Job, RobotKnowledge};
+use crate::robot::{Job, JobEnd, RobotKnowledge};
 
 /// Uses the gripper: collects luggage at its block and deposits it at its destination.
 #[derive(Debug, Default, LoopClass)]
 #[looping(
     name = "saoms.GripperMS",
     knowledge = RobotKnowledge,
-    senses("block", "busy", "hasLuggage"),
-    effects("job", "busy", "transporter", "hasLuggage", "healer"),
+    senses("block", "busy", "hasLuggage", "job", "moving", "handling", "lasts", "wayHome"),
+    effects("grip", "untold"),
     publishes(EVENT_LUGGAGE)
 )]
 pub struct SafeGripper {
@@ -91,7 +91,8 @@ impl Loop for SafeGripper {
         Ok(SafeGripper::default())
     }
 
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        knowledge.polling.handling = true;
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
         Ok(())
     }
@@ -110,7 +111,7 @@ impl Loop for SafeGripper {
     ) -> Result<Option<SafeGripperSymptom>, Failure> {
         // What comes next follows from the action that is over, if it was the gripper's.
         context.because(context.cause());
-        if let Some((job, stage)) = knowledge.untold {
+        if let Some(JobEnd { job, stage }) = knowledge.untold {
             let delivered = stage == LuggageStage::Delivered;
             return Ok(Some(if delivered {
                 SafeGripperSymptom::Deposited(job)

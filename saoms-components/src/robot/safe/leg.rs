@@ -48,9 +48,9 @@ impl RobotKnowledge {
         from == block || (from.distance(block) == 1 && self.routes.is_obstacle(block))
     }
 
-    /// Selects the goal and its urgency.
-    pub(super) fn set_leg(&mut self, now: Time) {
-        let (goal, urgency) = if self.energy.must_charge() {
+    /// The goal and its urgency, as the knowledge has them now.
+    pub(super) fn leg_now(&self) -> (Option<Block>, Urgency) {
+        let (goal, urgency) = if self.must_charge {
             (Some(self.charge_block), Urgency::Energy)
         } else if let Some(destination) = self.destination() {
             (Some(destination), Urgency::Job)
@@ -61,7 +61,12 @@ impl RobotKnowledge {
         };
         let arrived = goal.is_none_or(|goal| goal == self.next)
             || (urgency == Urgency::Job && goal.is_some_and(|goal| self.reaches(goal, self.next)));
-        let urgency = if arrived { Urgency::None } else { urgency };
+        (goal, if arrived { Urgency::None } else { urgency })
+    }
+
+    /// Selects the goal and its urgency.
+    pub(super) fn set_leg(&mut self, now: Time) {
+        let (goal, urgency) = self.leg_now();
         if (goal, urgency) != (self.leg.goal, self.leg.urgency) {
             self.leg = Leg { goal, urgency, since: now };
         }
@@ -70,9 +75,14 @@ impl RobotKnowledge {
         }
     }
 
+    /// True if a loop asked the robot to go to its charger after its job: the flag is set, and not by the robot itself.
+    pub(super) fn is_asked_home(&self) -> bool {
+        self.variables.ready_to_go_under_charge && !self.said_homeward
+    }
+
     /// Two flags: the robot goes to its charger after its job; the robot is on the way there.
     pub(super) fn homeward(&self) -> (bool, bool) {
-        let homeward = self.energy.must_charge() || self.relieved;
+        let homeward = self.must_charge || self.relieved || self.is_asked_home();
         let Leg { goal, urgency, .. } = self.leg;
         (homeward, homeward && goal == Some(self.charge_block) && urgency != Urgency::None)
     }

@@ -33,7 +33,7 @@ pub use path_follower::SafePathFollower;
 pub use robot_list::SafeRobotList;
 pub use robot_state::SafeRobotState;
 
-pub(super) use energy::Energy;
 pub(crate) use energy::is_within;
+pub(super) use energy::{Energy, RESERVE};
 pub(super) use leg::Leg;
 pub(super) use traffic::Traffic;

@@ -11,7 +11,7 @@ const MEMORY: u32 = 8;
 
 /// Number of executions that a robot's actions take, as measured so far.
 #[derive(Debug)]
-pub(super) struct Pace {
+pub(in crate::robot) struct Pace {
     /// Maximum number of executions of a move so far.
     pub(super) moving: u32,
     /// Maximum number of executions of collecting or depositing so far.
@@ -22,11 +22,13 @@ pub(super) struct Pace {
     since: u32,
     /// Average waiting time before a move, in parts of an execution.
     waiting: u32,
+    /// True if the present execution is recorded.
+    noted: bool,
 }
 
 impl Default for Pace {
     fn default() -> Pace {
-        Pace { moving: 1, handling: 1, running: 0, since: 0, waiting: PARTS / 4 }
+        Pace { moving: 1, handling: 1, running: 0, since: 0, waiting: PARTS / 4, noted: false }
     }
 }
 
@@ -43,12 +45,21 @@ impl Pace {
     }
 
     /// Records if the robot is on a way in this execution, and if it enters the next block.
-    pub(super) fn note_way(&mut self, on_the_way: bool, goes_on: bool) {
+    pub(in crate::robot) fn note_way(&mut self, on_the_way: bool, goes_on: bool) {
+        self.noted = true;
         self.since = if on_the_way { self.since.saturating_add(1) } else { 0 };
         if goes_on {
             let waited = self.since.saturating_sub(self.moving).min(1000) * PARTS;
             self.waiting = (self.waiting * (MEMORY - 1) + waited) / MEMORY;
             self.since = 0;
+        }
+    }
+
+    /// Ends an execution, in which no loop may have recorded the way.
+    pub(super) fn note_end(&mut self, on_the_way: bool) {
+        if !std::mem::take(&mut self.noted) {
+            self.note_way(on_the_way, false);
+            self.noted = false;
         }
     }
 

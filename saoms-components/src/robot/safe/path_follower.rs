@@ -15,8 +15,11 @@ use super::waiting::Waiting;
 #[looping(
     name = "saoms.PathFollowerMS",
     knowledge = RobotKnowledge,
-    senses("busy", "hasLuggage", "reachingCharge", "inCharge", "stopAPeriod", "critical"),
-    effects("block", "next", "readyToGoUnderCharge", "reachingCharge"),
+    senses(
+        "busy", "hasLuggage", "reachingCharge", "inCharge", "stopAPeriod", "critical", "job", "mustCharge", "relieved",
+        "offersHelp", "handling", "lasts", "positions"
+    ),
+    effects("drive", "next", "wanted", "readyToGoUnderCharge", "reachingCharge"),
     publishes(POSITION)
 )]
 pub struct SafePathFollower {
@@ -94,6 +97,7 @@ impl Loop for SafePathFollower {
     }
 
     fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        knowledge.polling.moves = true;
         self.positions = context.publish(&POSITION)?;
         // All robots have to know which blocks are held before the first one moves.
         self.say(context, knowledge.position())
@@ -167,6 +171,7 @@ impl Loop for SafePathFollower {
         if !knowledge.is_bound() {
             let variables = knowledge.homeward();
             (knowledge.variables.ready_to_go_under_charge, knowledge.variables.reaching_charge) = variables;
+            knowledge.said_homeward = knowledge.must_charge || knowledge.relieved;
         }
         let goes_on = match decision {
             SafePathDecision::Hold => {
@@ -266,7 +271,7 @@ fn want(knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Position {
 
 impl RobotKnowledge {
     /// True if the robot handles luggage, or cannot move any more.
-    fn is_bound(&self) -> bool {
+    pub(super) fn is_bound(&self) -> bool {
         self.hardware.is_handling() || self.variables.critical
     }
 }

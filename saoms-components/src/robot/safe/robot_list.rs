@@ -1,9 +1,9 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
 
-/// Keeps the list of active robots, and announces that this robot is active.
+/// Announces that this robot is active.
 ///
 /// It repeats the announcement only with new information: when its battery level changed, and when it starts or ends
 /// charging.
@@ -12,13 +12,11 @@ use crate::robot::RobotKnowledge;
     name = "saoms.RobotListMS",
     knowledge = RobotKnowledge,
     senses("battery", "inCharge", "asleep", "critical", "chargeBlock"),
-    publishes(ROBOT_LIST),
-    subscribes(ROBOT_LIST)
+    publishes(ROBOT_LIST)
 )]
 pub struct SafeRobotList {
     said: Option<RobotList>,
     robots: Publisher<RobotList>,
-    robots_heard: Subscription<RobotList>,
 }
 
 /// Change of the battery level, in percent, after which a robot repeats its announcement.
@@ -67,22 +65,6 @@ impl Loop for SafeRobotList {
 
     fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robots = context.publish(&ROBOT_LIST)?;
-        self.robots_heard = context.subscribe(&ROBOT_LIST)?;
-        Ok(())
-    }
-
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        knowledge.hear_robots(self.robots_heard, context, |knowledge, robot| {
-            if robot.robot == knowledge.number {
-                return;
-            }
-            knowledge.lists.lost.retain(|lost| *lost != robot.robot);
-            if robot.active {
-                knowledge.routes.forget_obstacle(robot.robot);
-            } else {
-                knowledge.lists.lost.push(robot.robot);
-            }
-        });
         Ok(())
     }
 
@@ -118,8 +100,7 @@ impl Loop for SafeRobotList {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<(), Failure> {
-        knowledge.shut_down = knowledge.variables.critical;
-        let robot = knowledge.robot(!knowledge.shut_down);
+        let robot = knowledge.robot(!knowledge.variables.critical);
         self.said = Some(robot.clone());
         context.send(&self.robots, robot)
     }

@@ -15,8 +15,8 @@ const TURN: u32 = 5;
 #[looping(
     name = "saoms.RobotMS",
     knowledge = RobotKnowledge,
-    senses("busy", "transporter", "critical", "block", "chargeBlock"),
-    effects("asleep"),
+    senses("busy", "transporter", "critical", "block", "chargeBlock", "offersHelp", "relieved", "robots", "requests"),
+    effects("asleep", "relieved", "standsInFor"),
     subscribes(ROBOT_STATE)
 )]
 pub struct SafeRobotState {

@@ -29,6 +29,8 @@ const SHORT_PATIENCE: u32 = 3;
 pub(crate) struct Traffic {
     near: Vec<Position>,
     wanted: Option<Block>,
+    /// The same as the entry of the knowledge shows it.
+    shown: Option<Block>,
     /// Block that it left last: not the first choice among equally good blocks.
     previous: Option<Block>,
     waited: u32,
@@ -75,7 +77,7 @@ impl Availability {
 
 impl Traffic {
     /// Collects the robots near this block; others do not matter.
-    pub(super) fn look(&mut self, peers: &Peers, at: Block) {
+    pub(in crate::robot) fn look(&mut self, peers: &Peers, at: Block) {
         self.near.clear();
         self.near.extend(peers.all().filter(|peer| peer.block.distance(at) <= 3).cloned());
     }
@@ -83,6 +85,16 @@ impl Traffic {
     /// The block that the robot announced to want, unless it wants to stay.
     pub(super) fn wanted(&self, at: Block) -> Option<Block> {
         self.wanted.filter(|wanted| *wanted != at)
+    }
+
+    /// Takes over a wish that a loop wrote into the entry of the knowledge, or shows its own there.
+    pub(in crate::robot) fn follow(&mut self, entry: &mut Option<Block>, at: Block) {
+        if *entry == self.shown {
+            *entry = self.wanted(at);
+        } else {
+            self.wanted = Some(entry.unwrap_or(at));
+        }
+        self.shown = *entry;
     }
 
     /// Wants only the block that it holds.

@@ -34,8 +34,14 @@ use substitute::Substitution;
 #[looping(
     name = "saoms.CriticalSituationMS",
     knowledge = RobotKnowledge,
-    senses("battery", "block", "inCharge", "asleep", "transporter", "hasLuggage"),
-    effects("job", "busy", "healer", "critical"),
+    senses(
+        "battery", "block", "inCharge", "asleep", "transporter", "hasLuggage", "lasts", "mustCharge", "relieved",
+        "standsInFor", "moving", "handling", "loaded", "robots"
+    ),
+    effects(
+        "job", "busy", "transporter", "hasLuggage", "healer", "critical", "asleep", "inCharge", "offersHelp",
+        "standsInFor", "relieved", "trouble", "reserve"
+    ),
     publishes(CRITICAL_SITUATION, ROBOT_STATE, EVENT_LUGGAGE),
     subscribes(CRITICAL_SITUATION, FAULT)
 )]
@@ -150,7 +156,7 @@ impl Loop for SafeCriticalSituation {
             return Ok(Some(SafeCriticalSymptom::InVain(situation)));
         }
         let mut found = look_for_help_requests(knowledge);
-        if found.is_none() && (knowledge.energy.must_charge() || knowledge.relieved) {
+        if found.is_none() && (knowledge.must_charge || knowledge.relieved) {
             found = look_for_hopeless_requests(knowledge);
         }
         if let Some((symptom, cause)) = found {
@@ -288,7 +294,7 @@ impl SafeCriticalSituation {
     fn look_at_claimed(&self, knowledge: &RobotKnowledge) -> Option<SafeCriticalSymptom> {
         let Some(request) = knowledge.lists.helps.claimed() else { return Some(SafeCriticalSymptom::Gone) };
         let situation = request.situation.clone();
-        if situation.kind != CriticalKind::Idle && knowledge.energy.must_charge() {
+        if situation.kind != CriticalKind::Idle && knowledge.must_charge {
             return Some(SafeCriticalSymptom::Beaten { situation, by: None });
         }
         let by = closer_rival(request, self.said_at, knowledge.number);
@@ -374,10 +380,8 @@ fn look_for_help_requests(knowledge: &mut RobotKnowledge) -> Option<(SafeCritica
     if knowledge.lists.helps.open().is_empty() {
         return None;
     }
-    let free = knowledge.is_free()
-        && !knowledge.energy.must_charge()
-        && !knowledge.relieved
-        && knowledge.hardware.running().is_none();
+    let free =
+        knowledge.is_free() && !knowledge.must_charge && !knowledge.relieved && knowledge.hardware.running().is_none();
     if free {
         knowledge.keep_usual_reserve();
     }

@@ -2,11 +2,11 @@
 
 mod records;
 
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subscription, Work};
+use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Work};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
-use crate::robot::{Job, Request, RobotKnowledge};
+use crate::robot::{Job, JobEnd, Request, RobotKnowledge};
 
 use super::energy::Feasibility;
 use super::patience::{Attempt, Idle};
@@ -26,10 +26,12 @@ const PATIENCE: u64 = 4;
 #[looping(
     name = "saoms.EventLuggageMS",
     knowledge = RobotKnowledge,
-    senses("block", "battery", "asleep"),
-    effects("job", "busy", "transporter"),
-    publishes(EVENT_LUGGAGE),
-    subscribes(EVENT_LUGGAGE)
+    senses(
+        "block", "battery", "asleep", "requests", "lasts", "mustCharge", "relieved", "offersHelp", "moving",
+        "handling", "loaded"
+    ),
+    effects("job", "busy", "transporter", "hasLuggage", "healer", "relieved", "loaded", "untold", "reserve"),
+    publishes(EVENT_LUGGAGE)
 )]
 pub struct SafeEventLuggage {
     /// Position of the robot when it announced its interest.
@@ -45,7 +47,6 @@ pub struct SafeEventLuggage {
     attempt: Attempt,
     idle: Idle,
     luggage: Publisher<EventLuggage>,
-    luggage_heard: Subscription<EventLuggage>,
 }
 
 impl Loop for SafeEventLuggage {
@@ -60,12 +61,6 @@ impl Loop for SafeEventLuggage {
 
     fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.luggage_heard = context.subscribe(&EVENT_LUGGAGE)?;
-        Ok(())
-    }
-
-    fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        knowledge.hear_luggage(self.luggage_heard, context);
         Ok(())
     }
 
@@ -103,7 +98,7 @@ impl Loop for SafeEventLuggage {
         if in_vain.is_some() {
             return Ok(in_vain);
         }
-        if knowledge.variables.asleep || knowledge.energy.must_charge() || knowledge.relieved {
+        if knowledge.variables.asleep || knowledge.must_charge || knowledge.relieved {
             return Ok(judge(knowledge));
         }
         if knowledge.offers_help {
@@ -158,7 +153,7 @@ impl Loop for SafeEventLuggage {
             }
             SafeLuggageDecision::Refuse { job, why } => {
                 knowledge.lists.requests.refuse(job.luggage);
-                if !knowledge.is_loaded {
+                if !knowledge.loaded {
                     self.warn(&job, why, knowledge, context);
                 }
                 (job, LuggageStage::Refused)
@@ -182,13 +177,13 @@ impl Loop for SafeEventLuggage {
             }
             SafeLuggageDecision::Return(job) => {
                 knowledge.drop_job();
-                knowledge.untold = Some((job, LuggageStage::Refused));
+                knowledge.untold = Some(JobEnd { job, stage: LuggageStage::Refused });
                 return knowledge.report_outcome(self.luggage, context);
             }
             SafeLuggageDecision::GiveUp { job, why } => {
                 knowledge.drop_job();
                 // A loaded robot is of no use until another one helps.
-                (knowledge.relieved, knowledge.is_loaded) = (true, true);
+                (knowledge.relieved, knowledge.loaded) = (true, true);
                 context.count("assistance", 1);
                 context.vote(Work::GivenUp);
                 let (Job { luggage, to, .. }, why) = (job, why.words());
@@ -247,7 +242,7 @@ impl SafeEventLuggage {
             return Some(SafeLuggageSymptom::Gone);
         };
         let job = request.job;
-        if knowledge.energy.must_charge() {
+        if knowledge.must_charge {
             return Some(SafeLuggageSymptom::Beaten { job, by: None });
         }
         let by = closer_rival(request, self.said_at, knowledge.number);

@@ -1,0 +1,86 @@
+//! What a robot does by itself in each execution, whichever loops it has: its battery drains and charges, it knows how
+//! far the battery lasts, and follows what its loops decided.
+
+use saoms_api::{Context, Failure, Time};
+
+use super::{Policy, RobotKnowledge};
+
+impl RobotKnowledge {
+    /// Begins an execution.
+    pub(super) fn begin_execution(&mut self, now: Time) {
+        self.polled = None;
+        self.elapsed = self.executed_at.map_or(std::time::Duration::ZERO, |last| now.since(last));
+        self.executed_at = Some(now);
+        if self.charge != self.battery.percent() {
+            // A loop measured it.
+            self.battery.set_percent(self.charge);
+        }
+        self.level_before = self.charge;
+        self.use_battery();
+    }
+
+    /// Drains or charges the battery by the time since the last execution.
+    fn use_battery(&mut self) {
+        let (charges, drains) = match self.policy {
+            Policy::Safe => {
+                let entered = self.hardware.has_entered();
+                let is_at_charger = self.is_at_charger();
+                (entered && is_at_charger && !self.battery.is_full(), entered && !is_at_charger)
+            }
+            // As in the manual: a robot that is awake at its charger does neither.
+            Policy::Classic => {
+                let in_charge = self.variables.in_charge;
+                (in_charge && !self.battery.is_full(), !in_charge && self.block != self.charge_block)
+            }
+        };
+        self.charging = charges;
+        if charges {
+            self.battery.charge(self.elapsed);
+        } else if drains {
+            self.battery.drain(self.elapsed);
+        }
+        self.charge = self.battery.percent();
+    }
+
+    /// Discharges the battery by a move to the next block.
+    pub(super) fn use_battery_to_drive(&mut self) {
+        self.battery.drive();
+        self.charge = self.battery.percent();
+    }
+
+    /// Measures what the loops decide by, after all of them have monitored.
+    pub(super) fn measure(&mut self) {
+        match self.policy {
+            Policy::Safe => {
+                self.measure_energy();
+                self.traffic.look(&self.lists.peers, self.next);
+            }
+            Policy::Classic => {
+                self.lasts = self.executions_left();
+                self.way_home = self.next.distance(self.charge_block);
+            }
+        }
+    }
+
+    /// Ends an execution: what the loops wrote into entries takes effect.
+    pub(super) fn end_execution(&mut self, was_critical: bool, context: &mut Context<'_>) -> Result<(), Failure> {
+        if self.policy == Policy::Safe {
+            self.follow_decisions();
+            self.traffic.follow(&mut self.wanted, self.next);
+        }
+        if self.routes.charge_block().is_some_and(|known| known != self.charge_block) {
+            self.use_charger(self.charge_block);
+        }
+        // A broken robot stops its hardware for good, and says a last time what it has to say in the next execution.
+        self.shut_down |= was_critical;
+        if self.variables.critical { self.stop_for_good(context) } else { Ok(()) }
+    }
+
+    /// Takes the hardware of a broken robot out of service, unless a loop did. Hardware that is busy is asked again.
+    pub(super) fn stop_for_good(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if !self.hardware.is_retired() {
+            self.retire(context)?;
+        }
+        Ok(())
+    }
+}
