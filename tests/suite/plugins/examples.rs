@@ -11,6 +11,7 @@ use saoms_camera as _;
 use saoms_drive as _;
 use saoms_flights as _;
 use saoms_hello as _;
+use saoms_own_loops as _;
 use saoms_testkit::{Fleet, Run};
 use serde_json::Value;
 
@@ -89,6 +90,13 @@ fn the_battery_saver_is_loaded_into_robots_that_ship() {
 fn the_master_that_knows_flights_is_loaded() {
     let (report, _) = loaded_and_linked("flights", 300);
     assert_eq!((&report["luggage"]["delivered"], &report["flights"]["done"]), (&4.into(), &2.into()), "{report:#}");
+}
+
+#[test]
+fn the_loops_in_place_of_those_that_ship_are_loaded() {
+    let (report, linked) = loaded_and_linked("own-loops", 60);
+    assert_eq!(report["luggage"]["delivered"], 10, "{report:#}");
+    assert_eq!(linked.journal().of("Robot2").of_record("has_looked").len(), 5);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod c;
 mod examples;
+mod loops;
 mod reload;
 mod wheels;
 

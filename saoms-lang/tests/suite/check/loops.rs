@@ -1,7 +1,15 @@
 //! Declarations of a composite about the loops of a component.
 
 use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::Arc;
 
+use saoms_api::Failure;
+use saoms_api::host::{DynLoop, PropertyValue, SmolStr};
+use saoms_lang::project::Project;
+use saoms_lang::registry::LoopProvider;
+
+use crate::check::classes::registry;
 use crate::check::support::{faults_of, fleet, fleet_1_0, run};
 
 const CART: &str = "<implementation.rust class=\"example.Cart\"/><property name=\"ID\">Cart</property><property name=\"period\">100</property>";
@@ -324,4 +332,42 @@ fn a_loop_is_in_the_namespace_of_saoms() {
 "
     );
     assert!(faults("<other:loop xmlns:other=\"urn:other\"/>").is_empty(), "that of others is theirs");
+}
+
+/// A loop from another library, which is never run here.
+#[derive(Debug)]
+struct Foreign;
+
+impl LoopProvider for Foreign {
+    fn construct(&self, _: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
+        Err("it is not built into this test".into())
+    }
+
+    fn origin(&self) -> Option<&Path> {
+        Some(Path::new("/plugins/libcarts.so"))
+    }
+}
+
+#[test]
+fn a_loop_that_needs_the_struct_of_a_knowledge_does_not_work_in_components_of_another_library() {
+    let found = |direct: &str| {
+        let mut registry = registry();
+        let declaration = format!(
+            r#"{{"contract":1,"loop":"carts.Steers","knowledge":"example.Cart"{direct},"properties":[],"senses":[],"effects":["next"],"entries":[],"publishes":[],"subscribes":[],"references":[]}}"#
+        );
+        registry.add_loop_provided(&declaration, Arc::new(Foreign)).unwrap();
+        let text = cart("<saoms:loop name=\"PathMS\" class=\"carts.Steers\"/>");
+        let compiled = Project::new().text("t.composite", text).compile(&registry);
+        compiled
+            .reported()
+            .map(|one| format!("{} {} {}\n", one.code.id, one.message, one.help.join("; ")))
+            .collect::<String>()
+    };
+    assert_eq!(
+        found(r#","direct":true"#),
+        "S4505 the loop `PathMS` of the library `libcarts.so` works on the struct of its knowledge, but that of component \
+         `Cart` is built into the program a loop for components of other libraries has `type Knowledge = dyn \
+         Knowledge`, and reaches entries by name\n"
+    );
+    assert!(!found("").contains("S4505"), "entry by entry it works");
 }

@@ -1,0 +1,157 @@
+//! In place of `CriticalSituationMS`, with either policy.
+
+use saoms_api::{
+    Cause, Context, Effector, Entry, Failure, Knowledge, Loop, LoopClass, Publisher, Subscription, record,
+};
+use saoms_components::grid::Block;
+use saoms_components::messages::{
+    CRITICAL_SITUATION, CriticalKind, CriticalSituation, FAULT, Fault, ROBOT_LIST, RobotList,
+};
+use saoms_components::robot::{Job, Trouble};
+
+use crate::step::{Decision, Step};
+
+/// Asks for help when the robot breaks, and never helps another robot. The robot stops its hardware by itself once it
+/// is `critical`.
+#[derive(Debug, Default, LoopClass)]
+#[looping(
+    name = "own.Loner",
+    senses("number", "period", "block", "battery", "chargeBlock"),
+    effects(
+        "critical", "trouble", "job", "busy", "transporter", "hasLuggage", "healer", "asleep", "inCharge",
+        "offersHelp", "standsInFor"
+    ),
+    publishes(CRITICAL_SITUATION, ROBOT_LIST),
+    subscribes(FAULT)
+)]
+pub struct Loner {
+    faults: Subscription<Fault>,
+    situations: Publisher<CriticalSituation>,
+    robots: Publisher<RobotList>,
+    broken_by: Option<Cause>,
+    number: Entry<u32>,
+    period: Entry<u64>,
+    block: Entry<Block>,
+    battery: Entry<f64>,
+    charge_block: Entry<Block>,
+    critical: Effector<bool>,
+    trouble: Effector<Option<Trouble>>,
+    job: Effector<Option<Job>>,
+    has_luggage: Effector<bool>,
+    /// What a broken robot is not any more.
+    rest: [Effector<bool>; 6],
+    stands_in_for: Effector<Option<u32>>,
+}
+
+const REST: [&str; 6] = ["busy", "transporter", "healer", "asleep", "inCharge", "offersHelp"];
+
+/// What it can do.
+#[derive(Debug)]
+pub enum Act {
+    /// Ask for help, and end.
+    Break,
+    /// Forget the robot that it was woken for.
+    Forget,
+}
+
+impl Loop for Loner {
+    type Properties = ();
+    type Knowledge = dyn Knowledge;
+    type Symptom = Step<Act>;
+    type Decision = Decision<Act>;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Loner::default())
+    }
+
+    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.faults = context.subscribe(&FAULT)?;
+        self.situations = context.publish(&CRITICAL_SITUATION)?;
+        self.robots = context.publish(&ROBOT_LIST)?;
+        self.number = robot.entry("number")?;
+        self.period = robot.entry("period")?;
+        self.block = robot.entry("block")?;
+        self.battery = robot.entry("battery")?;
+        self.charge_block = robot.entry("chargeBlock")?;
+        self.critical = robot.effector("critical")?;
+        self.trouble = robot.effector("trouble")?;
+        self.job = robot.effector("job")?;
+        self.has_luggage = robot.effector("hasLuggage")?;
+        for (entry, name) in self.rest.iter_mut().zip(REST) {
+            *entry = robot.effector(name)?;
+        }
+        self.stands_in_for = robot.effector("standsInFor")?;
+        Ok(())
+    }
+
+    fn monitor(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let number = self.number.get(robot)?;
+        let mut mine = context.receive(&self.faults).with_headers().filter(|(_, fault)| fault.robot == number);
+        if let Some((header, _)) = mine.next_back()
+            && self.trouble.get(robot)?.is_none()
+        {
+            self.broken_by = Some(header.cause);
+            self.trouble.set(robot, Some(Trouble::Breakdown))?;
+        }
+        Ok(())
+    }
+
+    fn analyze(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<Option<Step<Act>>, Failure> {
+        if self.critical.get(robot)? {
+            return Ok(None);
+        }
+        if self.trouble.get(robot)?.is_some() {
+            context.because(self.broken_by.unwrap_or_default());
+            let why = record!(breaks_down: "breaks down at {block}", block = self.block.get(robot)?);
+            return Ok(Some(Step::new(why, record!(calls_for_help: "asks for help"), Act::Break)));
+        }
+        let substituted = self.stands_in_for.get(robot)?;
+        Ok(substituted.map(|robot| {
+            let why = record!(called_to_stand_in: "is called to stand in for robot {robot}", robot);
+            Step::new(why, record!(helps_nobody: "helps nobody"), Act::Forget)
+        }))
+    }
+
+    fn plan(
+        &mut self,
+        step: Step<Act>,
+        _: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Decision<Act>>, Failure> {
+        Ok(Some(step.decide()))
+    }
+
+    fn execute(
+        &mut self,
+        decision: Decision<Act>,
+        robot: &mut dyn Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        self.stands_in_for.set(robot, None)?;
+        if matches!(decision.act, Act::Forget) {
+            return Ok(());
+        }
+        let (number, block, job) = (self.number.get(robot)?, self.block.get(robot)?, self.job.get(robot)?);
+        let kind = match job {
+            Some(_) if self.has_luggage.get(robot)? => CriticalKind::CarriesLuggage,
+            Some(_) => CriticalKind::OnTheWay,
+            None => CriticalKind::Idle,
+        };
+        let Job { luggage, from, to } = job.unwrap_or(Job { luggage: 0, from: block, to: block });
+        let critical = number;
+        let situation = CriticalSituation { critical, block, luggage, from, to, kind, ..CriticalSituation::default() };
+        context.send(&self.situations, situation)?;
+        let (battery, charger) = (self.battery.get(robot)?, self.charge_block.get(robot)?);
+        let period = self.period.get(robot)?;
+        let last = RobotList { robot: number, active: false, battery, charger, period, ..RobotList::default() };
+        context.send(&self.robots, last)?;
+        context.count("assistance", 1);
+        context.warn(format_args!("breaks down at {block}: asks for help"));
+        self.job.set(robot, None)?;
+        self.has_luggage.set(robot, false)?;
+        for entry in &self.rest {
+            entry.set(robot, false)?;
+        }
+        self.critical.set(robot, true)
+    }
+}

@@ -1,0 +1,178 @@
+//! In place of `PathFollowerMS`.
+
+use saoms_api::{Context, Effector, Entry, Failure, Knowledge, Loop, LoopClass, Publisher, record};
+use saoms_components::grid::Block;
+use saoms_components::messages::{IMMOVABLE, POSITION, Position, Priority};
+use saoms_components::robot::Job;
+
+use crate::step::{Decision, Step};
+
+/// Drives along y first and then along x, in an area without walls, and makes way for nobody.
+///
+/// As every robot with the policy `safe` it says which block it wants, and enters it in a later execution, if
+/// `CollisionMS` does not stop it.
+#[derive(Debug, Default, LoopClass)]
+#[looping(
+    name = "own.Straight",
+    senses(
+        "number", "block", "next", "job", "busy", "hasLuggage", "mustCharge", "relieved", "transporter", "offersHelp",
+        "chargeBlock", "stopAPeriod", "critical", "moving", "handling", "inCharge", "positions"
+    ),
+    effects("drive", "next", "wanted", "readyToGoUnderCharge", "reachingCharge"),
+    publishes(POSITION)
+)]
+pub struct Straight {
+    said: Option<Position>,
+    announced: Publisher<Position>,
+    number: Entry<u32>,
+    block: Entry<Block>,
+    next: Entry<Block>,
+    job: Entry<Option<Job>>,
+    busy: Entry<bool>,
+    has_luggage: Entry<bool>,
+    must_charge: Entry<bool>,
+    relieved: Entry<bool>,
+    transporter: Entry<bool>,
+    offers_help: Entry<bool>,
+    charge_block: Entry<Block>,
+    stops: Entry<bool>,
+    critical: Entry<bool>,
+    moving: Entry<bool>,
+    handling: Entry<bool>,
+    drive: Effector<Option<Block>>,
+    wanted: Effector<Option<Block>>,
+    ready: Effector<bool>,
+    reaching: Effector<bool>,
+}
+
+/// The next move.
+#[derive(Debug)]
+pub struct Act {
+    drive: Option<Block>,
+    position: Position,
+    homeward: (bool, bool),
+}
+
+impl Straight {
+    /// Where the robot goes; nowhere while it waits for the answers of others.
+    fn goal(&self, robot: &dyn Knowledge) -> Result<Option<Block>, Failure> {
+        let charger = self.charge_block.get(robot)?;
+        if self.must_charge.get(robot)? {
+            return Ok(Some(charger));
+        }
+        if let Some(job) = self.job.get(robot)?
+            && self.busy.get(robot)?
+        {
+            return Ok(Some(if self.has_luggage.get(robot)? { job.to } else { job.from }));
+        }
+        let waits = self.transporter.get(robot)? || self.offers_help.get(robot)?;
+        Ok((!waits).then_some(charger))
+    }
+
+    fn next_act(&self, robot: &dyn Knowledge) -> Result<Act, Failure> {
+        let (block, next, charger) = (self.block.get(robot)?, self.next.get(robot)?, self.charge_block.get(robot)?);
+        let goal = self.goal(robot)?;
+        let is_bound = self.handling.get(robot)? || self.critical.get(robot)?;
+        let can_go = !is_bound && !self.moving.get(robot)? && !self.stops.get(robot)?;
+        let wanted = self.wanted.get(robot)?.filter(|wanted| *wanted != block);
+        let drive = wanted.filter(|_| can_go && goal.is_some_and(|goal| goal != block));
+        let at = drive.unwrap_or(next);
+        let wanted = goal.filter(|_| !is_bound).map_or(at, |goal| at.step_y_first(goal));
+        let (robot_number, wants) = (self.number.get(robot)?, wanted != at);
+        let priority = if wants { Priority { rank: 1, robot: robot_number } } else { IMMOVABLE };
+        let position = Position { robot: robot_number, block, next: at, wanted, priority };
+        let homeward = self.must_charge.get(robot)? || self.relieved.get(robot)?;
+        let reaching = homeward && goal == Some(charger) && at != charger;
+        Ok(Act { drive, position, homeward: (homeward, reaching) })
+    }
+}
+
+impl Loop for Straight {
+    type Properties = ();
+    type Knowledge = dyn Knowledge;
+    type Symptom = Step<Act>;
+    type Decision = Decision<Act>;
+
+    fn new((): ()) -> Result<Self, Failure> {
+        Ok(Straight::default())
+    }
+
+    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.announced = context.publish(&POSITION)?;
+        self.number = robot.entry("number")?;
+        self.block = robot.entry("block")?;
+        self.next = robot.entry("next")?;
+        self.job = robot.entry("job")?;
+        for (entry, name) in [
+            (&mut self.busy, "busy"),
+            (&mut self.has_luggage, "hasLuggage"),
+            (&mut self.must_charge, "mustCharge"),
+            (&mut self.relieved, "relieved"),
+            (&mut self.transporter, "transporter"),
+            (&mut self.offers_help, "offersHelp"),
+            (&mut self.stops, "stopAPeriod"),
+            (&mut self.critical, "critical"),
+            (&mut self.moving, "moving"),
+            (&mut self.handling, "handling"),
+        ] {
+            *entry = robot.entry(name)?;
+        }
+        self.charge_block = robot.entry("chargeBlock")?;
+        self.drive = robot.effector("drive")?;
+        self.wanted = robot.effector("wanted")?;
+        self.ready = robot.effector("readyToGoUnderCharge")?;
+        self.reaching = robot.effector("reachingCharge")?;
+        // The others have to know which blocks are held before the first robot moves.
+        let position = self.next_act(robot)?.position;
+        let position = Position { wanted: position.block, ..position };
+        self.said = Some(position.clone());
+        context.send(&self.announced, position)
+    }
+
+    fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Step<Act>>, Failure> {
+        let act = self.next_act(robot)?;
+        let flags = (self.ready.get(robot)?, self.reaching.get(robot)?);
+        if act.drive.is_none() && self.said.as_ref() == Some(&act.position) && flags == act.homeward {
+            return Ok(None);
+        }
+        let (block, wanted) = (act.position.block, act.position.wanted);
+        let what = match act.drive {
+            Some(to) => record!(moves_to: "moves to {to}", to),
+            None => record!(announces_wanted_block: "announces that it wants {wanted}", wanted),
+        };
+        Ok(Some(Step::new(record!(is_at: "is at {block}", block), what, act)))
+    }
+
+    fn plan(
+        &mut self,
+        step: Step<Act>,
+        _: &mut dyn Knowledge,
+        _: &mut Context<'_>,
+    ) -> Result<Option<Decision<Act>>, Failure> {
+        Ok(Some(step.decide()))
+    }
+
+    fn execute(
+        &mut self,
+        decision: Decision<Act>,
+        robot: &mut dyn Knowledge,
+        context: &mut Context<'_>,
+    ) -> Result<(), Failure> {
+        let Act { drive, position, homeward } = decision.act;
+        self.drive.set(robot, drive)?;
+        self.wanted.set(robot, Some(position.wanted))?;
+        self.ready.set(robot, homeward.0)?;
+        self.reaching.set(robot, homeward.1)?;
+        if self.said.as_ref() == Some(&position) {
+            return Ok(());
+        }
+        self.said = Some(position.clone());
+        context.send(&self.announced, position)
+    }
+
+    fn shutdown(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let (robot, block) = (self.number.get(robot)?, self.block.get(robot)?);
+        let last = Position { robot, block, next: block, wanted: block, priority: IMMOVABLE };
+        context.send(&self.announced, last)
+    }
+}
