@@ -473,6 +473,9 @@ typedef struct SaomsComponentTable {
     // a message or a call reaches it. Puts nothing where it may act by itself. Asked when nothing has happened in the
     // fleet for a while. May be null, or beyond the `size` of the table: it may act by itself.
     SaomsStatus (*waits_for)(void *component, struct SaomsSink text, struct SaomsSink error);
+    // Handles messages of the topics that the composite names in `trigger`, which come here alone. Supervised like
+    // `execute`. Of a class whose declaration says `"reacts": true`; else it may be null.
+    SaomsStatus (*react)(void *component, const struct SaomsHostHandle *host, struct SaomsSink error);
 } SaomsComponentTable;
 
 // A class: how to make components of it, and their functions.

@@ -66,4 +66,7 @@ pub struct ComponentTable {
     /// a message or a call reaches it. Puts nothing where it may act by itself. Asked when nothing has happened in the
     /// fleet for a while. May be null, or beyond the `size` of the table: it may act by itself.
     pub waits_for: Option<unsafe extern "C" fn(component: *mut c_void, text: Sink, error: Sink) -> Status>,
+    /// Handles messages of the topics that the composite names in `trigger`, which come here alone. Supervised like
+    /// `execute`. Of a class whose declaration says `"reacts": true`; else it may be null.
+    pub react: Option<unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status>,
 }

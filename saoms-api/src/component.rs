@@ -129,6 +129,63 @@ pub trait Component: Derived + Send + Sized + 'static {
         derived::execute(self, context)
     }
 
+    /// Handles messages of the topics that the composite names in `trigger`, at once and not in the next execution. The
+    /// class says `reacts`.
+    ///
+    /// Each such message comes here alone, and those of all other topics to [`execute`](Component::execute). Without a
+    /// `trigger` in the composite all come to `execute`, so a component handles them in both. A reaction is no execution:
+    /// its [number](Context::execution) and the due times of executions do not change. It is due when the message
+    /// arrives, or when `minimum` has passed since the last reaction; the `deadline` counts from the message. By itself
+    /// it does what the component that it extends does.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Context, Failure, Message, Subscription, Topic};
+    ///
+    /// /// An obstacle in front of a robot.
+    /// #[derive(Clone, Debug, Message)]
+    /// struct Obstacle {
+    ///     metres: f64,
+    /// }
+    ///
+    /// const OBSTACLE: Topic<Obstacle> = Topic::event("OBSTACLE");
+    ///
+    /// /// Brakes for obstacles, with `<property name="trigger" value="OBSTACLE"/>` at once.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Brake", periodic, reacts)]
+    /// struct Brake {
+    ///     #[subscribes(OBSTACLE)]
+    ///     obstacles: Subscription<Obstacle>,
+    /// }
+    ///
+    /// impl Brake {
+    ///     fn look(&mut self, context: &mut Context<'_>) {
+    ///         if context.receive(&self.obstacles).any(|obstacle| obstacle.metres < 1.0) {
+    ///             context.info("brakes");
+    ///         }
+    ///     }
+    /// }
+    ///
+    /// impl Component for Brake {
+    ///     type Properties = ();
+    ///
+    ///     fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         self.look(context);
+    ///         Ok(())
+    ///     }
+    ///
+    ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         self.look(context);
+    ///         Ok(())
+    ///     }
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// The component has failed.
+    fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.base_mut().map_or(Ok(()), |base| base.react(context))
+    }
+
     /// Ends the work; messages sent here are still delivered. By itself it ends what it extends, or its loops.
     ///
     /// # Errors
@@ -208,6 +265,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// | `name = "saoms.Robot"` | the name that composite files use |
 /// | `periodic` or `passive` | whether it is executed in each period; a passive one cannot subscribe |
 /// | `service("move": Robot)` | a service with this [interface](crate::host::Interface), which the component implements |
+/// | `reacts` | it has a function [`react`](Component::react) for messages that trigger it |
 /// | `stops` | it registers a function that [stops its hardware](crate::StopFunction) |
 /// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite says otherwise, in their order |
 /// | `loops(property = "policy", safe(A, B), classic(A, C))` | the same, one list for each value of a property |
@@ -239,8 +297,8 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the
 /// properties, topics, services, references, knowledge and loops of the other one and those that it declares itself;
 /// composites change its loops as those of the other, and rules over fleets take it for one. What it does not write goes
-/// to the other: start, execution, end, save, restore and `waits_for`. What it writes calls that of the other where its
-/// work belongs:
+/// to the other: start, execution, reaction, end, save, restore and `waits_for`. What it writes calls that of the other
+/// where its work belongs:
 ///
 /// ```
 /// use saoms_api::{Class, Component, Context, Failure, Message, Own, Publisher, Topic};
@@ -317,6 +375,11 @@ pub trait DynComponent: Send {
     /// # Errors
     /// As there.
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// See [`Component::react`].
+    ///
+    /// # Errors
+    /// As there.
+    fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
     /// See [`Component::shutdown`].
     ///
     /// # Errors
@@ -356,6 +419,10 @@ impl<C: Class> DynComponent for C {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         Component::execute(self, context)
+    }
+
+    fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        Component::react(self, context)
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {

@@ -24,6 +24,7 @@ struct Declared {
     services: Vec<(LitStr, Path)>,
     references: Vec<Reference>,
     stops: bool,
+    reacts: bool,
     knowledge: Option<Path>,
     loops: Option<DefaultLoops>,
     also: Vec<Also>,
@@ -174,6 +175,10 @@ impl Declared {
                 place,
                 "expected `periodic` or `passive`: whether the component is executed in each period",
             )),
+            Some((false, span)) if declared.reacts => Err(Error::new(
+                span,
+                "a passive component receives no messages that it could react to: make it `periodic`",
+            )),
             Some((false, _)) => match declared.subscribes.first() {
                 Some(topic) => Err(Error::new_spanned(
                     topic,
@@ -213,9 +218,10 @@ impl Declared {
             }
             "reference" => self.references.push(parts::parse_reference(meta.input, &self.references)?),
             "stops" if !self.stops => self.stops = true,
+            "reacts" if !self.reacts => self.reacts = true,
             "knowledge" if self.knowledge.is_none() => self.knowledge = Some(meta.value()?.parse()?),
             "loops" if self.loops.is_none() => self.loops = Some(DefaultLoops::of(meta.input)?),
-            "stops" | "knowledge" | "loops" => return Err(meta.error("this is given already")),
+            "stops" | "reacts" | "knowledge" | "loops" => return Err(meta.error("this is given already")),
             "also" => {
                 let list;
                 parenthesized!(list in meta.input);
@@ -224,7 +230,7 @@ impl Declared {
             _ => {
                 return Err(meta.error(
                     "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, \
-                     `reference`, `stops`, `knowledge`, `loops`, `also`",
+                     `reference`, `stops`, `reacts`, `knowledge`, `loops`, `also`",
                 ));
             }
         }
@@ -257,6 +263,9 @@ impl Declared {
         handles::declare_references(&mut text, &self.references, handles)?;
         if self.stops {
             text.plain(",\"stops\":true");
+        }
+        if self.reacts {
+            text.plain(",\"reacts\":true");
         }
         if let Some(knowledge) = &self.knowledge {
             text.plain(",\"knowledge\":");

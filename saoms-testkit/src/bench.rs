@@ -154,6 +154,28 @@ impl Bench {
     /// # Errors
     /// Errors of the component, including panics; or it was not started.
     pub fn execute(&mut self) -> Result<(), Failure> {
+        let skipped = self.with_messages(|component, context| component.execute(context));
+        if matches!(skipped, Ok(false)) {
+            self.stage.beat(self.stage.period);
+        }
+        self.stage.end_of_execution();
+        skipped.map(drop)
+    }
+
+    /// Has the component [react](saoms_api::Component::react) to the messages that were delivered since the last
+    /// execution or reaction, as it does in a fleet to those of its `trigger`. Time stands still.
+    ///
+    /// # Errors
+    /// As [`execute`](Bench::execute).
+    pub fn react(&mut self) -> Result<(), Failure> {
+        self.with_messages(|component, context| component.react(context)).map(drop)
+    }
+
+    /// Runs code of the component with the messages that were delivered; true if it was skipped.
+    fn with_messages(
+        &mut self,
+        code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> Result<(), Failure>,
+    ) -> Result<bool, Failure> {
         if !self.started {
             return Err(Failure::new("this component was not started: call `start` first"));
         }
@@ -168,18 +190,15 @@ impl Bench {
         }
         self.step = self.stage.actions.len();
         let (component, mut context) = (&mut self.component, Context::new(&mut self.stage, &inboxes));
-        let mut result = contained(|| component.execute(&mut context)).and_then(|result| result);
+        let result = contained(|| code(component.as_mut(), &mut context)).and_then(|result| result);
         if let Err(failure) = &result
             && let Some(provider) = failure.busy_provider()
         {
             self.stage.skipped(provider);
             self.waiting = messages;
-            result = Ok(());
-        } else if result.is_ok() {
-            self.stage.beat(self.stage.period);
+            return Ok(true);
         }
-        self.stage.end_of_execution();
-        result
+        result.map(|()| false)
     }
 
     /// Stops the hardware of the component, and of those that it is wired to, with the functions that they

@@ -211,6 +211,10 @@ impl<K: Knowledge + Send> DynComponent for Subject<K> {
         })
     }
 
+    fn react(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
+        Err("a loop alone reacts to no message".into())
+    }
+
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.with(|loops, knowledge| loops.shutdown(knowledge, context))
     }

@@ -56,6 +56,7 @@ impl<C: DynComponent> ExportedComponent<C> {
         save: Some(Self::save),
         restore: Some(Self::restore),
         waits_for: Some(Self::waits_for),
+        react: Some(Self::react),
     };
 
     /// # Safety
@@ -84,6 +85,11 @@ impl<C: DynComponent> ExportedComponent<C> {
     unsafe extern "C" fn execute(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: as in `initialize`.
         unsafe { guarded(error, || Self::call(this, handle, true, |component, context| component.execute(context))) }
+    }
+
+    unsafe extern "C" fn react(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
+        // SAFETY: as in `initialize`.
+        unsafe { guarded(error, || Self::call(this, handle, true, |component, context| component.react(context))) }
     }
 
     unsafe extern "C" fn shutdown(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {

@@ -66,6 +66,8 @@ functions! {
     Initialize "`initialize`",
     /// `execute`.
     Execute "`execute`",
+    /// `react`.
+    React "`react`",
     /// `serve`.
     Serve "a service",
     /// `monitor` of a loop.

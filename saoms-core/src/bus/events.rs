@@ -100,6 +100,11 @@ impl EventLog {
         self.tidy_at = self.messages.len() + 16 + self.readers.len() / 4;
     }
 
+    /// True if there are messages that a reader has not read.
+    pub(super) fn has_news(&self, place: u32) -> bool {
+        self.readers[place as usize].next != self.end()
+    }
+
     /// Appends the messages that are new to a reader. Returns the number of messages that it lost since its last read.
     #[inline]
     pub(super) fn collect(&mut self, place: u32, inbox: &mut Vec<SharedMessage>) -> u64 {

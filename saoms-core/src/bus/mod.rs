@@ -40,6 +40,8 @@ pub struct TopicId(u32);
 pub struct TopicReader {
     topic: TopicId,
     reader: ReadPosition,
+    /// The component that the topic's messages trigger.
+    triggers: Option<u32>,
 }
 
 /// A publisher or reader whose type or kind differs from that of the topic.
@@ -108,15 +110,19 @@ impl Bus {
         by: &Arc<str>,
         queue: usize,
     ) -> Result<TopicReader, Mismatch> {
-        let topic = self.user(name, declared, by)?;
-        let reader = self.topics[topic.0 as usize].reader(queue);
-        Ok(TopicReader { topic, reader })
+        let id = self.user(name, declared, by)?;
+        let topic = &mut self.topics[id.0 as usize];
+        let reader = topic.reader(queue);
+        Ok(TopicReader { topic: id, reader, triggers: None })
     }
 
     /// Takes a reader off its topic. Returns the number of messages that it lost since it last collected.
     pub fn unsubscribe(&mut self, subscription: TopicReader) -> u64 {
         let topic = &mut self.topics[subscription.topic.0 as usize];
         topic.users -= 1;
+        if let Some(place) = topic.triggers.iter().position(|number| Some(*number) == subscription.triggers) {
+            topic.triggers.remove(place);
+        }
         topic.leave(subscription.reader)
     }
 
@@ -124,6 +130,30 @@ impl Bus {
     #[inline]
     pub fn publish(&mut self, topic: TopicId, message: SharedMessage) {
         self.topics[topic.0 as usize].publish(message);
+    }
+
+    /// Notes that the messages that a reader gets trigger the component with this number.
+    pub fn set_trigger(&mut self, subscription: &mut TopicReader, component: u32) {
+        if subscription.triggers.replace(component).is_none() {
+            self.topics[subscription.topic.0 as usize].triggers.push(component);
+        }
+    }
+
+    /// The numbers of the components that the messages of a topic trigger.
+    #[inline]
+    pub fn triggers(&self, topic: TopicId) -> &[u32] {
+        &self.topics[topic.0 as usize].triggers
+    }
+
+    /// True if the messages that a reader gets trigger its component.
+    #[inline]
+    pub fn is_trigger(&self, subscription: &TopicReader) -> bool {
+        subscription.triggers.is_some()
+    }
+
+    /// True if there are messages that a reader has not collected.
+    pub fn has_news(&self, subscription: &TopicReader) -> bool {
+        self.topics[subscription.topic.0 as usize].has_news(&subscription.reader)
     }
 
     /// Appends the messages that are new to a reader, oldest first. Returns the number of messages that it lost since

@@ -73,6 +73,11 @@ impl StateTable {
         entry.newer = NONE;
     }
 
+    /// True if something changed after the `read`-th change.
+    pub(super) fn has_news(&self, read: u64) -> bool {
+        read != self.changes
+    }
+
     /// Appends what changed after the `read`-th change, oldest first.
     pub(super) fn collect(&self, read: &mut u64, inbox: &mut Vec<SharedMessage>) {
         if *read == self.changes {

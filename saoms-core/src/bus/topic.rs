@@ -13,6 +13,8 @@ pub(super) struct BusTopic {
     pub(super) name_hash: u64,
     /// Publishers and subscribers together. A topic without any may change its type.
     pub(super) users: usize,
+    /// The numbers of the components that its messages trigger.
+    pub(super) triggers: Vec<u32>,
     /// The numbers of the observers outside the fleet that want its messages.
     pub(super) observers: Option<Arc<[u32]>>,
     message: String,
@@ -60,6 +62,7 @@ impl BusTopic {
             name_hash: name.bytes().fold(0, |hash, byte| fold(hash, u64::from(byte))),
             name,
             users: 1,
+            triggers: Vec::new(),
             observers: None,
             message: declared.message.to_owned(),
             schema: declared.schema.to_owned(),
@@ -140,6 +143,15 @@ impl BusTopic {
         match &self.store {
             Store::State(_) => 0,
             Store::Event(log) => log.messages.len(),
+        }
+    }
+
+    /// True if there are messages that a reader has not collected.
+    pub(super) fn has_news(&self, reader: &ReadPosition) -> bool {
+        match (&self.store, reader) {
+            (Store::State(table), ReadPosition::State { read, .. }) => table.has_news(*read),
+            (Store::Event(log), ReadPosition::Event(place)) => log.has_news(*place),
+            _ => false,
         }
     }
 

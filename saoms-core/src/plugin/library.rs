@@ -55,9 +55,18 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     let code = || unsafe {
         let mut code = Code { classes: Vec::new(), loops: Vec::new(), rules: Vec::new() };
         let names = metadata.class_names();
-        for (class, of) in all(table.classes, "class", &names)?.into_iter().zip(&names) {
+        for ((class, of), reacts) in
+            all(table.classes, "class", &names)?.into_iter().zip(&names).zip(metadata.reacting())
+        {
             whole((*class).component, &format!("class `{of}`"))?;
-            code.classes.push(ImportedClass::new(&*class, name));
+            let class = ImportedClass::new(&*class, name);
+            if reacts && !class.has_react() {
+                return Err(format!(
+                    "`react` in its `SaomsComponentTable` of class `{of}` is null, but its metadata say `\"reacts\": true`: \
+                     set one or leave out the other"
+                ));
+            }
+            code.classes.push(class);
         }
         let names = metadata.loop_names();
         for (looping, of) in all(table.loops, "loop", &names)?.into_iter().zip(&names) {

@@ -43,6 +43,17 @@ impl Metadata {
         names(&self.classes)
     }
 
+    /// Of each of its classes, in the order of its tables, whether it reacts to messages.
+    pub(super) fn reacting(&self) -> Vec<bool> {
+        #[derive(Deserialize)]
+        struct Reacting {
+            #[serde(default)]
+            reacts: bool,
+        }
+        let reacts = |one: &RawValue| serde_json::from_str(one.get()).map(|Reacting { reacts }| reacts);
+        self.classes.iter().map(|one| reacts(one).unwrap_or_default()).collect()
+    }
+
     /// The names of its loops, in the order of its tables.
     pub(super) fn loop_names(&self) -> Vec<String> {
         names(&self.loops)

@@ -77,6 +77,9 @@ pub struct ComponentReport {
     pub executions: u64,
     /// Number of due executions that were left out, because the one before had not started in time.
     pub missed: u64,
+    /// Reactions to messages of topics that trigger it.
+    #[serde(default)]
+    pub reactions: u64,
     /// Lateness of the starts of executions, in microseconds.
     pub late_us: LatenessSummary,
     /// Number of executions that ended after their deadline.

@@ -198,7 +198,7 @@ impl Engine {
                     self.deliver_injection(when, topic, bytes, key, text);
                     delivered = true;
                 }
-                Due::Late { topic, message } => self.bus.publish(topic, message),
+                Due::Late { topic, message } => self.publish(topic, message, now),
                 Due::Settled => self.end_if_done(now),
             }
         }
@@ -223,7 +223,7 @@ impl Engine {
             let sent = SentMessage { topic: name, component, message: message.clone() };
             self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
         }
-        self.bus.publish(topic, message);
+        self.publish(topic, message, time);
     }
 
     fn record_outside(&mut self, time: u64, text: String) -> Cause {

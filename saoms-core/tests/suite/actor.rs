@@ -55,6 +55,9 @@ pub(crate) struct Script {
     /// In each execution.
     #[property(default = "")]
     each: String,
+    /// In each reaction.
+    #[property(default = "")]
+    reacts: String,
     /// In `shutdown`.
     #[property(default = "")]
     last: String,
@@ -115,6 +118,10 @@ macro_rules! actor {
                 self.ends.run(&self.script.each, context)
             }
 
+            fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+                self.ends.run(&self.script.reacts, context)
+            }
+
             fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
                 self.ends.run(&self.script.last, context)
             }
@@ -138,6 +145,7 @@ actor!(
     Actor,
     name = "actor",
     periodic,
+    reacts,
     publishes(TALK, TABLE, OWN, NUMBERS),
     subscribes(TALK, TABLE, OWN, NUMBERS),
     service("echo": Echo),

@@ -185,9 +185,9 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
             "parcels": {"requested": 0, "delivered": 1}, "lost": 0,
             "mine": {"number": 1}, "map": {"size": 12},
             "components": [
-                {"name": "A", "id": "A", "class": "actor", "executions": 1, "missed": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},
+                {"name": "A", "id": "A", "class": "actor", "executions": 1, "missed": 0, "reactions": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},
                  "deadline_misses": 0, "slow": 0, "busy": 0, "restarts": 0, "replaced": 0, "failures": 0, "dropped": 0, "messages": {"sent": 0, "received": 0}},
-                {"name": "B", "id": "B", "class": "actor", "executions": 1, "missed": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},
+                {"name": "B", "id": "B", "class": "actor", "executions": 1, "missed": 0, "reactions": 0, "late_us": {"p50": 0, "p99": 0, "max": 0},
                  "deadline_misses": 0, "slow": 0, "busy": 0, "restarts": 0, "replaced": 0, "failures": 0, "dropped": 0, "messages": {"sent": 0, "received": 0}},
             ],
             "journal": {"records": 0, "overwritten": 0, "lost": 0, "loops": [], "entries": []},

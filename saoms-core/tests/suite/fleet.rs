@@ -55,6 +55,8 @@ fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec
         match key {
             "period" => task.period = duration(),
             "delay" => task.delay = duration(),
+            "minimum" => task.minimum = duration(),
+            "trigger" => task.trigger.0.extend(value.split(' ').map(str::to_owned)),
             "deadline" => task.deadline = Some(duration()),
             "startup" => task.run_on_startup = value == "true",
             "interrupt" => task.may_interrupt_if_running = value == "true",

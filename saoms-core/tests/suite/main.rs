@@ -15,6 +15,7 @@ mod inject;
 mod journal;
 mod observer;
 mod order;
+mod reaction;
 mod real_time;
 mod services;
 mod standstill;

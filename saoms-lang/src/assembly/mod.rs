@@ -3,6 +3,7 @@
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
 mod task;
+pub(crate) mod topic_list;
 pub(crate) mod topic_rename;
 mod traffic;
 
@@ -13,6 +14,7 @@ use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
 pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
+pub use topic_list::TopicList;
 pub use topic_rename::TopicRenames;
 pub use traffic::{Pace, TopicEnd, Traffic, TrafficTopic};
 

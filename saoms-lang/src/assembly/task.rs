@@ -7,6 +7,7 @@ use saoms_api::host::{PropertyValue, WriteProperties};
 use saoms_api::{Failure, Properties, PropertyField};
 use smol_str::SmolStr;
 
+use super::topic_list::TopicList;
 use super::topic_rename::TopicRenames;
 use crate::registry::PropertyDeclaration;
 
@@ -56,6 +57,12 @@ pub struct TaskProperties {
     /// How long after its due time an execution has to be finished.
     #[property(range = "1us"..="24h")]
     pub deadline: Option<Duration>,
+    /// Topics whose messages the component reacts to at once, instead of in its next execution: names that its class
+    /// subscribes to, separated by blanks.
+    pub trigger: TopicList,
+    /// The least time from one reaction to the next.
+    #[property(default = "1ms", range = "1us"..="24h")]
+    pub minimum: Duration,
     /// How many messages may wait in each queue of an event topic.
     #[property(default = 1024, range = 1..=1000000, unit = "messages")]
     pub queue: usize,

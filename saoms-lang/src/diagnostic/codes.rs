@@ -183,6 +183,8 @@ codes! {
     TOPIC_NEAR = "S4012" Warning "topic-near" [OfWiring, AbsentName]: "A topic has only publishers, only readers or one user, and another topic has a similar name. Reported by `saoms check --wiring`.";
     QUEUE = "S4013" Note "queue" [OfWiring]: "More messages can arrive between two executions of a reader than its queue holds. Reported by `saoms check --wiring`.";
     READER_FASTER = "S4014" Note "reader-faster" [OfWiring]: "A topic is read more often than it is published. Reported by `saoms check --wiring`.";
+    TRIGGER = "S4015" Error "trigger": "A `trigger` names a topic whose messages cannot trigger the component.";
+    MINIMUM_UNUSED = "S4016" Warning "minimum-unused" [OutlivesExpansion, WithoutEffect]: "A `minimum` has no effect: no topic triggers the component.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";

@@ -41,6 +41,9 @@ pub struct ClassDeclaration {
     /// The references it can call through.
     #[serde(default)]
     pub references: Vec<ReferenceDeclaration>,
+    /// True if its components can react to messages at once.
+    #[serde(default)]
+    pub reacts: bool,
     /// True if its components register functions that stop their hardware.
     #[serde(default)]
     pub stops: bool,

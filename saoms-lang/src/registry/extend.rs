@@ -53,6 +53,7 @@ pub(super) fn inherit(class: &mut ClassDeclaration, base: ClassDeclaration) -> R
     let own: Vec<String> = class.services.iter().map(|service| service.name.clone()).collect();
     let inherited = base.services.into_iter().filter(|service| !own.contains(&service.name));
     class.services.splice(0..0, inherited);
+    class.reacts |= base.reacts;
     class.stops |= base.stops;
     class.knowledge = base.knowledge;
     class.loops = base.loops;

@@ -164,6 +164,9 @@ fn described(class: &RegisteredClass) -> String {
         )
     });
     section(&mut text, "References", references.collect());
+    if declaration.reacts {
+        text.push_str("\nReacts to messages of the topics in `trigger`.\n");
+    }
     if declaration.stops {
         text.push_str("\nRegisters functions that stop its hardware.\n");
     }

@@ -19,6 +19,12 @@
 #define SAYS_STOPS false
 #endif
 
+#ifdef REACTS
+#define SAYS_REACTS REACTS
+#else
+#define SAYS_REACTS false
+#endif
+
 #ifdef UNBOUND
 /* Nobody has it. */
 extern void turn_the_wheels(void);
@@ -132,6 +138,13 @@ static SaomsStatus initialize(void *component, const SaomsHostHandle *host, Saom
     Actor *actor = component;
     SaomsTopicView topic = {saoms_text("WORDS"), saoms_text("Word"), saoms_text(WORD), 1};
     act(actor, "initialize");
+#ifdef REACTS
+    uint32_t subscription;
+    SaomsStatus subscribed = host->functions->subscribe(host->state, &topic, &subscription, error);
+    if (subscribed != SaomsStatus_OK) {
+        return subscribed;
+    }
+#endif
 #ifdef STOPS
     SaomsStatus registered = register_motor(actor, host, error);
     if (registered != SaomsStatus_OK) {
@@ -192,6 +205,16 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     return host->functions->send(host->state, actor->publisher, NULL, saoms_written(&message), error);
 }
 
+static SaomsStatus react(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    (void)error;
+    char line[64];
+    snprintf(line, sizeof line, "reacts to %zu at %llu", host->inboxes[0].count,
+             (unsigned long long)host->functions->now(host->state));
+    saoms_log(host, SAOMS_INFO, line);
+    act(component, "react");
+    return SaomsStatus_OK;
+}
+
 static SaomsStatus shutdown(void *component, const SaomsHostHandle *host, SaomsSink error) {
     (void)host, (void)error;
     act(component, "shutdown");
@@ -250,7 +273,7 @@ static SaomsStatus step(void *looping, const SaomsEntriesHandle *knowledge, cons
 
 SAOMS_METADATA static const char metadata[] =
     JSON({"saoms": "plugin", "abi":) TEXT(SAOMS_ABI_VERSION) JSON(, "package": "actor", "version": "0.1.0", "entry": "actor_plugin", "classes": [
-        {"contract": 1, "class": "c.Actor", "kind": "periodic", "stops":) TEXT(SAYS_STOPS) JSON(,) PROPERTIES JSON(,
+        {"contract": 1, "class": "c.Actor", "kind": "periodic", "stops":) TEXT(SAYS_STOPS) JSON(, "reacts":) TEXT(SAYS_REACTS) JSON(,) PROPERTIES JSON(,
          "references": [{"name": "callee", "optional": true, "interface": {"name": "c.Callee", "operations": []}}],
          "publishes":) TOPICS JSON(, "subscribes":) TOPICS JSON(}], "loops": [
         {"contract": 1, "loop": "c.Step", "effects": ["brightness"],) PROPERTIES JSON(}]});
@@ -260,6 +283,9 @@ SAOMS_METADATA static const char metadata[] =
 #endif
 #ifndef LOOPING
 #define LOOPING &loop_table
+#endif
+#ifndef REACT
+#define REACT react
 #endif
 #ifndef HOLES
 #define HOLES
@@ -277,7 +303,7 @@ SAOMS_METADATA static const char metadata[] =
 /* A later member of the same name counts. */
 static SaomsComponentTable component_table = {
     .size = SIZE, .initialize = initialize, .execute = execute,
-    .shutdown = shutdown, .serve = serve, .destroy = destroy, HOLES
+    .shutdown = shutdown, .serve = serve, .destroy = destroy, .react = REACT, HOLES
 };
 
 static SaomsClassTable class_table = {.size = sizeof class_table, .construct = CONSTRUCT, .component = COMPONENT};

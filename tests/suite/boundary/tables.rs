@@ -141,3 +141,16 @@ fn a_motor_in_c_that_cannot_be_stopped_or_is_null_is_told_by_name() {
     let undeclared = self::run(&["STOPS=false"], "");
     assert!(undeclared.text.contains("does not declare that it stops hardware"), "{}", undeclared.text);
 }
+
+#[test]
+fn an_actor_in_c_reacts_to_messages() {
+    let run = |definitions: &[&str], inside: &str| run(&[&["REACTS=true"], definitions].concat(), inside);
+    let trigger = property("trigger", "WORDS");
+    let told = run(&[], &trigger);
+    assert_eq!(told.code, Some(0), "{}", told.text);
+    assert!(told.text.contains("reacts to 1 at 0\n"), "{}", told.text);
+    let crash = run(&[], &(trigger + &property("at", "react") + &property("does", "segv")));
+    assert!(crash.text.contains("crashed in `react`: SIGSEGV"), "{}", crash.text);
+    let null = run(&["REACT=NULL"], "");
+    assert_refused(&null, &["`react` in its `SaomsComponentTable` of class `c.Actor` is null, but its metadata say"]);
+}

@@ -20,6 +20,7 @@
 //!   "references": [{"name": "world", "interface": {"name": "saoms.World", "operations": []},
 //!                   "optional": true, "many": true}],
 //!   "stops": true,
+//!   "reacts": true,
 //!   "knowledge": {"name": "saoms.Robot", "entries": []},
 //!   "loops": {"property": "policy", "lists": {"safe": ["saoms.CollisionMS"], "classic": []}},
 //!   "extends": {"contract": 1, "class": "saoms.Machine", "kind": "periodic"}
@@ -33,6 +34,7 @@
 //! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`. `"optional": true` in
 //!   one that is published says that it needs no reader.
 //! - `stops`, where it is `true`: its components register functions that stop their hardware.
+//! - `reacts`, where it is `true`: its components have a function for messages that trigger them.
 //! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in
 //!   their order: either `{"default": [...]}`, or one list for each value of a property. A class without loops has
 //!   neither.

@@ -26,6 +26,11 @@ impl ImportedClass {
         ImportedClass { construct: table.construct, component: unsafe { read(table.component) }, library }
     }
 
+    /// True if its components have a function for messages that trigger them.
+    pub fn has_react(&self) -> bool {
+        self.component.react.is_some()
+    }
+
     /// Makes a component.
     ///
     /// # Errors
@@ -112,6 +117,12 @@ impl DynComponent for ImportedComponent {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.call(context, Function::Execute, self.table.execute)
+    }
+
+    fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let react =
+            self.table.react.ok_or("its library has no function `react`, although its class says that it reacts")?;
+        self.call(context, Function::React, react)
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {

@@ -122,9 +122,12 @@ impl Engine {
         slot.body = Some(body);
         if is_active && slot.policy.periodic {
             slot.due = now.saturating_add(slot.policy.delay);
-            let when = slot.due.min(slot.until);
+            let when = slot.next_time();
             match slot.pending {
-                PendingRequest::None => self.enqueue(number, when),
+                PendingRequest::None => {
+                    self.enqueue(number, when);
+                    self.react_to_news(number, now);
+                }
                 PendingRequest::Leave | PendingRequest::Return { .. } => self.resume(number, now),
             }
         } else if std::mem::take(&mut slot.waiting) {
@@ -163,10 +166,11 @@ impl Engine {
         if let Some(last) = slot.last_due.filter(|_| slot.policy.period != period) {
             slot.due = last.saturating_add(slot.policy.period).max(now);
             if slot.entry != NEVER {
-                let when = slot.due.min(slot.until);
+                let when = slot.next_time();
                 self.enqueue(number, when);
             }
         }
+        self.react_to_news(number, now);
         self.resume(number, now);
         Some(outgoing)
     }

@@ -90,8 +90,8 @@ impl Body {
             return Err(Refusal::NotNow("it has just ended".to_owned()));
         };
         self.instance = new;
-        self.inboxes.clear();
-        self.inboxes.resize_with(self.part.subscriptions.len(), Vec::new);
+        self.clear_inboxes();
+        self.fit_inboxes();
         let takeover = if is_nothing { Takeover::Began } else { Takeover::Continued };
         let stops = std::mem::replace(&mut self.part.stops, std::mem::take(&mut successor.part.stops));
         Ok((Predecessor { instance, endpoints, stops }, takeover))
@@ -202,8 +202,8 @@ impl Body {
         let Endpoints { spec, publishers, subscriptions, recorder } = predecessor.endpoints;
         (part.spec, part.publishers) = (spec, publishers);
         (part.subscriptions, part.recorder) = (subscriptions, recorder);
-        self.inboxes.clear();
-        self.inboxes.resize_with(self.part.subscriptions.len(), Vec::new);
+        self.clear_inboxes();
+        self.fit_inboxes();
         outgoing
     }
 }

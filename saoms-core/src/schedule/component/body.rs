@@ -23,6 +23,8 @@ pub(crate) struct Body {
     pub(crate) instance: Option<Box<dyn DynComponent>>,
     /// The messages of the present period, one list for each subscription.
     pub(crate) inboxes: Vec<Vec<SharedMessage>>,
+    /// The same for reactions: the messages of topics that trigger the component.
+    pub(crate) reactions: Vec<Vec<SharedMessage>>,
     pub(crate) part: Part,
 }
 
@@ -75,6 +77,8 @@ pub(crate) enum Job {
     Start,
     /// Execute once.
     Execute,
+    /// React to messages.
+    React,
     /// Say what it waits for.
     Ask,
     /// Shut down.
@@ -116,7 +120,7 @@ impl Body {
             spec,
             held: true,
         };
-        Body { instance: None, inboxes: Vec::new(), part }
+        Body { instance: None, inboxes: Vec::new(), reactions: Vec::new(), part }
     }
 
     /// Performs a job, and contains panics of the component's code. A failure or a shutdown drops the instance.
@@ -136,6 +140,10 @@ impl Body {
                 };
                 self.call(shared, execute).unwrap_or_else(Err)
             }
+            Job::React => {
+                let react = |instance: &mut dyn DynComponent, context: &mut Context<'_>| instance.react(context);
+                call(&mut self.instance, &mut self.part, &self.reactions, shared, react).unwrap_or_else(Err)
+            }
             Job::Ask => self.call(shared, |instance, _| instance.waits_for()).unwrap_or_else(Err).map(|waits_for| {
                 self.part.waits_for = waits_for;
             }),
@@ -147,7 +155,7 @@ impl Body {
         {
             return result;
         }
-        for inbox in &mut self.inboxes {
+        for inbox in if job == Job::React { &mut self.reactions } else { &mut self.inboxes } {
             inbox.clear();
         }
         match &result {
@@ -203,12 +211,20 @@ impl Body {
         shared: &Arc<Shared>,
         code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> T,
     ) -> Result<T, Failure> {
-        let Some(instance) = &mut self.instance else {
-            return Err(Failure::new("there is no component to run"));
-        };
-        let mut host = ComponentHost { shared, part: &mut self.part };
-        let mut context = Context::new(&mut host, &self.inboxes);
-        contained(|| code(instance.as_mut(), &mut context)).map_err(|panic| self.part.of_loop(panic))
+        call(&mut self.instance, &mut self.part, &self.inboxes, shared, code)
+    }
+
+    /// Makes room for the messages of each subscription.
+    pub(crate) fn fit_inboxes(&mut self) {
+        for inboxes in [&mut self.inboxes, &mut self.reactions] {
+            inboxes.resize_with(self.part.subscriptions.len(), Vec::new);
+        }
+    }
+
+    /// Forgets the messages of all subscriptions.
+    pub(crate) fn clear_inboxes(&mut self) {
+        self.inboxes.clear();
+        self.reactions.clear();
     }
 
     /// Drops the instance. A panic of its destructor is contained, too.
@@ -219,6 +235,23 @@ impl Body {
         }
         self.part.stops.clear();
     }
+}
+
+/// Runs code of an instance with its context, over these messages.
+#[inline]
+fn call<T>(
+    instance: &mut Option<Box<dyn DynComponent>>,
+    part: &mut Part,
+    inboxes: &[Vec<SharedMessage>],
+    shared: &Arc<Shared>,
+    code: impl FnOnce(&mut dyn DynComponent, &mut Context<'_>) -> T,
+) -> Result<T, Failure> {
+    let Some(instance) = instance else {
+        return Err(Failure::new("there is no component to run"));
+    };
+    let mut host = ComponentHost { shared, part };
+    let mut context = Context::new(&mut host, inboxes);
+    contained(|| code(instance.as_mut(), &mut context)).map_err(|panic| part.of_loop(panic))
 }
 
 /// What is constructed, by the name of its component.
@@ -256,7 +289,7 @@ impl Part {
     /// True if the instance tries again, with the same messages.
     #[cold]
     fn keeps_instance(&self, job: Job, failure: &Failure) -> bool {
-        let tries_again = job == Job::Execute || job == Job::Shutdown && self.retries_shutdown;
+        let tries_again = matches!(job, Job::Execute | Job::React) || job == Job::Shutdown && self.retries_shutdown;
         tries_again && self.busy_provider(failure).is_some()
     }
 

@@ -219,7 +219,8 @@ impl Host for ComponentHost<'_> {
             .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
         // An instance that replaces a failed one gets the events that came meanwhile.
         let same = |kept: &crate::bus::TopicReader| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
-        let subscription = match self.part.kept.iter().position(same) {
+        let triggers = task.trigger.has(topic.name);
+        let mut subscription = match self.part.kept.iter().position(same) {
             Some(place) => {
                 let mut kept = self.part.kept.swap_remove(place);
                 engine.bus.unsubscribe(fresh);
@@ -228,6 +229,9 @@ impl Host for ComponentHost<'_> {
             }
             None => fresh,
         };
+        if triggers {
+            engine.bus.set_trigger(&mut subscription, self.part.index);
+        }
         drop(engine);
         self.part.subscriptions.push(subscription);
         Ok((self.part.subscriptions.len() - 1) as u32)

@@ -19,7 +19,7 @@ impl Engine {
         part.busy_provider(failure).is_some()
             && !part.held
             && match job {
-                Job::Execute => true,
+                Job::Execute | Job::React => true,
                 Job::Start => self.phase == RunPhase::Running && slot.pending == PendingRequest::None,
                 Job::Shutdown => part.retries_shutdown,
                 Job::Ask => false,
@@ -43,6 +43,9 @@ impl Engine {
                 back += self.bus.put_back(subscription, inbox);
             }
             self.slots[index as usize].statistics.received -= back;
+        } else if job == Job::React {
+            // Its messages stay for the next one.
+            self.deliver(&mut body.part, now);
         } else {
             // The next try sends and votes again.
             self.record(&mut body.part, now);
@@ -52,7 +55,7 @@ impl Engine {
         if job == Job::Start {
             self.keep_subscriptions(&mut body);
         }
-        let vote = body.part.vote.take().filter(|_| job == Job::Execute);
+        let vote = body.part.vote.take().filter(|_| matches!(job, Job::Execute | Job::React));
         let slot = &mut self.slots[index as usize];
         slot.body = Some(body);
         let retry = if slot.policy.period > 0 { slot.policy.period } else { nanos(slot.policy.backoff).max(1) };
@@ -60,7 +63,10 @@ impl Engine {
             self.vote(index, vote, now);
         }
         match job {
-            Job::Execute => {
+            Job::Execute | Job::React => {
+                if job == Job::React {
+                    self.react_again(index, now);
+                }
                 self.executed(index, now);
                 self.slots[index as usize].skipping = true;
             }

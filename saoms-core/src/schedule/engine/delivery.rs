@@ -54,11 +54,20 @@ impl Engine {
             }
             if self.phase == RunPhase::Running {
                 if self.faults.is_empty() {
-                    self.bus.publish(topic, message);
+                    self.publish(topic, message, now);
                 } else {
                     self.publish_with_faults(topic, message, now);
                 }
             }
+        }
+    }
+
+    /// Puts a message into its topic, and triggers the components that react to it.
+    #[inline]
+    pub(crate) fn publish(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
+        self.bus.publish(topic, message);
+        if !self.bus.triggers(topic).is_empty() {
+            self.trigger_all(topic, now);
         }
     }
 
@@ -74,10 +83,10 @@ impl Engine {
                 self.wake |= when < self.roles.asleep_until;
             }
             Some(MessageFaultKind::Duplicated) => {
-                self.bus.publish(topic, message.clone());
-                self.bus.publish(topic, message);
+                self.publish(topic, message.clone(), now);
+                self.publish(topic, message, now);
             }
-            None => self.bus.publish(topic, message),
+            None => self.publish(topic, message, now),
         }
     }
 

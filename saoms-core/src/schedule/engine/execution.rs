@@ -23,8 +23,9 @@ impl Engine {
                 slot.state = SlotState::Leaving;
                 Some(Job::Shutdown)
             }
+            SlotState::Active if now >= slot.react_due => Some(Job::React),
             SlotState::Active if now < slot.due => {
-                let when = slot.due.min(slot.until);
+                let when = slot.next_time();
                 self.enqueue(index, when);
                 None
             }
@@ -59,6 +60,7 @@ impl Engine {
         body.part.now = now;
         match job {
             Job::Execute => self.begin_execution(index, &mut body, now),
+            Job::React => self.begin_reaction(index, &mut body),
             Job::Shutdown => {
                 body.part.due = now;
                 // At the end of a run no code runs any more that could become free, unless that of another component.
@@ -106,8 +108,19 @@ impl Engine {
         slot.statistics.executions += 1;
         // Only the holder of the lock writes.
         self.executions.store(self.executions.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+        self.collect(index, body, false, now);
+    }
+
+    /// Collects the messages of an execution, or of a reaction: those of the topics that trigger it.
+    #[inline]
+    pub(super) fn collect(&mut self, index: u32, body: &mut Body, reacts: bool, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        let inboxes = if reacts { &mut body.reactions } else { &mut body.inboxes };
         let mut lost = None;
-        for (place, (subscription, inbox)) in part.subscriptions.iter_mut().zip(&mut body.inboxes).enumerate() {
+        for (place, (subscription, inbox)) in body.part.subscriptions.iter_mut().zip(&mut *inboxes).enumerate() {
+            if self.bus.is_trigger(subscription) != reacts {
+                continue;
+            }
             if !inbox.is_empty() {
                 // Events of an execution that was skipped: what came since waits in the queue.
                 continue;
@@ -123,7 +136,7 @@ impl Engine {
             None => slot.dropping = false,
             Some((topic, place, count)) => {
                 let topic = Arc::clone(self.bus.name(topic));
-                self.dropped(index, &topic, count, &body.inboxes[place], now);
+                self.dropped(index, &topic, count, &inboxes[place], now);
             }
         }
     }
@@ -145,13 +158,14 @@ impl Engine {
         }
         self.note_return();
         let slot = &mut self.slots[index as usize];
-        if job == Job::Execute && self.real {
+        if matches!(job, Job::Execute | Job::React) && self.real {
             let slow = ended.saturating_sub(started) > self.budget;
             slot.statistics.slow += u64::from(slow);
             if slot.isolation.active {
                 slot.isolation.count_execution(slow);
             }
-            if ended > body.part.due.saturating_add(slot.policy.deadline) {
+            let since = if job == Job::React { slot.reacts_since } else { body.part.due };
+            if ended > since.saturating_add(slot.policy.deadline) {
                 slot.statistics.deadline_misses += 1;
             }
         }
@@ -171,16 +185,16 @@ impl Engine {
                 let vote = body.part.vote.take_if(|_| !held);
                 let slot = &mut self.slots[index as usize];
                 match job {
-                    Job::Execute | Job::Shutdown => {}
+                    Job::Execute | Job::React | Job::Shutdown => {}
                     Job::Ask => slot.waits_for = body.part.waits_for.take(),
-                    Job::Start => body.inboxes.resize_with(body.part.subscriptions.len(), Vec::new),
+                    Job::Start => body.fit_inboxes(),
                 }
                 slot.body = Some(body);
                 if let Some(vote) = vote {
                     self.vote(index, vote, ended);
                 }
                 match job {
-                    Job::Execute => self.executed(index, ended),
+                    Job::Execute | Job::React => self.executed(index, ended),
                     Job::Ask => self.resume(index, ended),
                     Job::Start => self.started(index, ended),
                     Job::Shutdown => self.left(index, ended),
@@ -205,7 +219,7 @@ impl Engine {
         slot.waiting = false;
         slot.skipping = false;
         if self.phase == RunPhase::Running && slot.pending == PendingRequest::None {
-            let when = slot.due.min(slot.until).max(now).max(slot.busy_until);
+            let when = slot.next_time().max(now).max(slot.busy_until);
             self.enqueue(index, when);
         } else {
             self.resume(index, now);

@@ -50,7 +50,7 @@ impl Engine {
                 // A running component continues; only its end may change.
                 slot.until = until;
                 if slot.entry != NEVER {
-                    let when = slot.due.min(until).max(now).max(slot.busy_until);
+                    let when = slot.next_time().max(now).max(slot.busy_until);
                     self.enqueue(index, when);
                 }
             }
@@ -126,8 +126,9 @@ impl Engine {
             slot.due = last.saturating_add(slot.policy.period);
         }
         if self.phase == RunPhase::Running && slot.pending == PendingRequest::None {
-            let when = slot.due.min(slot.until).max(now);
+            let when = slot.next_time().max(now);
             self.enqueue(index, when);
+            self.react_to_news(index, now);
         } else {
             self.resume(index, now);
         }
@@ -139,6 +140,7 @@ impl Engine {
         self.step(now, index, TraceStep::Left);
         self.stop_its_hardware(index);
         let slot = &mut self.slots[index as usize];
+        slot.react_due = NEVER;
         let pending = std::mem::replace(&mut slot.pending, PendingRequest::None);
         slot.state = SlotState::Idle;
         slot.waiting = false;
@@ -165,7 +167,7 @@ impl Engine {
         body.part.vote = None;
         let doing = match job {
             Job::Start => "could not start: ",
-            Job::Execute | Job::Ask => "",
+            Job::Execute | Job::React | Job::Ask => "",
             Job::Shutdown => "could not shut down: ",
         };
         let mut message = format!("{doing}{failure}");
@@ -174,6 +176,7 @@ impl Engine {
         }
         self.step(now, index, TraceStep::Failed);
         let slot = &mut self.slots[index as usize];
+        slot.react_due = NEVER;
         slot.statistics.failures += 1;
         slot.waiting = false;
         if body.part.held {
@@ -238,7 +241,7 @@ impl Engine {
             self.bus.unpublish(topic);
         }
         body.part.kept.append(&mut body.part.subscriptions);
-        body.inboxes.clear();
+        body.clear_inboxes();
     }
 
     /// Removes a component from all topics.

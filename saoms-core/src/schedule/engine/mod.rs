@@ -7,6 +7,7 @@ mod execution;
 pub(super) mod lifecycle;
 mod overrun;
 pub(super) mod queue;
+mod reaction;
 mod report;
 pub(super) mod slot;
 pub(super) mod standstill;

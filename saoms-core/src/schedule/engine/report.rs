@@ -44,6 +44,7 @@ impl Engine {
                     class: spec.class.name().to_owned(),
                     executions: statistics.executions,
                     missed: statistics.missed,
+                    reactions: statistics.reactions,
                     late_us: if self.real { statistics.late.summary() } else { LatenessSummary::default() },
                     deadline_misses: statistics.deadline_misses,
                     slow: statistics.slow,

@@ -27,6 +27,12 @@ pub(crate) struct Slot {
     pub(crate) entry: u64,
     /// Due time of the next execution.
     pub(crate) due: u64,
+    /// Due time of the next reaction to messages, and that of the last one.
+    pub(crate) react_due: u64,
+    pub(crate) last_react: Option<u64>,
+    /// Time of the first message that the next reaction is for, and of that of the present one.
+    pub(crate) triggered: u64,
+    pub(crate) reacts_since: u64,
     /// Due time of the last execution.
     pub(crate) last_due: Option<u64>,
     /// Time at which it is unscheduled automatically.
@@ -136,6 +142,8 @@ pub(crate) struct TaskPolicy {
     pub(crate) interrupt: bool,
     pub(crate) period: u64,
     pub(crate) delay: u64,
+    /// Least time from one reaction to the next.
+    pub(crate) minimum: u64,
     pub(crate) deadline: u64,
     pub(crate) overrun: Overrun,
     pub(crate) restarts: u32,
@@ -152,6 +160,7 @@ impl TaskPolicy {
                 interrupt: task.may_interrupt_if_running,
                 period: nanos(task.period).max(1),
                 delay: nanos(task.delay),
+                minimum: nanos(task.minimum).max(1),
                 deadline: task.deadline.map_or(NEVER, nanos),
                 overrun: task.overrun,
                 restarts: task.restarts(),
@@ -164,6 +173,7 @@ impl TaskPolicy {
                 interrupt: true,
                 period: 0,
                 delay: 0,
+                minimum: 1,
                 deadline: NEVER,
                 overrun: Overrun::Skip,
                 restarts: 0,
@@ -178,6 +188,7 @@ impl TaskPolicy {
 #[derive(Debug, Default)]
 pub(crate) struct Statistics {
     pub(crate) executions: u64,
+    pub(crate) reactions: u64,
     pub(crate) missed: u64,
     pub(crate) deadline_misses: u64,
     pub(crate) slow: u64,
@@ -204,6 +215,10 @@ impl Slot {
             state: SlotState::Idle,
             entry: NEVER,
             due: NEVER,
+            react_due: NEVER,
+            last_react: None,
+            triggered: NEVER,
+            reacts_since: NEVER,
             last_due: None,
             until: NEVER,
             execution: 0,
@@ -229,6 +244,12 @@ impl Slot {
             restarts: 0,
             restarting: false,
         }
+    }
+
+    /// Time of its next job, while it is active.
+    #[inline]
+    pub(crate) fn next_time(&self) -> u64 {
+        self.due.min(self.until).min(self.react_due)
     }
 
     /// The decision about its execution that is due.

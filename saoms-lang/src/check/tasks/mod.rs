@@ -5,6 +5,7 @@ pub(crate) mod renames;
 #[cfg(test)]
 mod tests;
 pub(crate) mod topic_types;
+mod trigger;
 pub(crate) mod unique_values;
 
 use std::collections::HashSet;
@@ -45,6 +46,7 @@ impl Task<'_, '_> {
             check_url(&url, report);
         }
         self.use_jms(report);
+        trigger::check(self, report);
         if !self.given.is_sound {
             return None;
         }

@@ -143,6 +143,7 @@ pub(crate) struct RobotProperties {
 #[class(
     name = "example.Robot",
     periodic,
+    reacts,
     publishes(POSITION),
     subscribes(POSITION, ORDERS),
     service("move": Wheels),

@@ -205,3 +205,37 @@ fn settings_that_do_not_go_together() {
     .assert_eq(&robot(r#"<property name="user">me</property><property name="password">secret</property>"#));
     assert_eq!(robot(r#"<property name="restart">onFailure</property><property name="restartLimit">3</property>"#), "");
 }
+
+#[test]
+fn topics_that_trigger_a_component() {
+    let trigger = |text: &str| robot(&format!("<property name=\"trigger\">{text}</property>"));
+    assert_eq!(trigger("POSTOPIC, ORDERS") + &trigger(""), "");
+    expect![[r#"
+        3:26-33 error S4015: class `example.Robot001` subscribes to no topic `POSTOPC`
+          fix: replace `POSTOPC` with `POSTOPIC` [3:26-33 "POSTOPIC"]
+    "#]]
+    .assert_eq(&trigger("POSTOPC"));
+    expect![[r#"
+        4:1-7 error S4015: `ORDERS` is named twice
+          help: name it once
+    "#]]
+    .assert_eq(&trigger("ORDERS\nORDERS"));
+    expect![[r#"
+        3:26-29 warning S4016: `minimum` has no effect: no topic triggers the component
+          help: name topics in `trigger`, or remove it
+    "#]]
+    .assert_eq(&robot(r#"<property name="minimum">5ms</property>"#));
+    expect![[r#"
+        3:68-71 error S3008: property `minimum`: `1ns` is out of range: expected a duration from 1us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
+          help: `minimum`: The least time from one reaction to the next; the default is `1ms`
+    "#]]
+        .assert_eq(&robot(r#"<property name="trigger">ORDERS</property><property name="minimum">1ns</property>"#));
+    let shouter = r#"<component name="S"><implementation.rust class="example.Shouter"/><property name="ID">S</property>
+<property name="period">1s</property><property name="trigger">POSTOPIC</property></component>"#;
+    expect![[r#"
+        3:63-71 error S4015: class `example.Shouter` does not react to messages: no topic can trigger it
+          help: remove `trigger`: it reads its messages in each period
+          help: a class that reacts says `reacts` in its `#[class(...)]` and has a function `react`
+    "#]]
+    .assert_eq(&faults(shouter));
+}

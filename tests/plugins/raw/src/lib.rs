@@ -276,6 +276,7 @@ static COMPONENT: ComponentTable = ComponentTable {
     save: None,
     restore: None,
     waits_for: None,
+    react: None,
 };
 static CLASS: ClassTable =
     ClassTable { size: size_of::<ClassTable>(), construct, component: &raw const COMPONENT };

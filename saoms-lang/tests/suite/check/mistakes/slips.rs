@@ -405,7 +405,7 @@ fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
         3:80-83 error S1007: `property` has no attribute `nam`
           fix: replace `nam` with `name` [3:80-83 "name"]
         3:85-86 error S3004: class `example.Robot` has no property `x`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         3:90-98 error S1008: `property` needs the attribute `name`
           help: add `name="..."` to it
     "#]]
@@ -418,7 +418,7 @@ fn a_property_that_is_written_as_an_attribute_of_its_name_is_told_once() {
         3:80-83 error S1007: `property` has no attribute `nam`
           fix: replace `nam` with `name` [3:80-83 "name"]
         3:85-86 error S3004: class `example.Robot` has no property `x`
-          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `queue` and `loss`
+          help: its properties are `ID`, `number`, `speed`, `colour`, `awake`, `charger`, `stops`, `grace`, `period`, `delay`, `runOnStartup`, `mayInterruptIfRunning`, `useJMS`, `url`, `user`, `password`, `topicRename`, `overrun`, `restart`, `restartBackoff`, `restartLimit`, `deadline`, `trigger`, `minimum`, `queue` and `loss`
         3:90-98 error S1008: `property` needs the attribute `name`
           help: add `name="..."` to it
     "#]]
