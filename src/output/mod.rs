@@ -2,6 +2,7 @@
 //!
 //! A file is written whole or not at all, and never over one that the command reads ([`Outputs`]).
 
+mod json;
 mod outputs;
 mod place;
 mod replace;
@@ -11,6 +12,7 @@ use std::path::Path;
 
 use saoms_api::host::one_line;
 
+pub(crate) use json::json;
 pub(crate) use outputs::{Asked, Outputs, write_into};
 pub(crate) use place::{Place, Sink};
 pub(crate) use replace::replace;

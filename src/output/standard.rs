@@ -12,6 +12,8 @@ use std::time::Duration;
 use saoms_api::host::{Visible, format_duration};
 use serde::Serialize;
 
+use super::json::json;
+
 /// Standard output without a buffer; `None` where the system has no descriptor left.
 static STANDARD: LazyLock<Mutex<Option<File>>> =
     LazyLock::new(|| Mutex::new(io::stdout().as_fd().try_clone_to_owned().ok().map(File::from)));
@@ -173,9 +175,4 @@ pub(crate) fn eprint_coloured(shown: &(impl Display + ?Sized)) {
 pub(crate) fn eprint_json(value: &impl Serialize) {
     let mut output = BufWriter::new(io::stderr().lock());
     let _ = json(&mut output, value).and_then(|()| output.flush());
-}
-
-fn json(output: &mut (impl Write + ?Sized), value: &impl Serialize) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *output, value)?;
-    output.write_all(b"\n")
 }

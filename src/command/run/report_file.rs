@@ -2,6 +2,7 @@ use saoms_core::observe::{Interest, Observer};
 use saoms_core::report::RunReport;
 
 use super::outputs::Output;
+use crate::output::json;
 
 /// The observer that writes the report as JSON (`--report`).
 pub(super) struct ReportFile {
@@ -18,9 +19,6 @@ impl Observer for ReportFile {
     fn end(&self, report: &RunReport) {
         let short = self.is_short.then(|| report.without_records());
         let report = short.as_ref().unwrap_or(report);
-        self.output.write(|to| {
-            serde_json::to_writer_pretty(&mut *to, report)?;
-            to.write_all(b"\n")
-        });
+        self.output.write(|to| json(to, report));
     }
 }

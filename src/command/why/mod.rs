@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::Exit;
 use crate::arguments::Format;
-use crate::output::{Outputs, eprint, print, print_as_is};
+use crate::output::{self, Outputs, eprint, print, print_as_is};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -198,12 +198,15 @@ fn unknown(components: &[ComponentName], component: &str) -> String {
 
 fn machine(component: &str, at: Option<Time>, why: &Why<'_>) -> String {
     let asked = at.map(Time::as_secs_f64);
-    let json = json!({
+    let answer = json!({
         "component": component,
         "asked_s": asked,
         "time_s": why.time.map(Time::as_secs_f64),
         "chains": why.chains,
         "knowledge": why.knowledge,
     });
-    format!("{json:#}\n")
+    let mut text = Vec::new();
+    // Nothing fails in memory, and what is written is text.
+    let _ = output::json(&mut text, &answer);
+    String::from_utf8(text).unwrap_or_default()
 }

@@ -144,7 +144,14 @@ fn names_neither_steer_a_terminal_nor_forge_lines() {
     let site = folder.path().join("site");
     let file = "fleet/fl\u{1b}[31m\nerror[S9999]: forged.composite";
     fs::write(site.join(file), hostile("R").replace("name=\"period\"", &format!("name=\"{HOSTILE}\""))).unwrap();
-    for arguments in [&["check", file][..], &["run", "--virtual", file], &["expand", file], &["fmt", "--check", file]] {
+    for arguments in [
+        &["check", file][..],
+        &["check", file, "--format", "json"],
+        &["check", file, "--format", "sarif"],
+        &["run", "--virtual", file],
+        &["expand", file],
+        &["fmt", "--check", file],
+    ] {
         let (_, stdout, stderr) = saoms(&site, arguments);
         assert_visible(arguments[0], &(stdout + &stderr));
     }
@@ -166,7 +173,13 @@ fn names_neither_steer_a_terminal_nor_forge_lines() {
         assert_visible(console, &(stdout + &stderr));
     }
     let of_robot = ["why", "Rob\u{202e}\u{9b}ot1", "--report", "r.json"];
-    for arguments in [&["check", "--wiring", file][..], &of_robot] {
+    for arguments in [
+        &["check", "--wiring", file][..],
+        &["check", "--wiring", file, "--format", "json"],
+        &["run", "--virtual", file, "--quiet", "--report", "-"],
+        &of_robot,
+        &[&of_robot[..], &["--format", "json"]].concat(),
+    ] {
         let (code, stdout, stderr) = saoms(&site, arguments);
         assert_eq!(code, 0, "{stderr}");
         assert_visible(arguments[0], &(stdout + &stderr));
