@@ -165,11 +165,17 @@ fn one_robot_has_to_reach_both_ends_of_luggage() {
         ])
     };
     assert!(with("at 1s luggage (0,0) to (20,1); at 1s luggage (21,0)..(30,0) to (40,1)").is_empty());
-    let message = "no robot can bring luggage from (3,1) to (30,1): the charger of each robot is too far from one of \
-        the two \
-        blocks";
-    assert_eq!(with("at 1s luggage (3,1) to (30,1)"), [format!("error S5006 {message}")]);
-    assert_eq!(with("at 1s luggage (3,1)..(4,1) to (30,1)"), [format!("warning S5006 {message}")]);
+    let far = "the charger of each robot is too far from one of the two";
+    let told = |what: &str, from: &str| format!("{what} S5006 no robot can bring luggage {from}: {far}");
+    assert_eq!(with("at 1s luggage (3,1) to (30,1)"), [told("error", "from (3,1) to (30,1)") + " blocks"]);
+    assert_eq!(
+        with("at 1s luggage (3,1)..(4,1) to (30,1)"),
+        [told("error", "between 2 of the 2 pairs of blocks here, such as (3,1) and (30,1)")]
+    );
+    assert_eq!(
+        with("at 1s luggage (15,1)..(25,1) to (30,1)"),
+        [told("warning", "between 5 of the 11 pairs of blocks here, such as (15,1) and (30,1)")]
+    );
 }
 
 #[test]

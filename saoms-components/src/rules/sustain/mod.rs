@@ -6,6 +6,7 @@
 
 mod load;
 mod missed;
+mod pairs;
 mod reach;
 mod useless;
 

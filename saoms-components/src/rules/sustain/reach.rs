@@ -7,7 +7,7 @@ use saoms_api::rule::Severity;
 
 use super::Range;
 use super::missed::Missed;
-use crate::environment::Spot;
+use super::pairs::out_of_one_reach;
 use crate::grid::{Block, Map};
 use crate::rules::budget::Budget;
 use crate::rules::map::{LuggageLine, WorldMap};
@@ -50,39 +50,6 @@ fn help(range: &Range) -> String {
     format!("put a charger closer to this block, or let robots use less energy on the way: {less}")
 }
 
-/// Finding for luggage whose ends are in the reach of some robot each, and of no robot both.
-fn out_of_one_reach(area: &WorldMap, ranges: &[Range], piece: &LuggageLine, ways: &mut Ways<'_>) -> Option<Finding> {
-    let ends = [&piece.from, &piece.to].map(|spot| farthest(area, spot.value));
-    for from in &ends[0] {
-        for to in ends[1].iter().filter(|to| *to != from) {
-            if ways.is_brought(ranges, *from, *to)? {
-                continue;
-            }
-            let is_one = piece.from.value.block().is_some() && piece.to.value.block().is_some();
-            let severity = if is_one { Severity::Error } else { Severity::Warning };
-            let message = format!(
-                "no robot can bring luggage from {from} to {to}: the charger of each robot is too far from one of \
-                the two blocks"
-            );
-            return Some(Finding::new(piece.whole(), message).severity(severity).help(
-                "put the charger of a robot closer to both blocks, or reduce the energy that a move needs; each \
-                robot uses its own charger",
-            ));
-        }
-    }
-    None
-}
-
-/// The blocks to check: the single block, or the free corners of a rectangle.
-fn farthest(area: &WorldMap, spot: Spot) -> Vec<Block> {
-    let Some((first, last)) = spot.corners(Some(&area.map)) else { return Vec::new() };
-    let corners = [first, last, Block::new(first.x, last.y), Block::new(last.x, first.y)];
-    let mut corners: Vec<Block> = corners.into_iter().filter(|block| area.map.is_free(*block)).collect();
-    corners.sort_unstable();
-    corners.dedup();
-    corners
-}
-
 /// Number of moves between blocks.
 pub(super) struct Ways<'m> {
     map: &'m Map,
@@ -94,6 +61,8 @@ pub(super) struct Ways<'m> {
     known: HashMap<Block, Vec<u32>>,
     left: usize,
     budget: Budget,
+    /// The same for counts, which make a message more precise: they take nothing from what finds faults.
+    spare: (usize, Budget),
     /// Index of the robot that reached the last block.
     reached: usize,
 }
@@ -121,7 +90,26 @@ impl<'m> Ways<'m> {
             starts.iter().for_each(|block| _ = marked.set_blocked(*block));
         }
         let known = HashMap::new();
-        Ways { map, starts, marked, known, left: SEARCHED, budget: Budget::default(), reached: 0 }
+        let (left, budget, spare) = (SEARCHED, Budget::default(), (SEARCHED, Budget::default()));
+        Ways { map, starts, marked, known, left, budget, spare, reached: 0 }
+    }
+
+    /// Counts something within the budget for counts.
+    pub(super) fn count<T>(&mut self, count: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        self.exchange_budgets();
+        let counted = count(self);
+        self.exchange_budgets();
+        counted
+    }
+
+    fn exchange_budgets(&mut self) {
+        std::mem::swap(&mut self.left, &mut self.spare.0);
+        std::mem::swap(&mut self.budget, &mut self.spare.1);
+    }
+
+    /// Number of moves from the charger of a robot; the outer `None` means that the budget is used up.
+    pub(super) fn moves_of(&mut self, range: &Range, block: Block) -> Option<Option<u32>> {
+        if self.budget.admit(LOOK) { self.moves(range.charger, block) } else { None }
     }
 
     /// Number of moves from the nearest charger, with the place of its robot; of two as near, the one whose robot gets
@@ -129,10 +117,7 @@ impl<'m> Ways<'m> {
     fn nearest(&mut self, ranges: &[Range], block: Block) -> Option<(u32, usize)> {
         let mut nearest: Option<(u32, usize)> = None;
         for (place, range) in ranges.iter().enumerate() {
-            if !self.budget.admit(LOOK) {
-                return None;
-            }
-            let Some(moves) = self.moves(range.charger, block)? else { continue };
+            let Some(moves) = self.moves_of(range, block)? else { continue };
             let is_better =
                 |(least, best): (u32, usize)| moves < least || moves == least && range.full > ranges[best].full;
             if nearest.is_none_or(is_better) {
@@ -144,15 +129,12 @@ impl<'m> Ways<'m> {
 
     /// True if a robot can go from its charger to both blocks and back from each, or no way leads there, which another
     /// rule reports; `None` if the budget is used up.
-    fn is_brought(&mut self, ranges: &[Range], from: Block, to: Block) -> Option<bool> {
+    pub(super) fn is_brought(&mut self, ranges: &[Range], from: Block, to: Block) -> Option<bool> {
         // Usually the robot that brought the last piece, or one after it in the document, brings this one.
         let (before, behind) = ranges.split_at(self.reached.min(ranges.len()));
         let mut is_connected = false;
         for (place, range) in behind.iter().chain(before).enumerate() {
-            if !self.budget.admit(LOOK) {
-                return None;
-            }
-            let (Some(there), Some(on)) = (self.moves(range.charger, from)?, self.moves(range.charger, to)?) else {
+            let (Some(there), Some(on)) = (self.moves_of(range, from)?, self.moves(range.charger, to)?) else {
                 continue;
             };
             is_connected = true;
