@@ -7,14 +7,16 @@ use saoms_api::host::format_duration;
 use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
+use crate::master::{MasterEnvironment, MasterRobot};
 use crate::robot::Robot;
 use crate::shift::{Shift, ShiftProperties};
+use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5013",
         name: "shift",
-        meaning: "A shift schedules itself, a component that runs from the start of the fleet, or a component that \
+        meaning: "A shift schedules itself, a world or a master, a component that runs from the start of the fleet, or a component that \
             another shift schedules at the same time; it is shorter than the component's period; or nothing \
             schedules one that waits for it.",
         severity: Severity::Warning,
@@ -34,6 +36,9 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     // The first shift that schedules each component.
     let mut first: HashMap<usize, (usize, ShiftProperties)> = HashMap::new();
     let mut findings = Vec::new();
+    // Without these, luggage and robots are lost.
+    let masters = fleet.indices::<MasterEnvironment>().chain(fleet.indices::<MasterRobot>());
+    let always: HashSet<usize> = fleet.indices::<World>().chain(masters).collect();
     for (index, properties) in fleet.all::<Shift>() {
         let mut tasks: Vec<usize> = components[index].wires.iter().map(|(_, target)| *target).collect();
         tasks.sort_unstable();
@@ -43,6 +48,20 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                 let message = format!("`{}` schedules itself: it stops at the end of its first shift", path(index));
                 let help = "wire its reference `tasks` to the components that work in shifts";
                 findings.push(Finding::new(Place::component(index), message).severity(Severity::Error).help(help));
+                continue;
+            }
+            if always.contains(&task) {
+                let message = format!(
+                    "`{}` is scheduled in shifts by `{}`: between them the robots cannot work, and the run has no end",
+                    path(task),
+                    path(index)
+                );
+                let help = "let it run all the time: remove it from `tasks`, and its `runOnStartup`";
+                findings.push(
+                    Finding::new(Place::component(task), message)
+                        .label(Place::component(index), "this component schedules the shifts")
+                        .help(help),
+                );
                 continue;
             }
             if let Some((other, others)) = first.get(&task) {

@@ -112,9 +112,14 @@ impl Search {
                 found.errors.push(PluginError::Unreadable { path: path.clone(), message });
             }
         }
+        let mut unreadable = BTreeSet::new();
         for folder in self.folders.iter().chain(&self.around) {
             match fs::read_dir(folder) {
                 Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                    // As `plugins` and `./plugins`.
+                    if !unreadable.insert(identity(folder)) {
+                        continue;
+                    }
                     found.errors.push(PluginError::Unreadable { path: folder.clone(), message: error.to_string() });
                 }
                 _ => libraries(folder).iter().for_each(|library| look(library, false, &mut found)),

@@ -195,7 +195,8 @@ impl Files {
         // Also a file that could be read no further than its first tag.
         let found = index.find(root, namespaces, local).map(|found| found.path);
         let found = found.filter(|found| self.paths.binary_search(found).is_ok());
-        if found.is_some() {
+        // It may be in a folder that cannot be read, which is reported.
+        if found.is_some() || !index.unreadable.is_empty() {
             return found;
         }
         let all = self.read.composites();

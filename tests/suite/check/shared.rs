@@ -248,6 +248,26 @@ fn shifts_schedule_others_that_wait_for_them() {
 }
 
 #[test]
+fn a_world_and_a_master_work_in_no_shifts() {
+    let hall = std::fs::read_to_string(crate::support::root().join("composites/hall.composite")).unwrap();
+    for name in ["World", "Master"] {
+        let shift = format!(
+            "<component name=\"Shift\"><implementation.rust class=\"saoms.Shift\"/><property name=\"ID\">S</property>\
+             <property name=\"period\">1s</property><property name=\"work\">9s</property>\
+             <reference name=\"tasks\" target=\"{name}/TaskInterface\"/></component>\n</composite>"
+        );
+        let id = format!("<property name=\"ID\" value=\"{name}\"/>");
+        let waits = format!("{id}<property name=\"runOnStartup\" value=\"false\"/>");
+        let text = hall.replace("</composite>", &shift).replace(&id, &waits);
+        let found = saoms_testkit::Fleet::of_text(text).diagnostics();
+        let message = format!(
+            "`{name}` is scheduled in shifts by `Shift`: between them the robots cannot work, and the run has no end"
+        );
+        assert!(found.contains(&message) && found.lines().count() == 1, "{found}");
+    }
+}
+
+#[test]
 fn what_waits_for_a_shift_and_has_none_never_runs() {
     for name in ["World", "Environment", "Master", "Robot7"] {
         let robot = ("Robot7", "saoms.Robot", &[][..], true);

@@ -243,9 +243,16 @@ fn a_folder_that_cannot_be_read_is_an_error() {
     fs::write(site.join("other.composite"), composite("<include name=\"a:none\"/>")).unwrap();
     fs::write(
         site.join("sca-contribution.xml"),
-        "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"/>",
+        "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:t=\"urn:there\">\
+        <deployable composite=\"t:there\"/></contribution>",
     )
     .unwrap();
     let (_, _, stderr) = saoms(&site, &["check", "other.composite"]);
     assert!(stderr.contains("S2030") && stderr.contains("which cannot be read: File name too long"), "{stderr}");
+    let (_, _, stderr) = saoms(&site, &["check", "."]);
+    assert!(stderr.contains("S0003") && !stderr.contains("S2051"), "the deployable may be there: {stderr}");
+    // A folder of plugins is told once, and not as `plugins` and `./plugins`.
+    symlink("plugins", site.join("plugins")).unwrap();
+    let (code, _, stderr) = saoms(&site, &["check", "other.composite"]);
+    assert_eq!((code, stderr.matches("plugins` cannot be read").count()), (2, 1), "{stderr}");
 }

@@ -36,7 +36,13 @@ fn wired_twice(
 ) {
     let message = format!("reference {} is wired by its implementation, but {what}", quoted(name));
     let one = Diagnostic::new(&codes::WIRED_BY_IMPLEMENTATION, at, message).severity(severity).rule(rule);
-    report.push(one.label(said, "`wiredByImpl` is set here").help("remove the target, or `wiredByImpl`"));
+    let help = match what {
+        "has a target" => "remove the target, or `wiredByImpl`",
+        "starts a wire" => "remove the wire, or `wiredByImpl`",
+        "has `autowire`" => "remove `autowire`, or `wiredByImpl`",
+        _ => "remove the `uri` of the binding, or `wiredByImpl`",
+    };
+    report.push(one.label(said, "`wiredByImpl` is set here").help(help));
 }
 
 /// Reports references that implementations wire, and that the composite or its wires lead somewhere; these are few.

@@ -191,13 +191,13 @@ fn what_its_implementation_wires_nothing_else_wires() {
           help: remove the target, or `wiredByImpl`
         3:128-136 error S2038: reference `b` is wired by its implementation, but has a binding that leads to one
           3:85-89 `wiredByImpl` is set here
-          help: remove the target, or `wiredByImpl`
+          help: remove the `uri` of the binding, or `wiredByImpl`
         4:50-54 error S2038: reference `c` is wired by its implementation, but has `autowire`
           4:34-38 `wiredByImpl` is set here
-          help: remove the target, or `wiredByImpl`
+          help: remove `autowire`, or `wiredByImpl`
         7:15-18 error S2038: reference `d` is wired by its implementation, but starts a wire
           4:90-94 `wiredByImpl` is set here
-          help: remove the target, or `wiredByImpl`
+          help: remove the wire, or `wiredByImpl`
     "#]]
     .assert_eq(&found(inside, &[], true));
     assert!(!found(&inside.replace("='true' target", "='0' target"), &[], true).contains("`a`"));
