@@ -32,6 +32,8 @@ pub struct Shift {
     tasks: Vec<TaskInterfaceReference>,
     /// Time of the next shift; `None` after the last one.
     next: Option<Time>,
+    /// End of the present shift.
+    ends: Option<Time>,
     begun: u32,
 }
 
@@ -39,7 +41,7 @@ impl Component for Shift {
     type Properties = ShiftProperties;
 
     fn new(properties: ShiftProperties) -> Result<Self, Failure> {
-        Ok(Shift { properties, tasks: Vec::new(), next: None, begun: 0 })
+        Ok(Shift { properties, tasks: Vec::new(), next: None, ends: None, begun: 0 })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -49,13 +51,20 @@ impl Component for Shift {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let Some(due) = self.next.filter(|next| *next <= context.now()) else { return Ok(()) };
+        let is_due = |time: &Time| *time <= context.now();
+        let (due, is_over) = (self.next.filter(is_due), self.ends.take_if(|end| is_due(end)).is_some());
+        // Another shift without a pause goes on with the same components.
+        if is_over && due.is_none() {
+            context.info(format_args!("shift {} is over for {}", self.begun, self.names()));
+        }
+        let Some(due) = due else { return Ok(()) };
         let ShiftProperties { work, pause, shifts, .. } = self.properties;
         let milliseconds = u64::try_from(work.as_millis()).unwrap_or(u64::MAX);
         for task in &self.tasks {
             task.schedule_for(context, milliseconds)?;
         }
         self.begun = self.begun.saturating_add(1);
+        self.ends = Some(context.now() + work);
         self.next = Some(due + work + pause).filter(|_| shifts.is_none_or(|shifts| self.begun < shifts));
         context.info(format_args!("starts shift {} of {} s for {}", self.begun, work.as_secs_f64(), self.names()));
         Ok(())

@@ -13,8 +13,8 @@ fn the_robot_of_shifts_runs_in_its_shifts_alone_and_no_luggage_is_lost() {
     let robot = run.components.iter().find(|component| component.name == "Robot2").unwrap();
     assert_eq!(robot.executions, 450);
     let shifts: Vec<String> = run.log_of("Shift").into_iter().map(|line| line.to_string()).collect();
-    assert_eq!(shifts.len(), 3, "{shifts:?}");
-    assert_eq!(shifts[0], "starts shift 1 of 15 s for 1 component");
+    assert_eq!(shifts.len(), 6, "{shifts:?}");
+    assert_eq!(shifts[..2], ["starts shift 1 of 15 s for 1 component", "shift 1 is over for 1 component"]);
 }
 
 #[test]

@@ -70,3 +70,37 @@ fn the_journal_knows_the_battery_at_any_time() {
     }
     assert!(last.is_some());
 }
+
+/// In a corridor, a robot that breaks is between another one and its work: that is no question of batteries.
+#[test]
+fn luggage_behind_a_broken_robot_is_told_to_have_no_path() {
+    let robot = |number: u32, column: u32| {
+        format!(
+            "<component name=\"Robot{number}\"><implementation.rust class=\"saoms.Robot\"/>\
+             <property name=\"ID\">Robot{number}</property><property name=\"period\">100ms</property>\
+             <property name=\"chargeX\">{column}</property><property name=\"chargeY\">0</property>\
+             <reference name=\"world\" target=\"World\"/></component>"
+        )
+    };
+    let part = |name: &str, class: &str, property: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.rust class=\"saoms.{class}\"/>\
+             <property name=\"ID\">{name}</property><property name=\"period\">100ms</property>{property}</component>"
+        )
+    };
+    let scenario = "at 1s luggage (1,0) to (5,0); at 1600ms breakdown Robot8; at 3s luggage (8,0) to (1,0)";
+    let text = [
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" name=\"t\" targetNamespace=\"urn:t\">",
+        &part("World", "World", "<property name=\"map\">...........</property>"),
+        &part("Environment", "Environment", &format!("<property name=\"scenario\">{scenario}</property>")),
+        &part("Master", "MasterEnvironment", ""),
+        &robot(8, 0),
+        &robot(9, 10),
+        "</composite>",
+    ];
+    let run = Fleet::of_text(text.concat()).run(0, Duration::from_mins(1));
+    let told: Vec<String> = run.log_of("Robot9").into_iter().map(|line| line.to_string()).collect();
+    let path = "cannot carry luggage 2 from (8,0) to (1,0): blocked blocks or broken robots leave no path there";
+    assert!(told.iter().any(|line| line == path), "{told:?}");
+    assert_eq!((run.count("luggage.delivered"), run.count("luggage.given_up")), (1, 1));
+}

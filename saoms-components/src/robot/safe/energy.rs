@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use saoms_api::Cause;
 
-use crate::grid::Block;
+use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{Job, RobotKnowledge, Variables};
 
 use super::leg::Urgency;
@@ -183,6 +183,13 @@ impl RobotKnowledge {
             (true, true) => Feasibility::Enough,
             (true, false) => Feasibility::Needs(usual.min(full)),
         }
+    }
+
+    /// True if no path leads to a job, or from where it begins to where it ends.
+    pub(super) fn is_cut_off_from(&mut self, job: &Job) -> bool {
+        [(self.next, job.from), (job.from, job.to)]
+            .into_iter()
+            .any(|(from, to)| self.routes.between(from, to) == UNREACHABLE)
     }
 
     /// Sets the reserve at the start of a job, or after charging. A robot that would arrive with too little energy

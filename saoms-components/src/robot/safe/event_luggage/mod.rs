@@ -120,7 +120,10 @@ impl Loop for SafeEventLuggage {
             SafeLuggageSymptom::Waiting { place, job, .. } => match knowledge.means(&job) {
                 Feasibility::Enough => SafeLuggageDecision::TakeInterest { place, job },
                 Feasibility::Needs(needs) => SafeLuggageDecision::Postpone { place, needs },
-                Feasibility::Never => SafeLuggageDecision::Refuse { job, why: Hindrance::Battery },
+                Feasibility::Never => {
+                    let why = if knowledge.is_cut_off_from(&job) { Hindrance::NoWay } else { Hindrance::Battery };
+                    SafeLuggageDecision::Refuse { job, why }
+                }
             },
             SafeLuggageSymptom::InVain(job) => SafeLuggageDecision::Refuse { job, why: Hindrance::Others },
             SafeLuggageSymptom::Alone(job) => SafeLuggageDecision::Take(job),
@@ -259,7 +262,10 @@ impl SafeEventLuggage {
         let what = format_args!("cannot carry luggage {luggage} from {from} to {to}");
         match why {
             Hindrance::Others => context.log(level, format_args!("{what}: {}", why.words())),
-            Hindrance::Battery | Hindrance::NoWay => context.log(
+            Hindrance::NoWay => {
+                context.log(level, format_args!("{what}: blocked blocks or broken robots leave no path there"))
+            }
+            Hindrance::Battery => context.log(
                 level,
                 format_args!("{what}: no path there and back fits into the {full} executions of a full battery"),
             ),
