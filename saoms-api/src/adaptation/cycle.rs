@@ -19,8 +19,8 @@ pub trait Loop: DerivedLoop + Send + Sized + 'static {
     /// Result of the planning.
     type Decision: Recordable;
 
-    /// Makes the loop; it does no work, as [`Component::new`](crate::Component::new). By itself it has the values of the
-    /// composite in the fields with `#[property]` and `#[properties]`, and everything else is its `Default`.
+    /// Makes the loop; it does no work, as [`Component::new`](crate::Component::new). By itself it has the values of
+    /// the composite in the fields with `#[property]` and `#[properties]`, and everything else is its `Default`.
     ///
     /// # Errors
     /// The values do not fit together.

@@ -4,8 +4,8 @@ use crate::{Context, Effector, Failure, Field, Knowledge, Loop, Properties, Reco
 
 /// A loop that is one function: from the knowledge to a symptom, a decision and what this changes.
 ///
-/// It works on any knowledge that has the entries that its fields name. A loop that monitors, that does more than to set
-/// entries, or that works on the struct of a component is a [`Loop`].
+/// It works on any knowledge that has the entries that its fields name. A loop that monitors, that does more than to
+/// set entries, or that works on the struct of a component is a [`Loop`].
 ///
 /// ```
 /// use saoms_api::{Adaptation, Context, Effector, Entry, Failure, Knowledge, LoopClass, Own, SimpleLoop, record};

@@ -29,8 +29,7 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
     if key.parse::<i64>().is_ok() {
         let message = format!("the first line has the value {}, expected the names of the columns", quoted(&key));
         let one = Diagnostic::new(&codes::OVERRIDES, key.location, message);
-        diagnostics
-            .push(one.help("write a line such as `index,battery` before it: `index` or `name`, then properties"));
+        diagnostics.push(one.help("write a line such as `index,period` before it: `index` or `name`, then properties"));
         return None;
     }
     let report = |at: Location, message: String| Diagnostic::new(&codes::OVERRIDES, at, message);

@@ -104,8 +104,8 @@ struct Located {
     is_xml: bool,
 }
 
-/// The place in the files. For a property that the composite does not give it is that of the reference of this name (its
-/// first target, or else its name), of the new name of the topic or else the site, or the component's name.
+/// The place in the files. For a property that the composite does not give it is that of the reference of this name
+/// (its first target, or else its name), of the new name of the topic or else the site, or the component's name.
 fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Located {
     let beside = place.property_name().zip(subject.element).and_then(|(name, element)| match name.split_once(',') {
         Some((_, topic)) => {

@@ -129,7 +129,7 @@ pub(super) fn outside(input: Input<'_>, place: Span, root: Option<Named<'_>>) ->
     match root {
         None => one
             .help("move it into the root element, or remove it; only comments and instructions can be outside")
-            .help("a composite is an XML file; tables, maps and scenarios are named inside it"),
+            .help("a composite is an XML file; tables and other files are named inside it"),
         Some(root) => one.label(root.at.in_file(input.file), "the root element"),
     }
 }
