@@ -3,14 +3,18 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use saoms_api::host::contain::{contained, install_hook};
-use saoms_api::host::{DynComponent, Invocation, PropertyValue, Registration, ServiceCall, SharedMessage, SmolStr};
-use saoms_api::{CallError, Cause, Class, Context, Failure, Header, Message, ReportValue, Time, Topic, Work};
+use saoms_api::host::{
+    DynComponent, Invocation, LoopRegistration, PropertyValue, Registration, ServiceCall, SharedMessage, SmolStr,
+};
+use saoms_api::{
+    CallError, Cause, Class, Context, Failure, Header, LoopClass, Message, ReportValue, Time, Topic, Work,
+};
 use saoms_core::plugin::Plugin;
 use saoms_lang::registry::{RegisteredLoop, Registry};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
-use crate::stage::{Action, Stage, Wire};
+use crate::stage::{Action, Stage, StageLoop, Wire};
 
 /// One component without a fleet: a test sends it messages, and sees its messages and other output.
 ///
@@ -84,8 +88,7 @@ impl Bench {
     pub fn in_registry(registry: &Registry, class: &str, values: &[(&str, &str)]) -> Result<Bench, Failure> {
         install_hook();
         let found = registry.get(class).ok_or_else(|| Failure::new(format!("there is no class `{class}`")))?;
-        let given = values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value)));
-        let mut values: Vec<_> = given.collect();
+        let mut values = given(values);
         let absent = found.presets().iter().filter(|(name, _)| !values.iter().any(|(given, _)| given == name));
         let absent: Vec<_> = absent.cloned().collect();
         values.extend(absent);
@@ -119,6 +122,36 @@ impl Bench {
         let (reference, service) = (reference.to_owned(), service.to_owned());
         self.stage.wires.push(Wire { reference, service, provider, is_busy: false });
         self
+    }
+
+    /// Puts a loop that the test links into the place of the one of this name, or behind the others where there is
+    /// none, with these values of its properties: a loop is tested in the component that it is made for.
+    ///
+    /// ```
+    /// use saoms_components::robot::Robot;
+    /// use saoms_components::robot::classic::ClassicRobotList;
+    /// use saoms_components::messages::ROBOT_LIST;
+    /// use saoms_testkit::Bench;
+    ///
+    /// // The manual's loop announces a robot in each execution, that of the policy `safe` only what is new.
+    /// let robot = || Bench::of::<Robot>(&[("ID", "Robot1")]);
+    /// for (mut robot, said) in [(robot()?, 0), (robot()?.with_loop::<ClassicRobotList>("RobotListMS", &[])?, 1)] {
+    ///     robot.start()?;
+    ///     robot.execute()?;
+    ///     robot.execute()?;
+    ///     assert_eq!(robot.sent(&ROBOT_LIST).len(), said);
+    /// }
+    /// # Ok::<(), saoms_api::Failure>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Two loops have one name, or the loop refuses the values.
+    pub fn with_loop<L: LoopClass>(mut self, name: &str, values: &[(&str, &str)]) -> Result<Bench, Failure> {
+        let class = loop_class::<L>()?;
+        let values: Vec<_> = given(values);
+        contained(|| class.construct(&values))??;
+        self.stage.put_loop(StageLoop::new(name, class, values));
+        Ok(self)
     }
 
     /// Makes the provider of a wired reference busy, or free again: calls of a busy one are answered
@@ -350,6 +383,19 @@ impl Bench {
     pub fn hears(&self) -> Vec<(String, Schema)> {
         self.stage.heard().collect()
     }
+}
+
+/// Values of properties as hosts have them.
+pub(crate) fn given(values: &[(&str, &str)]) -> Vec<(SmolStr, PropertyValue)> {
+    values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value))).collect()
+}
+
+/// A loop that the test links.
+pub(crate) fn loop_class<L: LoopClass>() -> Result<Arc<RegisteredLoop>, Failure> {
+    let mut registry = Registry::new();
+    let registration = LoopRegistration::of::<L>();
+    registry.add_loop(registration).map_err(|error| Failure::new(error.to_string()))?;
+    registry.get_loop(registration.name()).cloned().ok_or_else(|| "it has no name".into())
 }
 
 impl std::fmt::Debug for Bench {

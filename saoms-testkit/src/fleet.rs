@@ -3,8 +3,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::Time;
-use saoms_core::fault::{Faults, TaskFault, TaskFaultKind};
+use saoms_core::fault::Faults;
 use saoms_core::observe::Observer;
 use saoms_core::plugin::Search;
 use saoms_core::report::RunReport;
@@ -16,6 +15,7 @@ use saoms_tools::diagnostics::human_of;
 
 use crate::expected::{Checked, Found};
 use crate::run::{Log, Run};
+use crate::start::NotStartedCause;
 
 /// A fleet under test: one or several composites, values for their properties, variables of the environment, and
 /// severities.
@@ -27,7 +27,7 @@ pub struct Fleet {
     settings: Vec<String>,
     variables: Vec<(String, String)>,
     severities: Vec<String>,
-    faults: Faults,
+    pub(crate) faults: Faults,
 }
 
 #[derive(Clone, Debug)]
@@ -99,35 +99,6 @@ impl Fleet {
         self
     }
 
-    /// The same fleet, in which the first execution of a component at a time of the run or later takes this long.
-    /// Until it ends the component is busy: calls are answered [`CallError::Busy`](saoms_api::CallError::Busy), as by
-    /// hardware that is slow.
-    ///
-    /// ```
-    /// use std::time::Duration;
-    ///
-    /// use saoms_components as _;
-    /// use saoms_testkit::Fleet;
-    ///
-    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet"
-    ///     targetNamespace="urn:fleet">
-    ///   <component name="Robot1">
-    ///     <implementation.java class="saoms.Robot"/>
-    ///     <property name="ID">Robot1</property>
-    ///     <property name="period">100ms</property>
-    ///   </component></composite>"#);
-    /// let slow = fleet.slow("Robot1", Duration::from_secs(1), Duration::from_secs(5));
-    /// let robot = &slow.run(0, Duration::from_secs(10)).into_report().components[0];
-    /// assert_eq!(robot.missed, 49, "all that were due while the execution ran, but the last");
-    /// ```
-    #[must_use]
-    pub fn slow(mut self, component: &str, at: Duration, lasting: Duration) -> Fleet {
-        let at = Time::from_nanos(u64::try_from(at.as_nanos()).unwrap_or(u64::MAX));
-        let kind = TaskFaultKind::Stalls(lasting);
-        self.faults.tasks.push(TaskFault { component: component.to_owned(), at, kind });
-        self
-    }
-
     /// Diagnostics of the checker, a line each: `error S3001 5:32 there is no class ...`; empty if there are none.
     pub fn diagnostics(&self) -> String {
         let found = self.compiled();
@@ -187,13 +158,22 @@ impl Fleet {
     /// As [`run`](Fleet::run).
     #[expect(clippy::panic, reason = "a test that cannot start its fleet has failed")]
     pub fn run_with(&self, seed: u64, limit: Duration, observer: Arc<dyn Observer>) -> RunReport {
+        self.begin(seed, limit, observer).unwrap_or_else(|cause| panic!("{cause}"))
+    }
+
+    /// Runs the fleet to its end, unless it does not start.
+    pub(crate) fn begin(
+        &self,
+        seed: u64,
+        limit: Duration,
+        observer: Arc<dyn Observer>,
+    ) -> Result<RunReport, NotStartedCause> {
         let mut found = self.compiled();
-        let Some(assembly) = found.output.take() else { panic!("{}", human_of(&found)) };
+        let Some(assembly) = found.output.take() else { return Err(NotStartedCause::Mistakes(human_of(&found))) };
+        self.expect_faults_to_apply(&assembly);
         let settings = Settings { limit: Some(limit), faults: self.faults.clone(), ..Settings::simulated(seed) };
-        match saoms_core::schedule::RunningFleet::start(assembly, settings, vec![observer]) {
-            Ok(fleet) => fleet.run_to_end(),
-            Err(error) => panic!("{error}"),
-        }
+        let started = saoms_core::schedule::RunningFleet::start(assembly, settings, vec![observer]);
+        Ok(started.map_err(NotStartedCause::Component)?.run_to_end())
     }
 
     fn compiled(&self) -> Compilation {

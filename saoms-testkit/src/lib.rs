@@ -42,21 +42,24 @@
 mod bench;
 mod comply;
 mod expected;
+mod faults;
 mod fleet;
 mod golden;
 mod loop_bench;
 mod moment;
 mod run;
 mod stage;
+mod start;
 
 pub use bench::Bench;
-pub use comply::{comply, comply_as};
+pub use comply::{comply, comply_as, comply_loop, comply_loop_as};
 pub use expected::expect_diagnostics;
 pub use fleet::Fleet;
 pub use loop_bench::LoopBench;
 pub use moment::{Expect, Moment, PointInTime};
 pub use run::Run;
 use saoms_components as _;
+pub use start::NotStarted;
 
 /// The examples of `docs/loops.md`, compiled and run.
 #[cfg(doctest)]

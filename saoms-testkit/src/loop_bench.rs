@@ -5,12 +5,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use saoms_api::host::contain::{contained, install_hook};
-use saoms_api::host::{DynComponent, Invocation, KnowledgeClass, LoopRegistration, PropertyValue, SmolStr};
-use saoms_api::{CallError, Context, Failure, Knowledge, LoopClass, Loops, Saved, Value};
+use saoms_api::host::{DynComponent, Invocation, KnowledgeClass};
+use saoms_api::{CallError, Chance, Context, Failure, Knowledge, LoopClass, Loops, Saved, Value};
 use saoms_core::plugin::Plugin;
-use saoms_lang::registry::Registry;
+use saoms_lang::registry::{RegisteredLoop, Registry};
+use saoms_lang::schema::Schema;
 
 use crate::Bench;
+use crate::bench::{given, loop_class};
 
 /// One loop on knowledge that a test provides: the test changes what the loop senses, and sees its decisions and
 /// changes.
@@ -89,6 +91,7 @@ use crate::Bench;
 pub struct LoopBench<K> {
     bench: Bench,
     knowledge: Arc<Mutex<K>>,
+    class: Arc<RegisteredLoop>,
 }
 
 impl<K: KnowledgeClass + Send> LoopBench<K> {
@@ -97,11 +100,7 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
     /// # Errors
     /// The loop refuses the values.
     pub fn of<L: LoopClass>(knowledge: K, values: &[(&str, &str)]) -> Result<LoopBench<K>, Failure> {
-        let mut registry = Registry::new();
-        let registration = LoopRegistration::of::<L>();
-        let name = registration.name();
-        registry.add_loop(registration).map_err(|error| Failure::new(error.to_string()))?;
-        LoopBench::in_registry(&registry, name, knowledge, values)
+        LoopBench::of_class(&loop_class::<L>()?, knowledge, values)
     }
 
     /// A loop in a library, across the boundary to plugins.
@@ -117,24 +116,18 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
         let mut registry = Registry::new();
         let plugin = Plugin::open(library).map_err(|error| Failure::new(error.to_string()))?;
         plugin.register(&mut registry).map_err(|error| Failure::new(error.to_string()))?;
-        LoopBench::in_registry(&registry, name, knowledge, values)
+        let class = registry.get_loop(name).ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))?;
+        LoopBench::of_class(class, knowledge, values)
     }
 
-    fn in_registry(
-        registry: &Registry,
-        name: &str,
-        knowledge: K,
-        values: &[(&str, &str)],
-    ) -> Result<LoopBench<K>, Failure> {
+    fn of_class(class: &Arc<RegisteredLoop>, knowledge: K, values: &[(&str, &str)]) -> Result<LoopBench<K>, Failure> {
         install_hook();
-        let class = registry.get_loop(name).ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))?;
-        let given = values.iter().map(|(name, value)| (SmolStr::from(*name), PropertyValue::from(*value)));
-        let values: Vec<_> = given.collect();
+        let values = given(values);
         let instance = contained(|| class.construct(&values))??;
         let short = class.declaration().short_name().to_owned();
         let knowledge = Arc::new(Mutex::new(knowledge));
         let component = Subject { knowledge: Arc::clone(&knowledge), loops: Loops::of([(short, instance)]) };
-        Ok(LoopBench { bench: Bench::of_loop(class, Box::new(component)), knowledge })
+        Ok(LoopBench { bench: Bench::of_loop(class, Box::new(component)), knowledge, class: Arc::clone(class) })
     }
 
     /// Knowledge of the loop, to read it and to change it between executions.
@@ -149,6 +142,30 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
         let knowledge: &dyn Knowledge = &*knowledge;
         let place = knowledge.all_declared().position(|declared| declared.name == entry)?;
         knowledge.value(u32::try_from(place).ok()?)
+    }
+
+    /// Sets each entry that the loop declares to sense to any value of its type; those that no loop can set stay.
+    pub(crate) fn change_what_it_senses(&mut self, chance: &mut Chance) {
+        let mut knowledge = self.knowledge();
+        let knowledge: &mut dyn Knowledge = &mut *knowledge;
+        let declared: Vec<_> = knowledge.all_declared().copied().collect();
+        for (place, entry) in (0..).zip(&declared) {
+            let senses = &self.class.declaration().senses;
+            let text = format!(r#"{{"name":"Entry","fields":[{{"name":"value","type":{}}}]}}"#, entry.of);
+            if let Ok(schema) = Schema::parse(&text)
+                && senses.iter().any(|name| name == entry.name)
+            {
+                // An entry that the component alone keeps refuses it.
+                let _ = knowledge.set_to_bytes(place, &schema.sample(chance));
+            }
+        }
+    }
+
+    /// Wires one of the loop's references, as [`Bench::wire`].
+    #[must_use]
+    pub fn wire(mut self, reference: &str, provider: Bench, service: &str) -> LoopBench<K> {
+        self.bench = self.bench.wire(reference, provider, service);
+        self
     }
 
     /// Sets the period, which is 100 ms by default.

@@ -18,7 +18,7 @@ pub struct Run {
 
 impl Run {
     pub(crate) fn new(report: RunReport, log: &Log) -> Run {
-        Run { report, log: std::mem::take(&mut log.events()) }
+        Run { report, log: log.take() }
     }
 
     /// Observations, decisions and actions of the loops.
@@ -65,6 +65,10 @@ impl Deref for Run {
 pub(crate) struct Log(Mutex<Vec<RunEvent>>);
 
 impl Log {
+    pub(crate) fn take(&self) -> Vec<RunEvent> {
+        std::mem::take(&mut self.events())
+    }
+
     fn events(&self) -> std::sync::MutexGuard<'_, Vec<RunEvent>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

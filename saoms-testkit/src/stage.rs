@@ -40,10 +40,27 @@ pub(crate) struct Wire {
     pub(crate) is_busy: bool,
 }
 
+/// A loop of the component, with the values of its properties.
+pub(crate) struct StageLoop {
+    name: String,
+    class: Arc<RegisteredLoop>,
+    values: Vec<(SmolStr, PropertyValue)>,
+}
+
+impl StageLoop {
+    pub(crate) fn new(name: &str, class: Arc<RegisteredLoop>, values: Vec<(SmolStr, PropertyValue)>) -> StageLoop {
+        StageLoop { name: name.to_owned(), class, values }
+    }
+
+    fn usual(class: Arc<RegisteredLoop>) -> StageLoop {
+        StageLoop { name: class.declaration().short_name().to_owned(), class, values: Vec::new() }
+    }
+}
+
 pub(crate) struct Stage {
     /// `None` if the stage runs only a loop.
     class: Option<Arc<RegisteredClass>>,
-    loops: Vec<Arc<RegisteredLoop>>,
+    loops: Vec<StageLoop>,
     loop_names: Vec<String>,
     acting: Option<u32>,
     pub(crate) period: Duration,
@@ -85,7 +102,7 @@ impl Stage {
     pub(crate) fn of_loops(loops: Vec<Arc<RegisteredLoop>>) -> Stage {
         Stage {
             class: None,
-            loops,
+            loops: loops.into_iter().map(StageLoop::usual).collect(),
             loop_names: Vec::new(),
             acting: None,
             period: Duration::from_millis(100),
@@ -102,6 +119,14 @@ impl Stage {
             report: Vec::new(),
             work: None,
             gave_up: false,
+        }
+    }
+
+    /// Puts a loop in the place of the one of this name, or behind all others.
+    pub(crate) fn put_loop(&mut self, new: StageLoop) {
+        match self.loops.iter_mut().find(|one| one.name == new.name) {
+            Some(old) => *old = new,
+            None => self.loops.push(new),
         }
     }
 
@@ -139,7 +164,7 @@ impl Stage {
             if publishes { &class.publishes } else { &class.subscribes }
         });
         let of_loops = self.loops.iter().flat_map(move |one| {
-            let one = one.declaration();
+            let one = one.class.declaration();
             if publishes { &one.publishes } else { &one.subscribes }
         });
         of_class.chain(of_loops)
@@ -268,7 +293,7 @@ impl Host for Stage {
 
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {
         let of_class = self.class.iter().flat_map(|class| &class.declaration().references);
-        let of_loops = self.loops.iter().flat_map(|one| &one.declaration().references);
+        let of_loops = self.loops.iter().flat_map(|one| &one.class.declaration().references);
         let declared =
             of_class.chain(of_loops).any(|reference| reference.name == name && reference.interface.name == interface);
         if !declared {
@@ -303,18 +328,18 @@ impl Host for Stage {
     }
 
     fn loops(&mut self) -> Result<NamedLoops, Failure> {
-        let made = self.loops.iter().map(|one| Ok((one.declaration().short_name().to_owned(), one.construct(&[])?)));
-        made.collect()
+        self.loops.iter().map(|one| Ok((one.name.clone(), one.class.construct(&one.values)?))).collect()
     }
 
     fn chosen_loops(&mut self, visit: &mut LoopVisit<'_>) {
         for one in &self.loops {
-            visit(one.declaration().short_name(), one.name(), &[]);
+            visit(&one.name, one.class.name(), &one.values);
         }
     }
 
     fn chosen_loop(&mut self, place: u32) -> Result<Box<dyn saoms_api::host::DynLoop>, Failure> {
-        self.loops.get(place as usize).ok_or("there are fewer loops")?.construct(&[])
+        let one = self.loops.get(place as usize).ok_or("there are fewer loops")?;
+        one.class.construct(&one.values)
     }
 
     fn name_loop(&mut self, place: u32, name: &str) {
@@ -348,6 +373,9 @@ impl Host for Stage {
     }
 
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
+        if before.is_same(after) {
+            return;
+        }
         let line = format!("{}{entry}: {before} -> {after}", self.acting());
         self.log_action(Action::Journal(line));
     }

@@ -11,12 +11,19 @@ impl RobotKnowledge {
         self.polled = None;
         self.elapsed = self.executed_at.map_or(std::time::Duration::ZERO, |last| now.since(last));
         self.executed_at = Some(now);
-        if self.charge != self.battery.percent() {
-            // A loop measured it.
-            self.battery.set_percent(self.charge);
-        }
+        self.take_measured();
         self.level_before = self.charge;
         self.use_battery();
+    }
+
+    /// Takes over the battery level that a loop measured.
+    fn take_measured(&mut self) {
+        if self.charge != self.battery.percent() {
+            if self.charge.is_finite() {
+                self.battery.set_percent(self.charge);
+            }
+            self.charge = self.battery.percent();
+        }
     }
 
     /// Drains or charges the battery by the time since the last execution.
@@ -50,6 +57,7 @@ impl RobotKnowledge {
 
     /// Measures what the loops decide by, after all of them have monitored.
     pub(super) fn measure(&mut self) {
+        self.take_measured();
         match self.policy {
             Policy::Safe => {
                 self.measure_energy();

@@ -4,5 +4,8 @@
 
 mod busy;
 mod comply;
+mod faults;
+mod loops;
 mod records;
 mod run;
+mod start;

@@ -4,9 +4,15 @@
 use std::fs;
 use std::time::Duration;
 
+use saoms_api::LoopClass;
+use saoms_components::master::MasterRobot;
+use saoms_components::robot::Robot;
 use saoms_core::journal::JournalEntry;
-use saoms_own_loops as _;
-use saoms_testkit::{Fleet, Run};
+use saoms_own_loops::{
+    AllHands, Announcer, ClassicWalker, Distance, EarlyBattery, FixedBattery, Loner, MeanBattery, Naps, Rested,
+    SlowGripper, Straight, Zone,
+};
+use saoms_testkit::{Bench, Fleet, Run, comply_as};
 use serde_json::Value;
 
 use super::examples::library;
@@ -338,4 +344,28 @@ fn what_a_loop_does_not_serve_is_told_before_the_start() {
     }
     let shown = Fleet::of_text(fleet(WORK, &[robot("Robot1", "safe", &instead("CollisionMS", "own.Announcer", &[]))]));
     assert!(shown.diagnostics().contains("no loop effects `stopAPeriod` any more"), "{}", shown.diagnostics());
+}
+
+/// Holds a robot with this loop to the rules for every component.
+fn complies<L: LoopClass>(policy: &str, name: &str) {
+    comply_as(|| Bench::of::<Robot>(&[("ID", "Robot1"), ("policy", policy)])?.with_loop::<L>(name, &[]));
+}
+
+#[test]
+fn robots_and_masters_with_these_loops_keep_the_rules_for_every_component() {
+    complies::<Naps>("safe", "RobotMS");
+    complies::<FixedBattery>("safe", "BatteryMS");
+    complies::<SlowGripper>("safe", "GripperMS");
+    complies::<Straight>("safe", "PathFollowerMS");
+    complies::<Rested>("classic", "RobotMS");
+    complies::<EarlyBattery>("classic", "BatteryMS");
+    complies::<ClassicWalker>("classic", "PathFollowerMS");
+    for policy in ["safe", "classic"] {
+        complies::<Announcer>(policy, "RobotListMS");
+        complies::<Loner>(policy, "CriticalSituationMS");
+        complies::<Zone>(policy, "EventLuggageMS");
+        complies::<Distance>(policy, "CollisionMS");
+    }
+    comply_as(|| Bench::of::<MasterRobot>(&[])?.with_loop::<AllHands>("AwakeAsleepMS", &[]));
+    comply_as(|| Bench::of::<MasterRobot>(&[])?.with_loop::<MeanBattery>("RobotListMS", &[]));
 }

@@ -1,0 +1,131 @@
+//! Faults of a run: components that are slow or fail, and messages that are lost, late or come twice.
+
+use std::ops::Range;
+use std::time::Duration;
+
+use saoms_api::Time;
+use saoms_core::fault::{MessageFault, MessageFaultKind, TaskFault, TaskFaultKind};
+use saoms_lang::assembly::{Assembly, Traffic};
+
+use crate::Fleet;
+
+impl Fleet {
+    /// The same fleet, in which the first execution of a component at a time of the run or later takes this long.
+    /// Until it ends the component is busy: calls are answered [`CallError::Busy`](saoms_api::CallError::Busy), as by
+    /// hardware that is slow.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    ///
+    /// use saoms_components as _;
+    /// use saoms_testkit::Fleet;
+    ///
+    /// let fleet = Fleet::of_text(r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="fleet"
+    ///     targetNamespace="urn:fleet">
+    ///   <component name="Robot1">
+    ///     <implementation.java class="saoms.Robot"/>
+    ///     <property name="ID">Robot1</property>
+    ///     <property name="period">100ms</property>
+    ///   </component></composite>"#);
+    /// let slow = fleet.slow("Robot1", Duration::from_secs(1), Duration::from_secs(5));
+    /// let robot = &slow.run(0, Duration::from_secs(10)).into_report().components[0];
+    /// assert_eq!(robot.missed, 49, "all that were due while the execution ran, but the last");
+    /// ```
+    #[must_use]
+    pub fn slow(mut self, component: &str, at: Duration, lasting: Duration) -> Fleet {
+        self.faults.tasks.push(task_fault(component, at, TaskFaultKind::Stalls(lasting)));
+        self
+    }
+
+    /// The same fleet, in which the first execution of a component at a time of the run or later is a failure. Its
+    /// `restart` policy decides what follows.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    ///
+    /// use saoms_components as _;
+    /// use saoms_testkit::Fleet;
+    ///
+    /// let fleet = Fleet::of_file("../composites/hall.composite").fail("World", Duration::from_secs(2));
+    /// let run = fleet.run(0, Duration::from_secs(10));
+    /// assert_eq!(run.components.iter().find(|one| one.name == "World").unwrap().failures, 1);
+    /// ```
+    #[must_use]
+    pub fn fail(mut self, component: &str, at: Duration) -> Fleet {
+        self.faults.tasks.push(task_fault(component, at, TaskFaultKind::Fails));
+        self
+    }
+
+    /// The same fleet, in which messages of a topic that are sent in this part of the run reach no reader. The topic
+    /// has the name that it has after `topicRename`.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    ///
+    /// use saoms_components as _;
+    /// use saoms_testkit::Fleet;
+    ///
+    /// let hall = || Fleet::of_file("../composites/hall.composite");
+    /// let seconds = Duration::from_secs;
+    /// // The request for luggage: no robot hears of it.
+    /// let lost = hall().lose("ELMSTOPIC", seconds(0)..seconds(2)).run(0, seconds(60));
+    /// assert_eq!((lost.count("luggage.requested"), lost.count("luggage.delivered")), (1, 0));
+    /// // Positions of robots that nobody else has to know.
+    /// let lost = hall().lose("POSTOPIC", seconds(0)..seconds(60)).run(0, seconds(60));
+    /// assert_eq!(lost.count("luggage.delivered"), 1);
+    /// ```
+    #[must_use]
+    pub fn lose(self, topic: &str, during: Range<Duration>) -> Fleet {
+        self.disturb(topic, during, MessageFaultKind::Lost)
+    }
+
+    /// The same fleet, in which messages of a topic that are sent in this part of the run reach it later by this time.
+    #[must_use]
+    pub fn delay(self, topic: &str, during: Range<Duration>, by: Duration) -> Fleet {
+        self.disturb(topic, during, MessageFaultKind::Late(by))
+    }
+
+    /// The same fleet, in which messages of a topic that are sent in this part of the run reach it twice.
+    #[must_use]
+    pub fn duplicate(self, topic: &str, during: Range<Duration>) -> Fleet {
+        self.disturb(topic, during, MessageFaultKind::Duplicated)
+    }
+
+    fn disturb(mut self, topic: &str, during: Range<Duration>, kind: MessageFaultKind) -> Fleet {
+        let (from, until) = (time(during.start), time(during.end));
+        self.faults.messages.push(MessageFault { topic: topic.to_owned(), from, until, kind });
+        self
+    }
+
+    /// Checks that faults are of components and topics that the fleet has: a slip would let every test pass.
+    #[expect(clippy::panic, reason = "a test with faults of nothing has failed")]
+    pub(crate) fn expect_faults_to_apply(&self, assembly: &Assembly) {
+        if self.faults.is_empty() {
+            return;
+        }
+        let components: Vec<&str> = assembly.components.iter().map(|one| one.path.as_str()).collect();
+        let traffic = Traffic::of(assembly);
+        let topics: Vec<&str> = traffic.topics.iter().map(|topic| topic.name.as_str()).collect();
+        for fault in &self.faults.tasks {
+            let name = &fault.component;
+            assert!(
+                components.contains(&name.as_str()),
+                "a fault is of the component `{name}`, but the fleet has {}",
+                components.join(", ")
+            );
+        }
+        for MessageFault { topic, .. } in &self.faults.messages {
+            if !topics.contains(&topic.as_str()) {
+                panic!("a fault is of the topic `{topic}`, but the fleet has {}", topics.join(", "));
+            }
+        }
+    }
+}
+
+fn task_fault(component: &str, at: Duration, kind: TaskFaultKind) -> TaskFault {
+    TaskFault { component: component.to_owned(), at: time(at), kind }
+}
+
+fn time(since_start: Duration) -> Time {
+    Time::from_nanos(u64::try_from(since_start.as_nanos()).unwrap_or(u64::MAX))
+}
