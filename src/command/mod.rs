@@ -89,6 +89,27 @@ fn of_others(option: &str) -> Option<String> {
     (!named.is_empty()).then(|| format!("this option belongs to {}", named.join(", ")))
 }
 
+/// Help for an option that is probably a property of the composite: of a command that sets such, unless it is nearly
+/// one of its own.
+fn as_setting(error: &clap::Error, option: &str) -> Option<String> {
+    let name = option.strip_prefix("--").filter(|name| name.chars().all(char::is_alphanumeric))?;
+    let command = std::env::args().nth(1)?;
+    let all = Arguments::command();
+    let sets = all.find_subcommand(&command)?.get_arguments().any(|one| one.get_long() == Some("set"));
+    let is_free = error.get(ContextKind::SuggestedArg).is_none();
+    (sets && is_free).then(|| format!("a property of the composite is set with `--set {name}=...`"))
+}
+
+/// Help for an option with one dash, of which the parser names the first letter alone.
+fn with_one_dash(letter: &str) -> Option<String> {
+    let mut words = std::env::args().skip(1);
+    let word = words.find(|word| word.starts_with(letter) && !word.starts_with("--"))?;
+    let name = word.strip_prefix('-')?.split('=').next().filter(|name| name.len() > 1)?;
+    let all = Arguments::command();
+    let mut options = all.get_subcommands().flat_map(|one| one.get_arguments());
+    options.any(|one| one.get_long() == Some(name)).then(|| format!("write `--{name}`"))
+}
+
 /// The parsed command line. A wrong one is reported and ends the process.
 fn parsed() -> Arguments {
     Arguments::try_parse().unwrap_or_else(|mut error| {
@@ -109,7 +130,19 @@ fn parsed() -> Arguments {
         }
         if error.kind() == ErrorKind::UnknownArgument
             && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
+            && let Some(tip) = as_setting(&error, word)
+        {
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        if error.kind() == ErrorKind::UnknownArgument
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
             && let Some(tip) = of_others(word)
+        {
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        if error.kind() == ErrorKind::UnknownArgument
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
+            && let Some(tip) = with_one_dash(word)
         {
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }

@@ -15,6 +15,22 @@ struct Header<'a> {
     ended: bool,
 }
 
+/// The fault of a text that is no map, but a scenario or a table: all its lines have one cause.
+fn other(text: &str) -> Option<TextFault> {
+    let head = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'))?;
+    let is_event = ["at ", "from ", "then "].iter().any(|start| head.starts_with(start));
+    let what = match head {
+        _ if is_event => "a scenario",
+        _ if head.starts_with("index,") || head.starts_with("name,") => "a table",
+        _ => return None,
+    };
+    let fault = TextFault::of(text, head, format!("this is {what}, expected a map with one row of `.` and `@` a line"));
+    Some(fault.help(match what {
+        "a table" => "name the table with `saoms:overrides`",
+        _ => "a scenario is the property `scenario` of a `saoms.Environment`",
+    }))
+}
+
 impl Map {
     /// Reads a map: one line for each row, starting with y = 0. `.`, `G`, `E` and `S` are free; `@`, `O`, `T` and `W`
     /// are blocked. The header of the MovingAI format (`type octile`, `height H`, `width W`, `map`) may stand before
@@ -38,6 +54,9 @@ impl Map {
     /// The lines that do not fit, at most a thousand.
     pub fn read(text: &str) -> Result<Map, Vec<TextFault>> {
         if let Some(fault) = TextFault::of_file_name(text) {
+            return Err(vec![fault]);
+        }
+        if let Some(fault) = other(text) {
             return Err(vec![fault]);
         }
         let (mut header, mut faults) = (Header::default(), Vec::new());

@@ -31,7 +31,12 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let (mut findings, mut budget) = (Vec::new(), Budget::default());
     for (events, luggage) in by_events(fleet) {
         let area = area(fleet, events);
-        for (piece, spot) in luggage.iter().flat_map(|piece| [(piece, &piece.from), (piece, &piece.to)]) {
+        // The same blocks at both ends are told once.
+        let ends = luggage.iter().flat_map(|piece| {
+            let to = Some(&piece.to).filter(|to| to.value != piece.from.value);
+            std::iter::once((piece, &piece.from)).chain(to.map(|to| (piece, to)))
+        });
+        for (piece, spot) in ends {
             let is_drawn = spot.value == Spot::Anywhere && !misses;
             if is_drawn && !said.contains_key(fleet.components()[piece.index].topic(AREA.name())) {
                 findings.extend(unless_elsewhere(fleet, vec![nothing_to_draw(fleet, piece, spot, &said)]));

@@ -35,7 +35,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let path = |index: usize| components[index].path;
     // The first shift that schedules each component.
     let mut first: HashMap<usize, (usize, ShiftProperties)> = HashMap::new();
-    let mut findings = Vec::new();
+    let (mut findings, mut wrong_tasks) = (Vec::new(), None);
     // Without these, luggage and robots are lost.
     let masters = fleet.indices::<MasterEnvironment>().chain(fleet.indices::<MasterRobot>());
     let always: HashSet<usize> = fleet.indices::<World>().chain(masters).collect();
@@ -47,6 +47,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             if task == index {
                 let message = format!("`{}` schedules itself: it stops at the end of its first shift", path(index));
                 let help = "wire its reference `tasks` to the components that work in shifts";
+                wrong_tasks = Some(findings.len());
                 findings.push(Finding::new(Place::component(index), message).severity(Severity::Error).help(help));
                 continue;
             }
@@ -90,6 +91,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                     path(task),
                     path(index)
                 );
+                wrong_tasks = Some(findings.len());
                 findings.push(
                     Finding::new(Place::property("runOnStartup").in_component(task), message)
                         .label(Place::component(index), "this component schedules the shifts")
@@ -100,7 +102,15 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             first.insert(task, (index, properties.clone()));
         }
     }
-    findings.extend(never_scheduled(fleet));
+    let waiting = never_scheduled(fleet);
+    // A shift that schedules the wrong component is one mistake with that which it does not schedule.
+    match (wrong_tasks, &waiting[..]) {
+        (Some(place), [(index, _)]) => {
+            let help = format!("wire the reference `tasks` to `{}`, which waits to be scheduled", path(*index));
+            findings[place] = findings[place].clone().help(help);
+        }
+        _ => findings.extend(waiting.into_iter().map(|(_, finding)| finding)),
+    }
     findings
 }
 
@@ -122,7 +132,7 @@ fn too_short(fleet: &FleetView<'_>, shift: usize, properties: &ShiftProperties, 
 }
 
 /// Findings about components of this crate that wait to be scheduled, and nothing does that.
-fn never_scheduled(fleet: &FleetView<'_>) -> Vec<Finding> {
+fn never_scheduled(fleet: &FleetView<'_>) -> Vec<(usize, Finding)> {
     // What is left out for a fault may schedule any of them.
     if !fleet.missing().is_empty() {
         return Vec::new();
@@ -139,8 +149,9 @@ fn never_scheduled(fleet: &FleetView<'_>) -> Vec<Finding> {
     });
     let finding = |(index, one): (usize, &ComponentView<'_>)| {
         let message = format!("`{}` never runs: it waits to be scheduled, and nothing schedules it", one.path);
-        Finding::new(Place::property("runOnStartup").in_component(index), message)
-            .help("remove `runOnStartup`, or wire the reference `tasks` of a `saoms.Shift` to this component")
+        let finding = Finding::new(Place::property("runOnStartup").in_component(index), message);
+        let help = "remove `runOnStartup`, or wire the reference `tasks` of a `saoms.Shift` to this component";
+        (index, finding.help(help))
     };
     waits.map(finding).collect()
 }

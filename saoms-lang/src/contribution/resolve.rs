@@ -165,7 +165,12 @@ impl Finder {
         let is_file = |one: &&Head| one.path.file_stem().is_some_and(|stem| stem == file);
         let near = match of_namespace().find(is_file) {
             Some(one) => vec![one.local.as_str()],
-            None => nearest_few(&wanted.local, of_namespace().map(|one| one.local.as_str()), OFFERED_NAMES),
+            // The very name elsewhere is meant, and no composite is inside itself.
+            None if seen.named(&wanted.local).is_some() => Vec::new(),
+            None => {
+                let others = of_namespace().map(|one| one.local.as_str()).filter(|local| *local != wanted.around);
+                nearest_few(&wanted.local, others, OFFERED_NAMES)
+            }
         };
         let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
         let mut searched = vec![self.index.searched(folder)];
@@ -201,13 +206,22 @@ struct Wanted {
     prefix: String,
     namespaces: Option<Vec<String>>,
     local: String,
+    /// The name of the composite that names it.
+    around: String,
 }
 
 impl Wanted {
     fn of(naming: Naming<'_>, around: &Composite) -> Self {
         let (namespaces, local) = around.resolve_name(naming);
         let prefix = naming.name.strip_suffix(local).unwrap_or_default().to_owned();
-        Self { origin: naming.origin, at: naming.name.location, prefix, namespaces, local: local.to_owned() }
+        Self {
+            origin: naming.origin,
+            at: naming.name.location,
+            prefix,
+            namespaces,
+            local: local.to_owned(),
+            around: around.name.to_string(),
+        }
     }
 }
 

@@ -75,8 +75,13 @@ pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize)
             };
             let word = text[at.clone()].to_ascii_lowercase();
             let one = ExpressionError::new(message);
-            let is_word = word != text[at.clone()] && ["and", "or"].contains(&word.as_str());
-            Err(if is_word { one.instead(&word) } else { one }.at(at.clone()))
+            let meant = match word.as_str() {
+                "and" | "or" if word != text[at.clone()] => Some(word.as_str()),
+                "mod" => Some("%"),
+                "div" => Some("/"),
+                _ => None,
+            };
+            Err(meant.into_iter().fold(one, ExpressionError::instead).at(at.clone()))
         }
     }
 }

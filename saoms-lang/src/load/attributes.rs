@@ -5,6 +5,8 @@ use std::borrow::Cow;
 use super::Loader;
 use super::children::is_known;
 use super::vocabulary::{self, Holds, Kind, Known};
+use saoms_api::host::is_invisible;
+
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
 use crate::limits::LIST_WORDS;
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
@@ -236,6 +238,17 @@ impl Loader<'_> {
         if is_local_name(&name) {
             return name;
         }
+        // Copied from a page or a document, unseen.
+        let is_unseen =
+            |letter: char| is_invisible(letter) || matches!(letter, '\u{ad}' | '\u{200b}'..='\u{200d}' | '\u{2060}');
+        if let Some(unseen) = name.chars().find(|letter| is_unseen(*letter)) {
+            let clean: String = name.chars().filter(|letter| !is_unseen(*letter)).collect();
+            let code = format!("U+{:04X}", unseen as u32);
+            let message = format!("the name {} contains the invisible character {code}", quoted(&clean));
+            let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message);
+            self.report(one.suggest("write it without that", name.location, escaped(&clean)));
+            return Located::new(clean.into(), name.location);
+        }
         if let Some(bad) = without_expressions(&name).chars().find(|c| c.is_whitespace() || *c == '/') {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
             let message = format!("{} cannot be a name: it contains {shown}", quoted(&name));
@@ -366,9 +379,12 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
     let target = target.split('/').next().unwrap_or_default();
     let is_named = |one: Element<'_>| one.attribute("name").is_some_and(|name| name.value().trim() == target);
     let is_reference = element.parent().is_some_and(|around| around.children().any(is_named));
+    let has_class = || element.children().any(|child| child.local_name().starts_with("implementation."));
+    let is_class = is_class_of_component(attribute) && !has_class();
     let (what, written) = match is_reference {
-        true => ("reference", format!("<{prefix}reference name=\"{name}\" target=\"{value}\"/>")),
-        false => ("property", format!("<{prefix}property name=\"{name}\">{value}</{prefix}property>")),
+        _ if is_class => ("an implementation", format!("<{prefix}implementation.rust class=\"{value}\"/>")),
+        true => ("a reference", format!("<{prefix}reference name=\"{name}\" target=\"{value}\"/>")),
+        false => ("a property", format!("<{prefix}property name=\"{name}\">{value}</{prefix}property>")),
     };
     let before = text[..attribute.name_span().start as usize].trim_end().len() as u32;
     let whole = Span::new(before, attribute.value_span().end + 1).in_file(file);
@@ -376,7 +392,12 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
         Edit { location: whole, replacement: String::new() },
         Edit { location: Span::empty(end).in_file(file), replacement: format!("{gap}{written}") },
     ];
-    one.suggest_edits(format!("write it as a {what}: {}", quoted(&written)), edits)
+    one.suggest_edits(format!("write it as {what}: {}", quoted(&written)), edits)
+}
+
+/// True if an attribute of a component seems to name its class.
+pub(super) fn is_class_of_component(attribute: Attribute<'_>) -> bool {
+    matches!(attribute.name(), "class" | "type" | "implementation") && attribute.value().contains('.')
 }
 
 /// True if a name can start with this.
@@ -444,6 +465,7 @@ fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
         ("include" | "implementation.composite", "name") => {
             matches!(written, "file" | "href" | "src" | "ref" | "location" | "composite" | "class")
         }
+        ("component" | "composite", "name") => written == "id",
         ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
         // In a component it may be the property that is called so, but where another attribute gives the value.
         ("property", "name") => {
@@ -453,7 +475,7 @@ fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
         ("property", "value") => matches!(written, "val" | "default"),
         ("wire", "source") => matches!(written, "from" | "src"),
         ("wire", "target") => matches!(written, "to" | "dest" | "destination"),
-        ("reference", "target") => matches!(written, "to" | "value" | "ref" | "component" | "href"),
+        ("reference", "target") => matches!(written, "to" | "value" | "ref" | "component" | "href" | "promote"),
         ("deployable", "composite") => matches!(written, "name" | "file" | "ref"),
         _ => false,
     }

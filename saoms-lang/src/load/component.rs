@@ -1,6 +1,7 @@
 //! Components with their implementations and loops.
 
 use super::Loader;
+use super::attributes::is_class_of_component;
 use super::children::{Family, is_defined, renaming, variant};
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
@@ -207,6 +208,10 @@ impl Loader<'_> {
     }
 
     fn missing_implementation(&mut self, element: Element<'_>, name: &Text) {
+        // Its class is written as an attribute, which is reported.
+        if element.attributes().any(is_class_of_component) {
+            return;
+        }
         let severity = if self.version.is_1_1() { Severity::Error } else { Severity::Warning };
         let message = match name.as_str() {
             "" => "a component has no implementation".to_owned(),

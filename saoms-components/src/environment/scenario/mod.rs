@@ -98,9 +98,14 @@ pub(in crate::environment) enum Before {
 /// Maximum number of wrong lines that are reported.
 const MOST_WRONG: usize = 1000;
 
-/// The fault of a text that is a table of replicas: all its lines have one cause.
+/// The fault of a text that is a table of replicas or a map: all its lines have one cause.
 fn table(text: &str) -> Option<TextFault> {
     let head = text.lines().map(str::trim).find(|line| !line.is_empty())?;
+    let is_row = |line: &str| line.chars().all(|sign| matches!(sign, '.' | '@' | '#')) && line.len() > 1;
+    if is_row(head) || head.starts_with("type octile") {
+        let fault = TextFault::of(text, head, "this is a map, expected a scenario with one event a line");
+        return Some(fault.help("a map is the property `map` of a `saoms.World`"));
+    }
     head.starts_with("index,").then(|| {
         let fault = TextFault::of(text, head, "this is a table of replicas, expected a scenario with one event a line");
         fault.help("name the table with `saoms:overrides`; `at 1s luggage (3,1) to (3,10)` is a line of a scenario")

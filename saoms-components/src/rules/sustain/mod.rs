@@ -71,6 +71,10 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
     if robots.is_empty() || !robots.iter().all(|robot| is_known(robot)) || may_be_others(fleet) {
         return Vec::new();
     }
+    // A charger that is nowhere is told; how far it is from luggage says nothing.
+    if robots.iter().any(|robot| area.problem(robot.charger).is_some()) {
+        return Vec::new();
+    }
     let ranges: Option<Vec<Range>> = robots.iter().map(|robot| Range::of(fleet, &area, robot)).collect();
     let Some(ranges) = ranges else { return Vec::new() };
     let chargers = ranges.iter().map(|range| range.charger);

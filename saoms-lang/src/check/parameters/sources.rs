@@ -165,8 +165,15 @@ impl<'a> Parameters<'a> {
             return self.malformed(source, 0, fault, report);
         }
         let message = format!("{} does not name a property of the composite", quoted(source));
-        let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message)
-            .help("write `$name` without braces, or `$name/part` for a part of a complex property");
+        let help = match source.rsplit_once('.') {
+            // As the ending of a file.
+            Some((_, ending)) if ending.len() <= 9 && ending.chars().all(char::is_alphanumeric) => format!(
+                "write `file=\"{source}\"` for the contents of this file, or `value=\"{source}\"` where its name is the \
+                 value"
+            ),
+            _ => "write `$name` without braces, or `$name/part` for a part of a complex property".to_owned(),
+        };
+        let mut one = Diagnostic::new(&codes::SOURCE_MALFORMED, source.location, message).help(help);
         if unit.by_name.contains_key(source.as_str()) {
             one = one.suggest("insert `$`", source.location, escaped(&format!("${source}")));
         }

@@ -124,6 +124,9 @@ impl Task<'_, '_> {
         let (user, password) = (self.text("user"), self.text("password"));
         let both = "give both, or neither";
         let (given, message, help) = match (user, password) {
+            (Some(user), None) if properties.url.is_none() => {
+                (user, "`user` has no effect: there is no `url` of a message broker", "leave it out, or give all three")
+            }
             (Some(user), None) => (user, "`user` is given without `password`", both),
             (None, Some(password)) => (password, "`password` is given without `user`", both),
             (Some(user), Some(_)) if properties.url.is_none() => (

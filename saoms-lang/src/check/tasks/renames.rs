@@ -9,7 +9,7 @@ use crate::check::fleet::{Fleet, class_index::ClassIndex};
 use crate::check::properties::findings::Renamed;
 use crate::check::report::{Parts, Report, replacing};
 use crate::diagnostic::{Diagnostic, codes, quoted};
-use crate::source::{Location, Text};
+use crate::source::{Location, Span, Text};
 use crate::syntax::escaped;
 
 /// The lists of renamed topics of a fleet.
@@ -51,7 +51,7 @@ impl Renames {
             let used: BTreeSet<&str> = classes.values().flat_map(|class| topics(class)).collect();
             let listed: HashSet<&str> = renamed.iter().map(|one| one.old.as_str()).collect();
             let others: Vec<&str> = used.iter().copied().filter(|topic| !listed.contains(topic)).collect();
-            for Renamed { old: name, .. } in renamed.iter().filter(|one| !used.contains(one.old.as_str())) {
+            for Renamed { old: name, new } in renamed.iter().filter(|one| !used.contains(one.old.as_str())) {
                 let mut classes = classes.keys();
                 let whose = match (classes.next(), classes.len()) {
                     (Some(only), 0) => format!("class {} uses no topic", quoted(only)),
@@ -63,6 +63,16 @@ impl Renames {
                     report.about(&fleet.members[*member]);
                     let one =
                         report.unknown(&codes::RENAME_UNUSED, name.location, message.clone(), name, known.clone());
+                    // The two names of a pair in the other order.
+                    let is_swapped = used.contains(new.as_str()) && report.written(new.location) == new.as_str();
+                    let whole = Span::new(name.location.span.start, new.location.span.end);
+                    if is_swapped && name.location.file == new.location.file {
+                        let meant = format!("{new},{name}");
+                        let one = Diagnostic::new(&codes::RENAME_UNUSED, name.location, message.clone());
+                        let description = format!("write {}: the name that the class uses comes first", quoted(&meant));
+                        report.push(one.suggest(description, whole.in_file(name.location.file), escaped(&meant)));
+                        continue;
+                    }
                     report.push(match others.is_empty() {
                         true => one.help("remove the pair: all topics there have new names already"),
                         false => one,

@@ -82,7 +82,12 @@ impl RepeatedValues {
         let known = self.sites.entry(other).or_insert_with(|| {
             let [one, two, site, value] = [one.path(), two.path(), &two.site, value].map(quoted);
             let message = format!("{one} and {two} are both in the site {site}, and both have a component {value}");
-            let one = Diagnostic::new(&codes::NOT_UNIQUE, here.location, message).other(there.location, "the first");
+            let one = Diagnostic::new(&codes::NOT_UNIQUE, here.location, message);
+            let one = match there.location == here.location {
+                // Of replicas.
+                true => one.replace(here, here.location, &with_index(here)),
+                false => one.label(there.location, "the first"),
+            };
             one.help("give each its own `saoms:site`: IDs need to differ only within a site").severity(severity)
         });
         known.severity = severity.max(known.severity);

@@ -76,7 +76,11 @@ impl<'a> Unfolding<'a, '_, '_> {
         match link {
             Link::To(place) => {
                 let composite = &contribution.composites()[*place];
-                if !names::is_exact(naming, around, composite) {
+                let prefix = naming.name.split_once(':').map_or("", |(prefix, _)| prefix);
+                let is_bound = naming.origin.element(&around.document).resolve_prefix(prefix).is_some();
+                // Of a prefix that is not declared the first name is told.
+                let is_told = !prefix.is_empty() && !is_bound && !self.report.is_first_unbound(around.file(), prefix);
+                if !is_told && !names::is_exact(naming, around, composite) {
                     self.report.push(names::loose(naming, around, composite));
                 }
                 Some((*place, composite))
@@ -84,11 +88,22 @@ impl<'a> Unfolding<'a, '_, '_> {
             Link::Faulty => None,
             Link::Missing(missing) => {
                 // One prefix is one mistake, however many names have it.
-                let prefix = names::wrong_prefix(naming, missing, around);
+                let of = naming.name.split_once(':').map(|(prefix, _)| prefix);
+                // By which other names lead somewhere.
+                let is_right = around.namings().any(|other| {
+                    let is_same = other.name.split_once(':').map(|(prefix, _)| prefix) == of;
+                    is_same && matches!(contribution.link(other.origin), Some(Link::To(_)))
+                });
+                let prefix = names::wrong_prefix(naming, missing, around).filter(|_| !is_right);
                 if prefix.is_some_and(|(at, _)| !self.wrong_prefixes.insert(at)) {
                     return None;
                 }
-                self.report.push(names::not_found(naming, missing, around, self.options.assume_classes));
+                // As one name is, which is corrected in all places together.
+                if !self.wrong_names.insert((around.file(), naming.name.value.clone())) {
+                    return None;
+                }
+                let assumes = self.options.assume_classes;
+                self.report.push(names::not_found(naming, (missing, prefix), around, assumes));
                 None
             }
         }

@@ -59,12 +59,17 @@ impl<'a> Unfolding<'a, '_, '_> {
             let words = name.split_whitespace().map(str::to_owned).chain([name.split_whitespace().collect()]);
             words.for_each(|word| self.miss(unit, word));
         }
+        if name.contains('/') && !has_expression(name) {
+            // Reported in the same way.
+            name.split('/').for_each(|part| self.miss(unit, part.to_owned()));
+        }
         if is_seen {
             self.fleet.scopes[scope].members.push(index);
         }
         let first = self.fleet.scopes[scope].by_name.get(name).copied();
         match first {
-            _ if name.is_empty() => {}
+            // Any name may be meant for it; that it has none is reported.
+            _ if name.is_empty() => self.miss(unit, "*".to_owned()),
             _ if !is_seen => {
                 let condition = written.condition.as_ref().map_or(component.name.location, |text| text.location);
                 self.fleet.absent.insert((scope, name), condition);

@@ -24,7 +24,8 @@ use crate::check::values::replica::Replica;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::{Budget, PATH_ELEMENTS, REPLICAS};
 use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
-use crate::source::Location;
+use crate::source::{FileId, Location};
+use smol_str::SmolStr;
 
 /// Collects the components and checks that names are unique.
 pub(crate) fn unfold<'a>(
@@ -58,6 +59,7 @@ pub(crate) fn unfold<'a>(
         open: Vec::new(),
         is_full: false,
         wrong_prefixes: HashSet::new(),
+        wrong_names: HashSet::new(),
         options,
         report,
         lowers_attributes: severities.mentions(&codes::UNKNOWN_ATTRIBUTE),
@@ -115,6 +117,8 @@ pub(crate) struct Unfolding<'a, 'r, 's> {
     pub(crate) is_full: bool,
     /// The declarations of prefixes for which names lead nowhere; reported.
     wrong_prefixes: HashSet<Location>,
+    /// The names of composites that lead nowhere, by their files; reported.
+    wrong_names: HashSet<(FileId, SmolStr)>,
     pub(crate) options: &'a Options,
     pub(crate) report: &'r mut Report<'s>,
     /// True if errors about unknown attributes may be let pass.

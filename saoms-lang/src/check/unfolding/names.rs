@@ -87,7 +87,17 @@ pub(crate) fn loose(naming: Naming<'_>, around: &Composite, found: &Composite) -
     }
     if let Some(bound) = prefix_of(namespace, element) {
         let right = format!("{bound}:{local}");
-        return one.replace(name, name.location, &right);
+        // Names with the same prefix are wrong in the same way.
+        let others = around.namings().filter_map(|other| {
+            let rest = other.name.split_once(':').filter(|(of, _)| *of == prefix && !prefix.is_empty())?.1;
+            let is_other = other.name.location != name.location
+                && other.origin.element(&around.document).resolve_prefix(prefix).is_none();
+            is_other.then(|| Edit { location: other.name.location, replacement: escaped(&format!("{bound}:{rest}")) })
+        });
+        let own = Edit { location: name.location, replacement: escaped(&right) };
+        let edits: Vec<Edit> = std::iter::once(own).chain(others).collect();
+        let more = if edits.len() > 1 { ", and the same prefix of the other names" } else { "" };
+        return one.suggest_edits(format!("{}{more}", replacing(name, &right)), edits);
     }
     // Others may be bound further inside.
     let is_free = |one: &String| element.resolve_prefix(one).is_none();
@@ -147,11 +157,11 @@ pub(super) fn wrong_prefix<'m>(
 /// The fault of a name that leads nowhere.
 pub(crate) fn not_found(
     naming: Naming<'_>,
-    missing: &Missing,
+    (missing, prefix): (&Missing, Option<(Location, &str)>),
     composite: &Composite,
     assume_classes: bool,
 ) -> Diagnostic {
-    let name = naming.name;
+    let (name, wrong_namespace) = (naming.name, prefix);
     let (namespaces, local) = composite.resolve_name(naming);
     let of = match &namespaces {
         None => String::new(),
@@ -180,9 +190,16 @@ pub(crate) fn not_found(
     let prefix = of.and_then(|namespace| prefix_of(namespace, around));
     for near in &missing.near {
         let meant = prefix.map_or_else(|| near.clone(), |prefix| format!("{prefix}:{near}"));
-        one = one.replace(name, name.location, &meant);
+        let places = composite.namings().filter(|other| other.name.value == name.value);
+        let edit = |place: Location| Edit { location: place, replacement: escaped(&meant) };
+        let edits: Vec<Edit> = places.map(|other| edit(other.name.location)).collect();
+        let description = match edits.len() {
+            0 | 1 => replacing(name, &meant),
+            count => format!("{}, in {count} places", replacing(name, &meant)),
+        };
+        one = one.suggest_edits(description, if edits.is_empty() { vec![edit(name.location)] } else { edits });
     }
-    if let Some((at, meant)) = wrong_prefix(naming, missing, composite) {
+    if let Some((at, meant)) = wrong_namespace {
         let of = namespaces.iter().flatten().next().map_or("", |namespace| namespace.as_str());
         one = one.suggest(replacing(of, meant), at, escaped(meant));
     }

@@ -131,6 +131,12 @@ pub(crate) fn unknown_component(
         let help = format!("{} is a {what}: write the name of its component before it", quoted(name));
         return Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help).replace(name, at, &meant);
     }
+    let mut of_class = fleet.scopes[scope].members.iter().map(|member| fleet.members[*member].component);
+    let mut of_class = of_class.by_ref().filter(|one| one.class().is_some_and(|class| *class == *name));
+    if let (Some(only), None) = (of_class.next(), of_class.next()) {
+        let one = Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).replace(name, at, &only.name);
+        return one.help("write the name of the component, not that of its class");
+    }
     // A reference of a composite can stand for those of all replicas.
     let (first, last): (Vec<&str>, Vec<&str>) = fleet.group_names(scope).partition(|_| is_promoted);
     // A name with a blank in it is reported, and can be no target.

@@ -264,7 +264,11 @@ impl<'a> Nest<'_, 'a> {
                 let open = self.named(&node);
                 self.lexer.faults.add(|| {
                     let message = tags::without_end_tag(self.input, open);
-                    self.input.ended(&codes::XML_UNCLOSED, open.at.start, open.at.end, message)
+                    let one = self.input.ended(&codes::XML_UNCLOSED, open.at.start, open.at.end, message);
+                    let (length, tag) = (self.input.len(), format!("</{}>", open.name));
+                    let end = self.input.at(length, length);
+                    let break_before = if self.input.text.ends_with('\n') { "" } else { "\n" };
+                    one.suggest(format!("add {} at the end", quoted(&tag)), end, format!("{break_before}{tag}\n"))
                 });
             }
         }

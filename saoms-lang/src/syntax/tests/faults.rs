@@ -99,7 +99,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a b='
             1:6 ['] S0103 the value of `b` has no closing quote
         <a>x
-            1:2 [a] S0103 `<a>` has no end tag
+            1:2 [a] S0103 `<a>` has no end tag | add `</a>` at the end
         <a><b></a>
             1:7 [</a>] S0102 `</a>` found where `</b>` is expected | end `b` with `/>`
         <a><b>x</a>

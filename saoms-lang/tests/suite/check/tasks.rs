@@ -189,8 +189,8 @@ fn settings_that_do_not_go_together() {
 <property name="restartBackoff">1s</property>"#,
     ));
     expect![[r#"
-        3:23-25 warning S4006: `user` is given without `password`
-          help: give both, or neither
+        3:23-25 warning S4006: `user` has no effect: there is no `url` of a message broker
+          help: leave it out, or give all three
     "#]]
     .assert_eq(&robot(r#"<property name="user">me</property>"#));
     expect![[r#"
