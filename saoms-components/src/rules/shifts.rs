@@ -58,6 +58,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                     path(index)
                 );
                 let help = "let it run all the time: remove it from `tasks`, and its `runOnStartup`";
+                wrong_tasks = Some(findings.len());
                 findings.push(
                     Finding::new(Place::component(task), message)
                         .label(Place::component(index), "this component schedules the shifts")
