@@ -111,8 +111,8 @@ pub trait Component: Derived + Send + Sized + 'static {
         <Self as Derived>::made::<true>(properties)
     }
 
-    /// Begins the work. The handles in fields (`#[publishes]` and the like) are bound before; others are asked for here.
-    /// By itself it starts what it extends, or its loops.
+    /// Begins the work. The handles in fields (`#[publishes]` and the like) are bound before; others are asked for
+    /// here. By itself it starts what it extends, or its loops.
     ///
     /// # Errors
     /// The component cannot start; at the start of a fleet nothing starts then.
@@ -133,10 +133,10 @@ pub trait Component: Derived + Send + Sized + 'static {
     /// class says `reacts`.
     ///
     /// Each such message comes here alone, and those of all other topics to [`execute`](Component::execute). Without a
-    /// `trigger` in the composite all come to `execute`, so a component handles them in both. A reaction is no execution:
-    /// its [number](Context::execution) and the due times of executions do not change. It is due when the message
-    /// arrives, or when `minimum` has passed since the last reaction; the `deadline` counts from the message. By itself
-    /// it does what the component that it extends does.
+    /// `trigger` in the composite all come to `execute`, so a component handles them in both. A reaction is no
+    /// execution: its [number](Context::execution) and the due times of executions do not change. It is due when the
+    /// message arrives, or when `minimum` has passed since the last reaction; the `deadline` counts from the message.
+    /// By itself it does what the component that it extends does.
     ///
     /// ```
     /// use saoms_api::{Class, Component, Context, Failure, Message, Subscription, Topic};
@@ -296,9 +296,9 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// # Extending a class
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the
 /// properties, topics, services, references, knowledge and loops of the other one and those that it declares itself;
-/// composites change its loops as those of the other, and rules over fleets take it for one. What it does not write goes
-/// to the other: start, execution, reaction, end, save, restore and `waits_for`. What it writes calls that of the other
-/// where its work belongs:
+/// composites change its loops as those of the other, and rules over fleets take it for one. What it does not write
+/// goes to the other: start, execution, reaction, end, save, restore and `waits_for`. What it writes calls that of the
+/// other where its work belongs:
 ///
 /// ```
 /// use saoms_api::{Class, Component, Context, Failure, Message, Own, Publisher, Topic};

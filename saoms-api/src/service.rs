@@ -80,8 +80,8 @@ pub trait Reference: Default {
     fn index(&self) -> u32;
 }
 
-/// A field with `#[reference]`: a handle, `Option` of one for a reference that needs no target (it is `None` without one),
-/// or `Vec` of them for one that takes many.
+/// A field with `#[reference]`: a handle, `Option` of one for a reference that needs no target (it is `None` without
+/// one), or `Vec` of them for one that takes many.
 pub trait ReferenceField: Sized {
     /// The operations of the interface, as [`Interface::DECLARATION`].
     const DECLARATION: &'static str;

@@ -12,7 +12,7 @@ mod limits;
 pub mod load;
 pub mod model;
 pub mod project;
-pub mod registry;
-pub mod schema;
 pub mod source;
 pub mod syntax;
+
+pub use saoms_registry::{registry, schema};

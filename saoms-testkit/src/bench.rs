@@ -1,3 +1,4 @@
+#[cfg(feature = "fleets")]
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -9,9 +10,10 @@ use saoms_api::host::{
 use saoms_api::{
     CallError, Cause, Class, Context, Failure, Header, LoopClass, Message, ReportValue, Time, Topic, Work,
 };
+#[cfg(feature = "fleets")]
 use saoms_core::plugin::Plugin;
-use saoms_lang::registry::{RegisteredLoop, Registry};
-use saoms_lang::schema::Schema;
+use saoms_registry::registry::{RegisteredLoop, Registry};
+use saoms_registry::schema::Schema;
 use serde_json::Value;
 
 use crate::stage::{Action, Stage, StageLoop, Wire};
@@ -70,10 +72,11 @@ impl Bench {
         Bench::in_registry(&registry, &name, values)
     }
 
-    /// A component of a class in a library, across the boundary to plugins.
+    /// A component of a class in a library, across the boundary to plugins. With the feature `fleets`.
     ///
     /// # Errors
     /// The library cannot be used, has no such class, or its component refuses the values.
+    #[cfg(feature = "fleets")]
     pub fn of_library(library: &Path, class: &str, values: &[(&str, &str)]) -> Result<Bench, Failure> {
         let mut registry = Registry::new();
         let plugin = Plugin::open(library).map_err(|error| Failure::new(error.to_string()))?;

@@ -4,16 +4,13 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::{env, fs};
 
-use saoms_lang::source::FileId;
-use saoms_lang::syntax;
-use saoms_tools::format::{WIDTH, format};
-
-use crate::{Bench, Fleet};
+use crate::Bench;
 
 /// Number of lines that are shown around a difference.
 const AROUND: usize = 3;
 
-impl Fleet {
+#[cfg(feature = "fleets")]
+impl crate::Fleet {
     /// Compares the fleet with everything resolved, as `saoms expand` writes it, with the text of a file; paths are
     /// relative to the crate.
     ///
@@ -24,6 +21,10 @@ impl Fleet {
     /// the composites have errors.
     #[track_caller]
     pub fn expect_expanded(&self, path: impl AsRef<Path>) {
+        use saoms_lang::source::FileId;
+        use saoms_lang::syntax;
+        use saoms_tools::format::{WIDTH, format};
+
         let path = path.as_ref();
         let text = self.expanded();
         let text = match syntax::parse(FileId(0), &std::sync::Arc::new(text.clone())).well_formed() {

@@ -1,5 +1,9 @@
 //! Tests of composites and components: check a fleet, or run it in virtual time and look at the result.
 //!
+//! A [`Bench`] runs one component and a [`LoopBench`] one loop. [`Installed`] runs a fleet with the command `saoms`
+//! that is installed, which is all that a plugin needs: with `default-features = false` its tests build none of SAOMS
+//! but the contract. With the feature `fleets`, which is there by default, a [`Fleet`] runs in the process of the test.
+//!
 //! ```
 //! use std::time::Duration;
 //! use saoms_testkit::Fleet;
@@ -41,24 +45,38 @@
 
 mod bench;
 mod comply;
+#[cfg(feature = "fleets")]
 mod expected;
+#[cfg(feature = "fleets")]
 mod faults;
+#[cfg(feature = "fleets")]
 mod fleet;
 mod golden;
+mod installed;
 mod loop_bench;
+#[cfg(feature = "fleets")]
 mod moment;
+#[cfg(feature = "fleets")]
 mod run;
 mod stage;
+#[cfg(feature = "fleets")]
 mod start;
 
 pub use bench::Bench;
 pub use comply::{comply, comply_as, comply_loop, comply_loop_as};
+#[cfg(feature = "fleets")]
 pub use expected::expect_diagnostics;
+#[cfg(feature = "fleets")]
 pub use fleet::Fleet;
+pub use installed::{Installed, InstalledRun};
 pub use loop_bench::LoopBench;
+#[cfg(feature = "fleets")]
 pub use moment::{Expect, Moment, PointInTime};
+#[cfg(feature = "fleets")]
 pub use run::Run;
+#[cfg(feature = "fleets")]
 use saoms_components as _;
+#[cfg(feature = "fleets")]
 pub use start::NotStarted;
 
 /// The examples of `docs/loops.md`, compiled and run.

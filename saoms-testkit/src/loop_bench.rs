@@ -1,5 +1,6 @@
 use std::fmt;
 use std::ops::{Deref, DerefMut};
+#[cfg(feature = "fleets")]
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -7,9 +8,10 @@ use std::time::Duration;
 use saoms_api::host::contain::{contained, install_hook};
 use saoms_api::host::{DynComponent, Invocation, KnowledgeClass};
 use saoms_api::{CallError, Chance, Context, Failure, Knowledge, LoopClass, Loops, Saved, Value};
+#[cfg(feature = "fleets")]
 use saoms_core::plugin::Plugin;
-use saoms_lang::registry::{RegisteredLoop, Registry};
-use saoms_lang::schema::Schema;
+use saoms_registry::registry::RegisteredLoop;
+use saoms_registry::schema::Schema;
 
 use crate::Bench;
 use crate::bench::{given, loop_class};
@@ -103,17 +105,18 @@ impl<K: KnowledgeClass + Send> LoopBench<K> {
         LoopBench::of_class(&loop_class::<L>()?, knowledge, values)
     }
 
-    /// A loop in a library, across the boundary to plugins.
+    /// A loop in a library, across the boundary to plugins. With the feature `fleets`.
     ///
     /// # Errors
     /// The library cannot be used, has no such loop, or the loop refuses the values.
+    #[cfg(feature = "fleets")]
     pub fn of_library(
         library: &Path,
         name: &str,
         knowledge: K,
         values: &[(&str, &str)],
     ) -> Result<LoopBench<K>, Failure> {
-        let mut registry = Registry::new();
+        let mut registry = saoms_registry::registry::Registry::new();
         let plugin = Plugin::open(library).map_err(|error| Failure::new(error.to_string()))?;
         plugin.register(&mut registry).map_err(|error| Failure::new(error.to_string()))?;
         let class = registry.get_loop(name).ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))?;

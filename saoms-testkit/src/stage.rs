@@ -8,8 +8,8 @@ use std::time::Duration;
 use saoms_api::host::{Host, LoopVisit};
 use saoms_api::host::{NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration};
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
-use saoms_lang::registry::{ClassTopic, RegisteredClass, RegisteredLoop, Registry};
-use saoms_lang::schema::Schema;
+use saoms_registry::registry::{ClassTopic, RegisteredClass, RegisteredLoop, Registry};
+use saoms_registry::schema::Schema;
 
 use crate::Bench;
 

@@ -48,6 +48,9 @@ macro_rules! codes {
         /// Every code, in the order of the table.
         pub static ALL: &[&Code] = &[$(&$constant),*];
 
+        // No rule over fleets may have one of them.
+        saoms_registry::inventory::submit! { saoms_registry::ReservedCodes(ALL) }
+
         /// The natures of each code.
         static NATURES: &[&[Nature]] = &[$(&[$($(Nature::$nature),*)?]),*];
     };

@@ -37,7 +37,7 @@ impl Names {
         // A crate cannot depend on another one of its own name.
         const CRATES: &[&str] = &[
             "saoms", "saoms-abi", "saoms-api", "saoms-components", "saoms-core", "saoms-derive", "saoms-lang",
-            "saoms-testkit", "saoms-tools",
+            "saoms-registry", "saoms-testkit", "saoms-tools",
         ];
         if !starts || !fits {
             return Err(format!(
@@ -97,18 +97,21 @@ pub(super) fn source(api: Option<&str>) -> Result<Source, String> {
 }
 
 impl Source {
-    fn dependency(&self, package: &str) -> String {
+    /// `more` is what else is said of it, as `, default-features = false`.
+    fn dependency(&self, package: &str, more: &str) -> String {
         match self {
-            Source::Checkout(folder) => format!("{package} = {{ path = {:?} }}", folder.join(package)),
-            Source::Git(url) => format!("{package} = {{ git = {url:?} }}"),
-            Source::Version(version) => format!("{package} = {version:?}"),
+            Source::Checkout(folder) => format!("{package} = {{ path = {:?}{more} }}", folder.join(package)),
+            Source::Git(url) => format!("{package} = {{ git = {url:?}{more} }}"),
+            Source::Version(version) if more.is_empty() => format!("{package} = {version:?}"),
+            Source::Version(version) => format!("{package} = {{ version = {version:?}{more} }}"),
         }
     }
 }
 
 /// What a plugin of a kind is made from.
 struct Template {
-    library: &'static str,
+    code: &'static str,
+    /// Its test of a fleet; empty for one in C.
     fleet: &'static str,
     composite: &'static str,
     about: &'static str,
@@ -116,65 +119,99 @@ struct Template {
     components: bool,
 }
 
+macro_rules! template {
+    ($folder:literal, $components:literal, $about:literal) => {
+        Template {
+            code: include_str!(concat!("templates/", $folder, "/lib.rs")),
+            fleet: include_str!(concat!("templates/", $folder, "/fleet.rs")),
+            composite: include_str!(concat!("templates/", $folder, "/fleet.composite")),
+            about: $about,
+            components: $components,
+        }
+    };
+}
+
 impl Template {
     fn of(kind: PluginKind) -> Template {
         match kind {
-            PluginKind::Component => Template {
-                library: include_str!("templates/component/lib.rs"),
-                fleet: include_str!("templates/component/fleet.rs"),
+            PluginKind::Component => template!("component", false, "counts, and publishes the count on its own topic"),
+            PluginKind::Robot => template!("robot", true, "drives a robot: its wheels and its arm"),
+            PluginKind::Loop => template!("loop", false, "lets a robot watch its battery"),
+            PluginKind::Extension => template!("extension", true, "brings a robot that tells how far it has driven"),
+            PluginKind::Master => template!("master", true, "brings a master that asks for luggage by itself"),
+            PluginKind::C => Template {
+                code: include_str!("templates/c/plugin.c"),
+                fleet: "",
                 composite: include_str!("templates/component/fleet.composite"),
-                about: "counts, and publishes the count on its own topic",
+                about: "",
                 components: false,
-            },
-            PluginKind::Robot => Template {
-                library: include_str!("templates/robot/lib.rs"),
-                fleet: include_str!("templates/robot/fleet.rs"),
-                composite: include_str!("templates/robot/fleet.composite"),
-                about: "drives a robot: its wheels and its arm",
-                components: true,
-            },
-            PluginKind::Loop => Template {
-                library: include_str!("templates/loop/lib.rs"),
-                fleet: include_str!("templates/loop/fleet.rs"),
-                composite: include_str!("templates/loop/fleet.composite"),
-                about: "lets a robot watch its battery",
-                components: true,
             },
         }
     }
 
     /// The name in its code that is also one that a plugin with this class would bring.
     fn clash(&self, class: &str) -> Option<&'static str> {
-        let own = [class.to_owned(), format!("{class}Properties")];
+        let own = [class.to_owned(), format!("{class}Own")];
         let is_part = |sign: char| sign.is_ascii_alphanumeric() || sign == '_';
-        let mut words = [self.library, self.fleet].into_iter().flat_map(|text| text.split(move |sign| !is_part(sign)));
+        let mut words = [self.code, self.fleet].into_iter().flat_map(|text| text.split(move |sign| !is_part(sign)));
         words.find(|word| own.iter().any(|own| own == word))
     }
 }
 
-/// The files of a plugin, by their places in its folder.
-pub(super) fn plugin(names: &Names, kind: PluginKind, source: &Source) -> Vec<(PathBuf, String)> {
-    let Template { library, fleet, composite, about, components } = Template::of(kind);
-    let fill = |text: &str| {
-        text.replace("my-plugin", &names.package)
-            .replace("my_plugin", &names.library)
-            .replace("MyPlugin", &names.class)
-            .replace("ABOUT", about)
-    };
-    let mut dependencies = source.dependency("saoms-api");
-    if components {
-        dependencies = format!("{dependencies}\n{}", source.dependency("saoms-components"));
+impl Names {
+    fn fill(&self, text: &str) -> String {
+        text.replace("my-plugin", &self.package).replace("my_plugin", &self.library).replace("MyPlugin", &self.class)
     }
-    let cargo = fill(include_str!("templates/Cargo.toml"))
+}
+
+/// The files of a plugin, by their places in its folder. `program` is the command for its tests, where they would find
+/// none.
+pub(super) fn plugin(
+    names: &Names,
+    kind: PluginKind,
+    source: &Source,
+    program: Option<&Path>,
+) -> Vec<(PathBuf, String)> {
+    let Template { code, fleet, composite, about, components } = Template::of(kind);
+    let mut dependencies = source.dependency("saoms-api", "");
+    if components {
+        dependencies = format!("{dependencies}\n{}", source.dependency("saoms-components", ""));
+    }
+    let testkit = source.dependency("saoms-testkit", ", default-features = false");
+    let cargo = names
+        .fill(include_str!("templates/Cargo.toml"))
         .replace("# DEPENDENCIES", &dependencies)
-        .replace("# TESTKIT", &source.dependency("saoms-testkit"));
-    vec![
+        .replace("# TESTKIT", &testkit);
+    let mut files = vec![
         ("Cargo.toml".into(), cargo),
-        ("README.md".into(), fill(include_str!("templates/README.md"))),
-        (".gitignore".into(), "/target\n".to_owned()),
-        ("src/lib.rs".into(), fill(library)),
-        ("tests/fleet.rs".into(), fill(fleet)),
-        ("fleet.composite".into(), fill(composite)),
+        ("README.md".into(), names.fill(include_str!("templates/README.md")).replace("ABOUT", about)),
+        (".gitignore".into(), "/target\n/.cargo\n".to_owned()),
+        ("src/lib.rs".into(), names.fill(code)),
+        ("tests/fleet.rs".into(), names.fill(fleet)),
+        ("fleet.composite".into(), names.fill(composite)),
+    ];
+    if let Some(program) = program {
+        let text = format!(
+            "# The command for the tests of fleets, on this machine alone: `saoms` was not in PATH.\n[env]\nSAOMS = {:?}\n",
+            program.display().to_string()
+        );
+        files.push((".cargo/config.toml".into(), text));
+    }
+    files
+}
+
+/// The files of a plugin in C.
+pub(super) fn plugin_in_c(names: &Names) -> Vec<(PathBuf, String)> {
+    let Template { code, composite, .. } = Template::of(PluginKind::C);
+    let code = names.fill(code).replace("ABI_NUMBER", &saoms_abi::VERSION.to_string());
+    vec![
+        ("README.md".into(), names.fill(include_str!("templates/c/README.md"))),
+        ("Makefile".into(), names.fill(include_str!("templates/c/Makefile"))),
+        (".gitignore".into(), "/build\n".to_owned()),
+        ("src/plugin.c".into(), code),
+        ("include/saoms.h".into(), include_str!("../../../saoms-abi/include/saoms.h").to_owned()),
+        ("include/saoms_author.h".into(), include_str!("../../../saoms-abi/include/saoms_author.h").to_owned()),
+        ("fleet.composite".into(), names.fill(composite)),
     ]
 }
 

@@ -34,7 +34,8 @@ pub(crate) enum NewKind {
         /// The folder to make; its name becomes that of the package
         path: PathBuf,
 
-        /// Kind of plugin: a component, the hardware of a robot, or a loop of robots
+        /// Kind of plugin: a component, the hardware of a robot, a loop of robots, a robot that extends the one that
+        /// ships, a master that does, or a component in C
         #[arg(long, value_enum, default_value_t = PluginKind::Component)]
         kind: PluginKind,
 
@@ -62,6 +63,9 @@ pub(crate) enum PluginKind {
     Component,
     Robot,
     Loop,
+    Extension,
+    Master,
+    C,
 }
 
 /// Creates the files. Existing files are never changed.
@@ -85,14 +89,25 @@ pub(crate) fn new(arguments: &NewArguments) -> Exit {
 
 fn plugin(path: &Path, kind: PluginKind, api: Option<&str>) -> Result<String, String> {
     let names = Names::of(&file_name(path)?, kind)?;
-    let source = files::source(api)?;
-    write_all(path, files::plugin(&names, kind, &source))?;
+    let (files, next) = match kind {
+        PluginKind::C => {
+            (files::plugin_in_c(&names), "make test\n  saoms run fleet.composite --virtual --for 10s --plugin build")
+        }
+        kind => (
+            files::plugin(&names, kind, &files::source(api)?, unlisted_program().as_deref()),
+            "cargo test\n  cargo build\n  saoms run fleet.composite --virtual --for 10s --plugin target/debug",
+        ),
+    };
+    write_all(path, files)?;
     let path = path.display();
-    Ok(format!(
-        "Made the plugin `{}` in {path}. Next:\n\n  cd {path}\n  cargo test\n  cargo build\n  saoms run \
-         fleet.composite --virtual --for 10s --plugin target/debug\n",
-        names.package
-    ))
+    Ok(format!("Made the plugin `{}` in {path}. Next:\n\n  cd {path}\n  {next}\n", names.package))
+}
+
+/// This program, where no `saoms` is found in `PATH`: so that the tests of a plugin find it.
+fn unlisted_program() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let is_listed = std::env::split_paths(&path).any(|folder| folder.join("saoms").is_file());
+    std::env::current_exe().ok().filter(|_| !is_listed)
 }
 
 fn composite(path: &Path) -> Result<String, String> {

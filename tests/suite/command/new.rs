@@ -24,6 +24,7 @@ fn made_tested_and_run(kind: &str, expected: &str) {
         let cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
             .args([command, "--offline", "--target-dir"])
             .arg(target())
+            .env("SAOMS", env!("CARGO_BIN_EXE_saoms"))
             .current_dir(&plugin)
             .output()
             .unwrap();
@@ -53,6 +54,52 @@ fn a_made_robot_builds_and_runs() {
 #[test]
 fn a_made_loop_builds_and_runs() {
     made_tested_and_run("loop", "goes to charge");
+}
+
+#[test]
+fn a_made_robot_that_extends_the_one_that_ships_builds_and_runs() {
+    made_tested_and_run("extension", "has driven 8 blocks");
+}
+
+#[test]
+fn a_made_master_builds_and_runs() {
+    made_tested_and_run("master", "deposited luggage 2 at (3,10)");
+}
+
+#[test]
+fn a_made_plugin_in_c_builds_and_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = saoms_in(folder.path(), &["new", "plugin", "made-c", "--kind", "c"]);
+    assert!(made.status.success() && text(&made).contains("make test"), "{}", text(&made));
+    let plugin = folder.path().join("made-c");
+    let tested = Command::new("make")
+        .args(["test", "CFLAGS=-Wall -Wextra -Werror -pedantic"])
+        .arg(format!("SAOMS={}", env!("CARGO_BIN_EXE_saoms")))
+        .current_dir(&plugin)
+        .output()
+        .unwrap();
+    assert!(tested.status.success() && text(&tested).contains("counts to 4"), "{}", text(&tested));
+    let listed = saoms_in(&plugin, &["components", "made_c.MadeC", "--plugin", "build"]);
+    assert!(text(&listed).contains("Number that is added in each period."), "{}", text(&listed));
+}
+
+/// What a test of a plugin's fleet says where no command is installed.
+#[test]
+fn the_tests_of_a_plugin_are_told_where_the_command_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let config = |path: &str| {
+        let name = format!("made{}", path.len());
+        let made = Command::new(env!("CARGO_BIN_EXE_saoms"))
+            .args(["new", "plugin", &name])
+            .env("PATH", path)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(made.status.success(), "{}", text(&made));
+        fs::read_to_string(folder.path().join(name).join(".cargo/config.toml")).unwrap_or_default()
+    };
+    assert!(config("/nowhere").contains(&format!("SAOMS = {:?}", env!("CARGO_BIN_EXE_saoms"))));
+    assert_eq!(config(Path::new(env!("CARGO_BIN_EXE_saoms")).parent().unwrap().to_str().unwrap()), "");
 }
 
 #[test]
@@ -136,7 +183,9 @@ fn wrong_names_and_sources_are_told() {
         (&["new", "plugin", "hardware", "--kind", "robot"], "`Hardware` is used by the code"),
         (&["new", "plugin", "component"], "`Component` is used by the code"),
         (&["new", "plugin", "class"], "`Class` is used by the code"),
-        (&["new", "plugin", "record", "--kind", "loop"], "`Record` is used by the code"),
+        (&["new", "plugin", "adaptation", "--kind", "loop"], "`Adaptation` is used by the code"),
+        (&["new", "plugin", "robot", "--kind", "extension"], "`Robot` is used by the code"),
+        (&["new", "plugin", "own", "--kind", "master"], "`Own` is used by the code"),
         (&["new", "plugin", "count"], "`Count` is used by the code"),
         (&["new", "plugin", "result"], "`Result` is used by the code"),
         (&["new", "plugin", "robot", "--api", "nowhere"], "expected a folder with `saoms-api` in it"),

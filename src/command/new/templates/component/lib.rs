@@ -1,6 +1,6 @@
 //! A component that counts, and publishes its count on a topic of its own.
 
-use saoms_api::{Class, Component, Context, Failure, Message, Properties, Publisher, Topic};
+use saoms_api::{Class, Component, Context, Failure, Message, Own, Publisher, Topic, info};
 
 /// The count of a component.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
@@ -12,38 +12,24 @@ pub struct Count {
 /// The newest number.
 pub const COUNT: Topic<Count> = Topic::state("COUNT");
 
-/// Properties of the component.
-#[derive(Debug, Properties)]
-pub struct MyPluginProperties {
+/// A component that counts.
+#[derive(Debug, Class)]
+#[class(name = "my_plugin.MyPlugin", periodic)]
+pub struct MyPlugin {
     /// Number that is added in each period.
     #[property(default = 1, range = 1..=100)]
     step: u32,
-}
-
-/// A component that counts.
-#[derive(Debug, Class)]
-#[class(name = "my_plugin.MyPlugin", periodic, publishes(COUNT))]
-pub struct MyPlugin {
-    properties: MyPluginProperties,
-    number: u32,
+    #[publishes(COUNT)]
     count: Publisher<Count>,
+    number: u32,
 }
 
 impl Component for MyPlugin {
-    type Properties = MyPluginProperties;
-
-    fn new(properties: MyPluginProperties) -> Result<Self, Failure> {
-        Ok(MyPlugin { properties, number: 0, count: Publisher::default() })
-    }
-
-    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.count = context.publish(&COUNT)?;
-        Ok(())
-    }
+    type Properties = Own<Self>;
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.number = self.number.wrapping_add(self.properties.step);
-        context.info(format_args!("counts to {}", self.number));
+        self.number = self.number.wrapping_add(self.step);
+        info!(context, "counts to {}", self.number);
         context.send(&self.count, Count { number: self.number })
     }
 }

@@ -3,34 +3,24 @@
 //! The calls must not wait: `begin` starts an action, and `poll` returns its progress in each period of the robot. Here
 //! the hardware is simulated, by counting; replace that by the calls of your motors.
 
-use saoms_api::{Class, Component, Context, Failure, Properties};
+use saoms_api::{Class, Component, Context, Failure, Own, info};
 use saoms_components::grid::{Block, Map};
 use saoms_components::hardware::{Action, ActionKind, Area, Hardware, Progress};
-
-/// Properties of the hardware.
-#[derive(Debug, Properties)]
-pub struct MyPluginProperties {
-    /// Number of periods that a move from one block to the next takes.
-    #[property(default = 3, range = 1..=1000)]
-    move_periods: u32,
-}
 
 /// The driver of one robot.
 #[derive(Debug, Class)]
 #[class(name = "my_plugin.MyPlugin", passive, service("hardware": Hardware))]
 pub struct MyPlugin {
-    properties: MyPluginProperties,
+    /// Number of periods that a move from one block to the next takes.
+    #[property(default = 3, range = 1..=1000)]
+    move_periods: u32,
     block: Block,
     /// The running action, and the number of periods that are left.
     running: Option<(Action, u32)>,
 }
 
 impl Component for MyPlugin {
-    type Properties = MyPluginProperties;
-
-    fn new(properties: MyPluginProperties) -> Result<Self, Failure> {
-        Ok(MyPlugin { properties, block: Block::default(), running: None })
-    }
+    type Properties = Own<Self>;
 }
 
 impl Hardware for MyPlugin {
@@ -44,7 +34,7 @@ impl Hardware for MyPlugin {
     }
 
     fn begin(&mut self, _: &mut Context<'_>, _: u32, action: Action) -> Result<Progress, Failure> {
-        let periods = if action.kind == ActionKind::Move { self.properties.move_periods } else { 1 };
+        let periods = if action.kind == ActionKind::Move { self.move_periods } else { 1 };
         self.running = Some((action, periods));
         Ok(Progress::Running)
     }
@@ -58,7 +48,7 @@ impl Hardware for MyPlugin {
                     ActionKind::Deposit => context.count("luggage.delivered", 1),
                     ActionKind::Collect => {}
                 }
-                context.info(format_args!("{:?} at {} is done", action.kind, self.block));
+                info!(context, "{:?} at {} is done", action.kind, self.block);
                 self.running = None;
                 Ok(Progress::Done)
             }

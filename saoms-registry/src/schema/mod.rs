@@ -18,7 +18,7 @@ use serde_json::Value;
 /// A message type.
 ///
 /// ```
-/// use saoms_lang::schema::Schema;
+/// use saoms_registry::schema::Schema;
 ///
 /// let schema = r#"{"name":"Position","fields":[{"name":"robot","type":"uint32"},
 ///     {"name":"blocks","type":{"sequence":"int16"}}]}"#;

@@ -132,7 +132,7 @@ impl PropertyDeclaration {
     }
 
     /// The values at both ends of what it allows; `None` where it has none.
-    pub(crate) fn ends(&self) -> Option<[PropertyValue; 2]> {
+    pub fn ends(&self) -> Option<[PropertyValue; 2]> {
         /// Numbers beyond this are as good as this: constructors may make room for them.
         const LARGE: f64 = 1_000_000.0;
         let both = |least: &str, most: &str| {
@@ -154,7 +154,7 @@ impl PropertyDeclaration {
     }
 
     /// True if it is a number or a duration.
-    pub(crate) fn is_number(&self) -> bool {
+    pub fn is_number(&self) -> bool {
         matches!(self.kind, PropertyKind::Integer | PropertyKind::Float | PropertyKind::Duration)
     }
 

@@ -34,7 +34,7 @@ pub use looping::{DeclaredEntry, DefaultLoops, KnowledgeDeclaration, LoopDeclara
 pub use rule::{RegisteredRule, RuleProvider};
 pub use team::{Team, TeamFault};
 
-use crate::diagnostic::codes;
+use crate::ReservedCodes;
 use near::{near, simple};
 
 /// Classes and loops by name.
@@ -42,7 +42,7 @@ use near::{near, simple};
 /// ```
 /// use saoms_api::host::Registration;
 /// use saoms_api::{Class, Component, Failure};
-/// use saoms_lang::registry::Registry;
+/// use saoms_registry::registry::Registry;
 ///
 /// /// Stands around.
 /// #[derive(Class)]
@@ -62,7 +62,7 @@ use near::{near, simple};
 /// assert_eq!(registry.get("example.Lamp").unwrap().declaration().doc, "Stands around.");
 /// assert_eq!(registry.nearest("example.Lmap"), ["example.Lamp"]);
 /// assert!(registry.add(Registration::of::<Lamp>()).is_err(), "the name is taken");
-/// # Ok::<(), saoms_lang::registry::RegistryError>(())
+/// # Ok::<(), saoms_registry::registry::RegistryError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Registry {
@@ -119,7 +119,9 @@ impl Registry {
             first: Holder::new("rule", known.name, origin),
             second: Holder::new("rule", code.name, rule.origin()),
         };
-        if let Some(known) = codes::ALL.iter().find(|known| known.id == code.id) {
+        if let Some(known) =
+            inventory::iter::<ReservedCodes>().flat_map(|codes| codes.0).find(|known| known.id == code.id)
+        {
             return Err(taken(known, None));
         }
         match self.rules.binary_search_by_key(&code.id, |known| known.code.id) {

@@ -1,6 +1,7 @@
 //! The names of classes that an unknown one was probably meant to be.
 
-use crate::diagnostic::{nearest, nearest_equal, nearest_few};
+use saoms_api::host::{nearest_equal, nearest_few};
+use saoms_api::rule::nearest;
 
 /// The number of names that are offered.
 const OFFERED: usize = 3;
