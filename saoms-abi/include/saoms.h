@@ -400,6 +400,12 @@ typedef struct SaomsHostFunctions {
     // Registers a function that stops the component's hardware from any thread, in `initialize` alone; the declaration
     // of the class says `"stops": true`. The host frees its state with `release`, also when it refuses the function.
     SaomsStatus (*register_stop)(void *state, const struct SaomsStopView *stop, struct SaomsSink error);
+    // Keeps these bytes beyond a crash of the component, in place of those before, and gives their number. What this
+    // execution sends goes out once they are kept; they are lost if it fails.
+    SaomsStatus (*keep)(void *state, struct SaomsBytes bytes, uint64_t *number, struct SaomsSink error);
+    // The newest bytes that are kept, lent for the time of the call, and their number; 0 and none before there are
+    // any. `number` may be null.
+    struct SaomsBytes (*kept)(void *state, uint64_t *number);
 } SaomsHostFunctions;
 
 // A message that arrived.
@@ -476,6 +482,13 @@ typedef struct SaomsComponentTable {
     // Handles messages of the topics that the composite names in `trigger`, which come here alone. Supervised like
     // `execute`. Of a class whose declaration says `"reacts": true`; else it may be null.
     SaomsStatus (*react)(void *component, const struct SaomsHostHandle *host, struct SaomsSink error);
+    // Takes new values of properties whose declaration says `"live": true`, between two executions: all values are
+    // given. `FAILED`: it refuses them, and goes on with those that it has. May be null where there is no such
+    // property.
+    SaomsStatus (*update)(void *component,
+                          const struct SaomsPropertyView *values,
+                          size_t value_count,
+                          struct SaomsSink error);
 } SaomsComponentTable;
 
 // A class: how to make components of it, and their functions.

@@ -69,4 +69,15 @@ pub struct ComponentTable {
     /// Handles messages of the topics that the composite names in `trigger`, which come here alone. Supervised like
     /// `execute`. Of a class whose declaration says `"reacts": true`; else it may be null.
     pub react: Option<unsafe extern "C" fn(component: *mut c_void, host: *const HostHandle, error: Sink) -> Status>,
+    /// Takes new values of properties whose declaration says `"live": true`, between two executions: all values are
+    /// given. `FAILED`: it refuses them, and goes on with those that it has. May be null where there is no such
+    /// property.
+    pub update: Option<
+        unsafe extern "C" fn(
+            component: *mut c_void,
+            values: *const PropertyView,
+            value_count: usize,
+            error: Sink,
+        ) -> Status,
+    >,
 }

@@ -126,6 +126,12 @@ pub struct HostFunctions {
     /// Registers a function that stops the component's hardware from any thread, in `initialize` alone; the declaration
     /// of the class says `"stops": true`. The host frees its state with `release`, also when it refuses the function.
     pub register_stop: unsafe extern "C" fn(state: *mut c_void, stop: *const StopView, error: Sink) -> Status,
+    /// Keeps these bytes beyond a crash of the component, in place of those before, and gives their number. What this
+    /// execution sends goes out once they are kept; they are lost if it fails.
+    pub keep: unsafe extern "C" fn(state: *mut c_void, bytes: Bytes, number: *mut u64, error: Sink) -> Status,
+    /// The newest bytes that are kept, lent for the time of the call, and their number; 0 and none before there are
+    /// any. `number` may be null.
+    pub kept: unsafe extern "C" fn(state: *mut c_void, number: *mut u64) -> Bytes,
 }
 
 /// The visitor of a component's loops, called with a name, a class, values and their number.

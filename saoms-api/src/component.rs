@@ -1,5 +1,5 @@
 use crate::derived;
-use crate::host::{Derived, Invocation, LoopRegistration};
+use crate::host::{Derived, Invocation, LoopRegistration, PropertyValue, SmolStr};
 use crate::{CallError, Context, Failure, Properties, Saved};
 
 /// A component of a fleet, written by an author.
@@ -186,6 +186,41 @@ pub trait Component: Derived + Send + Sized + 'static {
         self.base_mut().map_or(Ok(()), |base| base.react(context))
     }
 
+    /// Takes new values of properties that are declared `#[property(live)]`, between two executions: `properties` are
+    /// all of them, those that did not change with the values that they have. By itself it puts them into the fields
+    /// with `#[property]` and `#[properties]`.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Context, Failure, Own};
+    ///
+    /// /// Heats up to a temperature, which can be changed while it runs.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Heater", periodic)]
+    /// struct Heater {
+    ///     #[property(default = 20.0, live)]
+    ///     target: f64,
+    ///     is_locked: bool,
+    /// }
+    ///
+    /// impl Component for Heater {
+    ///     type Properties = Own<Self>;
+    ///
+    ///     fn update(&mut self, properties: Own<Self>) -> Result<(), Failure> {
+    ///         if self.is_locked {
+    ///             return Err("it is locked".into());
+    ///         }
+    ///         self.target = properties.target;
+    ///         Ok(())
+    ///     }
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// It refuses the values, and goes on with those that it has.
+    fn update(&mut self, properties: Self::Properties) -> Result<(), Failure> {
+        Derived::renew(self, properties)
+    }
+
     /// Ends the work; messages sent here are still delivered. By itself it ends what it extends, or its loops.
     ///
     /// # Errors
@@ -194,7 +229,11 @@ pub trait Component: Derived + Send + Sized + 'static {
         derived::shutdown(self, context)
     }
 
-    /// Saves the state for a successor, when the library was rebuilt while the fleet runs (`saoms run --reload`):
+    /// Saves the state for a successor. Of a class that says `saves`, the host calls it after each execution of a
+    /// component whose `restart` can start it anew, and the new one continues from the state of the last execution that
+    /// did not fail: then it has to succeed between any two executions, also in the middle of a job.
+    ///
+    /// Of any class it is called when the library was rebuilt while the fleet runs (`saoms run --reload`):
     /// between two executions, this is called of the one that runs, then [`initialize`](Component::initialize) and
     /// [`restore`](Component::restore) of the new one, which takes its place. [`shutdown`](Component::shutdown) is not
     /// called. By default nothing is saved, and the new one starts without state.
@@ -265,6 +304,8 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// | `name = "saoms.Robot"` | the name that composite files use |
 /// | `periodic` or `passive` | whether it is executed in each period; a passive one cannot subscribe |
 /// | `service("move": Robot)` | a service with this [interface](crate::host::Interface), which the component implements |
+/// | `apart` | it never runs on the thread of the timer, as code that may wait; nor do those that are wired to it |
+/// | `saves` | it [saves](Component::save) its state after each execution, for the one that a restart puts in its place |
 /// | `reacts` | it has a function [`react`](Component::react) for messages that trigger it |
 /// | `stops` | it registers a function that [stops its hardware](crate::StopFunction) |
 /// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite says otherwise, in their order |
@@ -380,6 +421,11 @@ pub trait DynComponent: Send {
     /// # Errors
     /// As there.
     fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// See [`Component::update`]: all values, those of absent properties are their defaults.
+    ///
+    /// # Errors
+    /// As there, or the values are wrong.
+    fn update(&mut self, values: &[(SmolStr, PropertyValue)]) -> Result<(), Failure>;
     /// See [`Component::shutdown`].
     ///
     /// # Errors
@@ -423,6 +469,10 @@ impl<C: Class> DynComponent for C {
 
     fn react(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         Component::react(self, context)
+    }
+
+    fn update(&mut self, values: &[(SmolStr, PropertyValue)]) -> Result<(), Failure> {
+        Component::update(self, C::Properties::from_values(values)?)
     }
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {

@@ -149,6 +149,50 @@ impl<'a> Context<'a> {
         Ok((0..targets).map(|target| R::from_index(first | target << TARGET_SHIFT)).collect())
     }
 
+    /// Keeps these bytes beyond a crash of the component, in place of those that it kept before:
+    /// [`kept`](Context::kept) gives them back, also to the component that takes its place after a failure. What this
+    /// execution sends goes out once they are kept, so that nobody hears of what could be forgotten. The number tells
+    /// them from others.
+    ///
+    /// They are lost if this execution fails. They are kept in memory, for as long as the program runs.
+    ///
+    /// # Errors
+    /// There are more than 64 MiB.
+    pub fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
+        self.host.keep(bytes)
+    }
+
+    /// The newest bytes that are [kept](Context::keep), and their number; 0 and none before there are any.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Context, Failure};
+    ///
+    /// /// Counts its executions, through failures.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Counter", periodic)]
+    /// struct Counter {
+    ///     count: u8,
+    /// }
+    ///
+    /// impl Component for Counter {
+    ///     type Properties = ();
+    ///
+    ///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         self.count = context.kept().1.first().copied().unwrap_or(0);
+    ///         Ok(())
+    ///     }
+    ///
+    ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         self.count = self.count.checked_add(1).ok_or("it cannot count further")?;
+    ///         context.keep(&[self.count])?;
+    ///         Ok(())
+    ///     }
+    /// }
+    /// ```
+    pub fn kept(&self) -> (u64, &[u8]) {
+        self.host.kept()
+    }
+
     /// Registers a function that stops the component's hardware from any thread; the class says `stops`. Only in
     /// `initialize`; each call adds one.
     ///

@@ -35,6 +35,15 @@ pub trait Derived: Fields {
     where
         Self: Component;
 
+    /// Puts new values of its properties into its fields. See [`Component::update`].
+    ///
+    /// # Errors
+    /// Its fields do not hold its properties, or the component that it extends refuses the values.
+    #[doc(hidden)]
+    fn renew(&mut self, properties: <Self as Component>::Properties) -> Result<(), Failure>
+    where
+        Self: Component;
+
     /// Asks for what the handles stand for, those of the component that this one extends included.
     ///
     /// # Errors
@@ -141,6 +150,14 @@ pub trait Different<A, B> {
 }
 
 impl<A, B> Different<A, B> for Same<A, B> {}
+
+/// For generated code: no field takes the properties.
+#[cold]
+pub fn no_update() -> Failure {
+    Failure::new(
+        "the component takes no new values while it runs: mark the fields that hold them, or write `fn update`",
+    )
+}
 
 /// What a component without code of its own does at its start: what it extends starts, or its loops.
 pub(crate) fn initialize<C: Derived>(component: &mut C, context: &mut Context<'_>) -> Result<(), Failure> {

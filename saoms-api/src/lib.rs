@@ -100,7 +100,7 @@ pub use saoms_derive::{Class, Entries, Field, Knowledge, LoopClass, Message, Pro
 pub mod generated {
     pub use crate::adaptation::{are_unique, decode_field, fits, joined, member, no_entry, set_field};
     pub use crate::boundary::{API, class_table, loop_class_table, rule_table};
-    pub use crate::derived::{DefaultOf, Different, NoDefault, Same, parts};
+    pub use crate::derived::{DefaultOf, Different, NoDefault, Same, no_update, parts};
     pub use crate::host::contain::install_hook;
     pub use crate::host::declaration::ConstText;
     pub use crate::message::Key;

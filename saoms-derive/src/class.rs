@@ -25,6 +25,8 @@ struct Declared {
     references: Vec<Reference>,
     stops: bool,
     reacts: bool,
+    apart: bool,
+    saves: bool,
     knowledge: Option<Path>,
     loops: Option<DefaultLoops>,
     also: Vec<Also>,
@@ -82,6 +84,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
     let (own, own_properties) = handles.own_properties();
     let said = quote!(<#ident as ::saoms_api::Component>::Properties);
     let (made, binds, lends) = (handles.made(&said), handles.binds(), handles.lends());
+    let renewed = handles.renewed(&said);
     Ok(quote! {
         const _: () = {
             const DECLARATION: &str = #declaration;
@@ -99,6 +102,13 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
                     properties: #said,
                 ) -> ::core::result::Result<Self, ::saoms_api::Failure> {
                     #made
+                }
+
+                fn renew(
+                    &mut self,
+                    properties: #said,
+                ) -> ::core::result::Result<(), ::saoms_api::Failure> {
+                    #renewed
                 }
 
                 fn bind(
@@ -219,9 +229,13 @@ impl Declared {
             "reference" => self.references.push(parts::parse_reference(meta.input, &self.references)?),
             "stops" if !self.stops => self.stops = true,
             "reacts" if !self.reacts => self.reacts = true,
+            "apart" if !self.apart => self.apart = true,
+            "saves" if !self.saves => self.saves = true,
             "knowledge" if self.knowledge.is_none() => self.knowledge = Some(meta.value()?.parse()?),
             "loops" if self.loops.is_none() => self.loops = Some(DefaultLoops::of(meta.input)?),
-            "stops" | "reacts" | "knowledge" | "loops" => return Err(meta.error("this is given already")),
+            "stops" | "reacts" | "apart" | "saves" | "knowledge" | "loops" => {
+                return Err(meta.error("this is given already"));
+            }
             "also" => {
                 let list;
                 parenthesized!(list in meta.input);
@@ -230,7 +244,7 @@ impl Declared {
             _ => {
                 return Err(meta.error(
                     "expected one of `name`, `periodic`, `passive`, `publishes`, `subscribes`, `service`, \
-                     `reference`, `stops`, `reacts`, `knowledge`, `loops`, `also`",
+                     `reference`, `stops`, `reacts`, `apart`, `saves`, `knowledge`, `loops`, `also`",
                 ));
             }
         }
@@ -261,11 +275,9 @@ impl Declared {
         });
         text.plain(",\"references\":");
         handles::declare_references(&mut text, &self.references, handles)?;
-        if self.stops {
-            text.plain(",\"stops\":true");
-        }
-        if self.reacts {
-            text.plain(",\"reacts\":true");
+        let abilities = [(self.stops, "stops"), (self.reacts, "reacts"), (self.apart, "apart"), (self.saves, "saves")];
+        for (_, ability) in abilities.iter().filter(|(has, _)| *has) {
+            text.plain(&format!(",\"{ability}\":true"));
         }
         if let Some(knowledge) = &self.knowledge {
             text.plain(",\"knowledge\":");

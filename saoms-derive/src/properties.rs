@@ -34,6 +34,7 @@ struct Property<'a> {
     allowed: Vec<String>,
     unique: String,
     required_text: bool,
+    live: bool,
 }
 
 /// `#[derive(Properties)]`.
@@ -251,6 +252,7 @@ impl<'a> Property<'a> {
             allowed: Vec::new(),
             unique: String::new(),
             required_text: false,
+            live: false,
         };
         for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("property")) {
             attribute.parse_nested_meta(|meta| {
@@ -274,10 +276,12 @@ impl<'a> Property<'a> {
                     property.allowed = texts.iter().map(LitStr::value).collect();
                 } else if meta.path.is_ident("required_text") {
                     property.required_text = true;
+                } else if meta.path.is_ident("live") {
+                    property.live = true;
                 } else {
                     return Err(meta.error(
                         "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`, \
-                         `flatten`",
+                         `live`, `flatten`",
                     ));
                 }
                 Ok(())
@@ -465,6 +469,9 @@ impl<'a> Property<'a> {
         }
         if property.required_text {
             text.plain(",\"nonEmpty\":true");
+        }
+        if property.live {
+            text.plain(",\"live\":true");
         }
         text.text(flag(",\"many\":true", quote!(#shape.many)));
         text.member("unique", &property.unique);

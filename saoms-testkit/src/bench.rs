@@ -46,6 +46,8 @@ pub struct Bench {
     /// Index of the first event of the last step.
     step: usize,
     started: bool,
+    /// The values of its properties.
+    values: Vec<(SmolStr, PropertyValue)>,
 }
 
 /// Component index of the sender of the test's messages.
@@ -97,12 +99,12 @@ impl Bench {
         values.extend(absent);
         let component = contained(|| found.construct(&values))??;
         let stage = Stage::new(registry, found, &values)?;
-        Ok(Bench { component, stage, waiting: Vec::new(), step: 0, started: false })
+        Ok(Bench { component, stage, waiting: Vec::new(), step: 0, started: false, values })
     }
 
     pub(crate) fn of_loop(class: &Arc<RegisteredLoop>, component: Box<dyn DynComponent>) -> Bench {
         let stage = Stage::of_loops(vec![Arc::clone(class)]);
-        Bench { component, stage, waiting: Vec::new(), step: 0, started: false }
+        Bench { component, stage, waiting: Vec::new(), step: 0, started: false, values: Vec::new() }
     }
 
     /// Sets the period, which is 100 ms by default.
@@ -235,6 +237,29 @@ impl Bench {
             return Ok(true);
         }
         result.map(|()| false)
+    }
+
+    /// Gives the component a new value of a property that its class declares `live`, as a fleet does between two
+    /// executions.
+    ///
+    /// # Errors
+    /// The property cannot change while the component runs, or the component refuses the value.
+    pub fn set(&mut self, property: &str, value: &str) -> Result<(), Failure> {
+        let declared = self.stage.class_property(property)?;
+        let value =
+            declared.check(value).map_err(|message| Failure::new(format!("property `{property}`: {message}")))?;
+        let mut values = self.values.clone();
+        values.retain(|(name, _)| name != property);
+        values.push((SmolStr::from(property), PropertyValue::from(value)));
+        let component = &mut self.component;
+        contained(|| component.update(&values)).and_then(|updated| updated)?;
+        self.values = values;
+        Ok(())
+    }
+
+    /// The newest bytes that the component [kept](Context::keep), and their number.
+    pub fn kept(&self) -> (u64, &[u8]) {
+        (self.stage.kept.0, &self.stage.kept.1)
     }
 
     /// Stops the hardware of the component, and of those that it is wired to, with the functions that they

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use saoms_api::host::contain::{contained, install_hook};
-use saoms_api::host::{DynComponent, Invocation, KnowledgeClass};
+use saoms_api::host::{DynComponent, Invocation, KnowledgeClass, PropertyValue, SmolStr};
 use saoms_api::{CallError, Chance, Context, Failure, Knowledge, LoopClass, Loops, Saved, Value};
 #[cfg(feature = "fleets")]
 use saoms_core::plugin::Plugin;
@@ -229,6 +229,10 @@ impl<K: Knowledge + Send> DynComponent for Subject<K> {
             loops.monitor(knowledge, context)?;
             loops.adapt(knowledge, context)
         })
+    }
+
+    fn update(&mut self, _: &[(SmolStr, PropertyValue)]) -> Result<(), Failure> {
+        Err("a loop alone takes no new values".into())
     }
 
     fn react(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {

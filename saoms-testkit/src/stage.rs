@@ -8,7 +8,7 @@ use std::time::Duration;
 use saoms_api::host::{Host, LoopVisit};
 use saoms_api::host::{NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration};
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
-use saoms_registry::registry::{ClassTopic, RegisteredClass, RegisteredLoop, Registry};
+use saoms_registry::registry::{ClassTopic, PropertyDeclaration, RegisteredClass, RegisteredLoop, Registry};
 use saoms_registry::schema::Schema;
 
 use crate::Bench;
@@ -75,6 +75,8 @@ pub(crate) struct Stage {
     /// The text of each record by loop, phase and id.
     texts: BTreeMap<(Option<u32>, &'static str, &'static str), &'static str>,
     pub(crate) stops: Vec<StopFunction>,
+    /// Number and bytes of what the component keeps.
+    pub(crate) kept: (u64, Vec<u8>),
     pub(crate) report: Vec<(String, ReportValue)>,
     pub(crate) work: Option<Work>,
     pub(crate) gave_up: bool,
@@ -116,6 +118,7 @@ impl Stage {
             actions: Vec::new(),
             texts: BTreeMap::new(),
             stops: Vec::new(),
+            kept: (0, Vec::new()),
             report: Vec::new(),
             work: None,
             gave_up: false,
@@ -137,6 +140,19 @@ impl Stage {
     pub(crate) fn end_of_execution(&mut self) {
         self.execution += 1;
         self.now = self.now + self.period;
+    }
+
+    /// A property of the class that can change while the component runs.
+    pub(crate) fn class_property(&self, name: &str) -> Result<PropertyDeclaration, Failure> {
+        let class = self.class.as_ref().map(|class| class.declaration());
+        let property = class.and_then(|class| class.property(name));
+        let property = property.ok_or_else(|| Failure::new(format!("its class has no property `{name}`")))?;
+        match property.live {
+            true => Ok(property.clone()),
+            false => {
+                Err(Failure::new(format!("property `{name}` is not `live`: it cannot change while the component runs")))
+            }
+        }
     }
 
     /// Tells the hardware of the component, and of those that it is wired to, that it is alive.
@@ -302,6 +318,15 @@ impl Host for Stage {
         // A reference that is not wired has a handle, too.
         let wired = self.wires.iter().position(|wire| wire.reference == name);
         Ok(wired.unwrap_or(usize::from(u16::MAX)) as u32)
+    }
+
+    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
+        self.kept = (self.kept.0 + 1, bytes.to_vec());
+        Ok(self.kept.0)
+    }
+
+    fn kept(&self) -> (u64, &[u8]) {
+        (self.kept.0, &self.kept.1)
     }
 
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {

@@ -60,7 +60,7 @@ fn layout() -> String {
         RecordView { id, text, names, values, count }
         HostHandle { state, functions, inboxes, inbox_count }
         TopicView { name, message, schema, kind }
-        HostFunctions { size, name, sender, name_of, now, date, due, execution, period, cancelled, chance, next_random, publish, subscribe, send, reference, is_wired, targets, call, listens, log, report, count, vote, chosen_loops, chosen_loop, name_loop, enter_loop, because, cause, journal, changed, register_stop }
+        HostFunctions { size, name, sender, name_of, now, date, due, execution, period, cancelled, chance, next_random, publish, subscribe, send, reference, is_wired, targets, call, listens, log, report, count, vote, chosen_loops, chosen_loop, name_loop, enter_loop, because, cause, journal, changed, register_stop, keep, kept }
         EntriesHandle { state, functions }
         EntryView { name, of, effector }
         EntriesFunctions { size, declaration, count, describe, get, set, get_bytes, set_bytes, destroy }
@@ -69,7 +69,7 @@ fn layout() -> String {
         FindingView { place, message, helps, help_count, instead, labels, label_count, severity }
         FindingSink { state, put }
         ReportView { name, kind, bits, text, children, child_count }
-        ComponentTable { size, initialize, execute, shutdown, serve, destroy, save, restore, waits_for, react }
+        ComponentTable { size, initialize, execute, shutdown, serve, destroy, save, restore, waits_for, react, update }
         LoopClassTable { size, construct, looping }
         LoopTable { size, effect, entries, initialize, monitor, adapt, shutdown, destroy }
         LoopInstance { instance, table }

@@ -57,6 +57,7 @@ impl<C: DynComponent> ExportedComponent<C> {
         restore: Some(Self::restore),
         waits_for: Some(Self::waits_for),
         react: Some(Self::react),
+        update: Some(Self::update),
     };
 
     /// # Safety
@@ -90,6 +91,12 @@ impl<C: DynComponent> ExportedComponent<C> {
     unsafe extern "C" fn react(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {
         // SAFETY: as in `initialize`.
         unsafe { guarded(error, || Self::call(this, handle, true, |component, context| component.react(context))) }
+    }
+
+    unsafe extern "C" fn update(this: *mut c_void, values: *const PropertyView, count: usize, error: Sink) -> Status {
+        // SAFETY: the host calls with what the table's contract says; `this` comes from `into_pointer` and is used by
+        // this call alone.
+        unsafe { guarded(error, || (*this.cast::<Self>()).component.update(&read_properties(values, count)?)) }
     }
 
     unsafe extern "C" fn shutdown(this: *mut c_void, handle: *const HostHandle, error: Sink) -> Status {

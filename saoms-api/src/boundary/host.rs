@@ -121,6 +121,30 @@ unsafe extern "C" fn register_stop(state: *mut c_void, view: *const StopView, er
     }
 }
 
+unsafe extern "C" fn keep(state: *mut c_void, bytes: Bytes, number: *mut u64, error: Sink) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the rest to this call.
+    unsafe {
+        guarded(error, || {
+            *place(number, "the place of the number")? = host(state)?.keep(bytes.get()?)?;
+            Ok(())
+        })
+    }
+}
+
+unsafe extern "C" fn kept(state: *mut c_void, number: *mut u64) -> Bytes {
+    // SAFETY: callers pass the state of their handle, and a place for the number or null; the bytes stay as they are
+    // until the call in which they are lent has ended.
+    unsafe {
+        with_host(state, Bytes::NONE, |host| {
+            let (newest, bytes) = host.kept();
+            if let Some(number) = number.as_mut() {
+                *number = newest;
+            }
+            Bytes::lend(bytes)
+        })
+    }
+}
+
 unsafe extern "C" fn is_wired(state: *mut c_void, reference: u32) -> u32 {
     // SAFETY: callers pass the state of their handle.
     unsafe { with_host(state, 0, |host| u32::from(host.is_wired(reference))) }
@@ -317,6 +341,8 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     journal,
     changed,
     register_stop,
+    keep,
+    kept,
 };
 
 /// A time of the other side.

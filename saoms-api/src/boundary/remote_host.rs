@@ -222,6 +222,19 @@ impl Host for RemoteHost<'_> {
         outcome(status, &error.bytes).map(|()| index)
     }
 
+    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
+        let (mut number, mut error) = (0, Buffer::default());
+        let status = get!(self.keep, Bytes::lend(bytes), &raw mut number, sink(&mut error));
+        outcome(status, &error.bytes).map(|()| number)
+    }
+
+    fn kept(&self) -> (u64, &[u8]) {
+        let mut number = 0;
+        let bytes = get!(self.kept, &raw mut number);
+        // SAFETY: the host lends the bytes until the call ends, in which this host is used.
+        (number, unsafe { bytes.get() }.unwrap_or_default())
+    }
+
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
         let (view, mut error) = (stop::export(stop), Buffer::default());
         let status = get!(self.register_stop, &raw const view, sink(&mut error));

@@ -101,6 +101,13 @@ pub trait Host {
     /// # Errors
     /// As [`CallError`] says.
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
+    /// See [`Context::keep`](crate::Context::keep).
+    ///
+    /// # Errors
+    /// As there.
+    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure>;
+    /// See [`Context::kept`](crate::Context::kept).
+    fn kept(&self) -> (u64, &[u8]);
     /// See [`Context::register_stop`](crate::Context::register_stop).
     ///
     /// # Errors

@@ -68,6 +68,8 @@ functions! {
     Execute "`execute`",
     /// `react`.
     React "`react`",
+    /// `update`.
+    Update "`update`",
     /// `serve`.
     Serve "a service",
     /// `monitor` of a loop.
@@ -95,8 +97,8 @@ functions! {
 impl Function {
     /// True if the program itself waits for it, so that nothing goes on while it hangs.
     pub const fn holds_up(self) -> bool {
-        use Function::{Check, Construct, Destroy, Initialize, Load, Restore, Save};
-        matches!(self, Load | Construct | Initialize | Save | Restore | Destroy | Check)
+        use Function::{Check, Construct, Destroy, Initialize, Load, Restore, Save, Update};
+        matches!(self, Load | Construct | Initialize | Update | Save | Restore | Destroy | Check)
     }
 }
 

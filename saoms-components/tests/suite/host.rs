@@ -324,6 +324,14 @@ impl Host for View<'_> {
         Ok(place as u32)
     }
 
+    fn keep(&mut self, _: &[u8]) -> Result<u64, Failure> {
+        Ok(1)
+    }
+
+    fn kept(&self) -> (u64, &[u8]) {
+        (0, &[])
+    }
+
     fn register_stop(&mut self, _: saoms_api::StopFunction) -> Result<(), Failure> {
         Ok(())
     }

@@ -49,6 +49,8 @@ pub enum Occurrence {
     Restarted {
         /// Number of restarts so far.
         number: u32,
+        /// True if it goes on from what the failed one had saved.
+        continued: bool,
     },
     /// An instance of a new build of its class has replaced the component.
     Replaced {
@@ -138,7 +140,8 @@ impl fmt::Display for Occurrence {
             Occurrence::Failed { message, restart: Some(pause) } => {
                 write!(formatter, "failed and is restarted in {}: {message}", saoms_api::host::format_duration(*pause))
             }
-            Occurrence::Restarted { number } => write!(formatter, "restarted ({number})"),
+            Occurrence::Restarted { number, continued: false } => write!(formatter, "restarted ({number})"),
+            Occurrence::Restarted { number, continued: true } => write!(formatter, "restarted ({number}), and goes on"),
             Occurrence::Replaced { continued: true } => {
                 formatter.write_str("is replaced by its new build, and continues with the earlier state")
             }

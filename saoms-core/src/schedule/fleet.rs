@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use saoms_api::{Level, Time};
 
-use super::change::{self, ChangeError, Changed, StartError, Takeover};
+use super::change::{self, ChangeError, Changed, SetError, StartError, Takeover};
 use super::drive;
 use super::engine::RunPhase;
 use super::engine::lifecycle::Request;
@@ -318,6 +318,16 @@ impl Handle {
     /// As [`apply`](Handle::apply), or there is no such component.
     pub fn replace(&self, spec: ComponentSpec) -> Result<Takeover, ChangeError> {
         change::replace(&self.shared, spec)
+    }
+
+    /// Gives a component a new value of a property that its class declares `live`, as text: it takes the value between
+    /// two executions. Instances that a restart makes have it, too, and the journal says so.
+    ///
+    /// # Errors
+    /// The component keeps the value that it has: there is no such component or property, the property cannot change
+    /// while it runs, the value is wrong, or the component refuses it.
+    pub fn set(&self, component: &str, property: &str, value: &str) -> Result<(), SetError> {
+        change::set(&self.shared, component, property, value)
     }
 
     /// Sends a message from outside on a topic of the fleet. It is checked against the schema of the topic, takes

@@ -226,7 +226,7 @@ impl Engine {
         self.publish(topic, message, time);
     }
 
-    fn record_outside(&mut self, time: u64, text: String) -> Cause {
+    pub(super) fn record_outside(&mut self, time: u64, text: String) -> Cause {
         // Components draw the numbers of their records from the same counter.
         let id = Cause(self.record_ids.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
         let entry = JournalEntry::from_outside(id, Time::from_nanos(time), OUTSIDE_NAME, text);

@@ -23,7 +23,7 @@ mod stop;
 #[cfg(test)]
 mod tests;
 
-pub use change::{ChangeError, Changed, StartError, Takeover};
+pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
 pub use fleet::{Handle, Hold, RunningFleet, UnknownComponent};
 pub use inject::{InjectError, InjectedContent, Injection};
 pub use os::realtime::RealtimeError;

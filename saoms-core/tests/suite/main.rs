@@ -13,6 +13,7 @@ mod fault;
 mod fleet;
 mod inject;
 mod journal;
+mod kept;
 mod observer;
 mod order;
 mod reaction;

@@ -12,6 +12,19 @@ pub(crate) fn after_error(input: &DeriveInput, error: &Error, is_class: bool) ->
         true => (quote!(Derived), quote!(Component), None),
         false => (quote!(DerivedLoop), quote!(Loop), Some(quote!(_: &mut dyn ::saoms_api::Knowledge,))),
     };
+    let renew = is_class.then(|| {
+        quote! {
+            fn renew(
+                &mut self,
+                _: <Self as ::saoms_api::#of>::Properties,
+            ) -> ::core::result::Result<(), ::saoms_api::Failure>
+            where
+                for<'a> Self: ::saoms_api::#of,
+            {
+                ::core::unreachable!()
+            }
+        }
+    });
     quote! {
         #error
 
@@ -29,6 +42,8 @@ pub(crate) fn after_error(input: &DeriveInput, error: &Error, is_class: bool) ->
             {
                 ::core::unreachable!()
             }
+
+            #renew
 
             fn bind(
                 &mut self,

@@ -67,6 +67,43 @@ impl Handles<'_> {
         }
     }
 
+    /// The body of `renew`, which takes `properties` of the type that the component says.
+    pub(crate) fn renewed(&self, said: &TokenStream) -> TokenStream {
+        if let Some(Handle { ident, .. }) = self.with(&Role::Properties).next() {
+            return quote! {
+                self.#ident = properties;
+                ::core::result::Result::Ok(())
+            };
+        }
+        let (own, _) = self.own_properties();
+        let nested = self.has_own_properties();
+        let take = |Handle { field, ident, role }: &Handle<'_>| match role {
+            Role::Property => Some(quote!(self.#ident = own.#ident;)),
+            Role::Extends => {
+                let (of, values) = (&field.ty, nested.then(|| quote!(.#ident)));
+                Some(quote!(<#of as ::saoms_api::Component>::update(&mut self.#ident, own #values)?;))
+            }
+            _ => None,
+        };
+        let takes: Vec<_> = self.all.iter().filter_map(take).collect();
+        if takes.is_empty() {
+            return quote! {
+                let _ = properties;
+                ::core::result::Result::Err(::saoms_api::generated::no_update())
+            };
+        }
+        quote! {
+            #[allow(unused_imports)]
+            use ::saoms_api::generated::Different as _;
+            if !::saoms_api::generated::Same::<#said, #own>::IS {
+                return ::core::result::Result::Err(::saoms_api::generated::no_update());
+            }
+            let own = ::saoms_api::generated::Same::<#said, #own>::cast(properties);
+            #(#takes)*
+            ::core::result::Result::Ok(())
+        }
+    }
+
     /// The statements that bind the handles of `self`, with `context` and, of a loop, `knowledge`.
     pub(crate) fn binds(&self) -> TokenStream {
         let effector = |field: &syn::Ident, name: &syn::LitStr| quote_spanned!(name.span()=> self.#field = ::saoms_api::Effector::of(knowledge, #name)?;);

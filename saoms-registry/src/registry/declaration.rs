@@ -44,6 +44,12 @@ pub struct ClassDeclaration {
     /// True if its components can react to messages at once.
     #[serde(default)]
     pub reacts: bool,
+    /// True if its components never run on the thread of the timer.
+    #[serde(default)]
+    pub apart: bool,
+    /// True if its components can save their state after each execution.
+    #[serde(default)]
+    pub saves: bool,
     /// True if its components register functions that stop their hardware.
     #[serde(default)]
     pub stops: bool,
@@ -112,6 +118,9 @@ pub struct PropertyDeclaration {
     /// True if the text must not be empty.
     #[serde(default)]
     pub non_empty: bool,
+    /// True if it can be changed while the component runs.
+    #[serde(default)]
+    pub live: bool,
     /// True if it takes any number of values.
     #[serde(default)]
     pub many: bool,

@@ -55,6 +55,7 @@ pub(super) fn inherit(class: &mut ClassDeclaration, base: ClassDeclaration) -> R
     class.services.splice(0..0, inherited);
     class.reacts |= base.reacts;
     class.stops |= base.stops;
+    class.apart |= base.apart;
     class.knowledge = base.knowledge;
     class.loops = base.loops;
     class.extends.push(base.name);

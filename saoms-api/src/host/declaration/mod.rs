@@ -21,6 +21,8 @@
 //!                   "optional": true, "many": true}],
 //!   "stops": true,
 //!   "reacts": true,
+//!   "apart": true,
+//!   "saves": true,
 //!   "knowledge": {"name": "saoms.Robot", "entries": []},
 //!   "loops": {"property": "policy", "lists": {"safe": ["saoms.CollisionMS"], "classic": []}},
 //!   "extends": {"contract": 1, "class": "saoms.Machine", "kind": "periodic"}
@@ -35,6 +37,8 @@
 //!   one that is published says that it needs no reader.
 //! - `stops`, where it is `true`: its components register functions that stop their hardware.
 //! - `reacts`, where it is `true`: its components have a function for messages that trigger them.
+//! - `apart`, where it is `true`: its components never run on the thread of the timer.
+//! - `saves`, where it is `true`: its components can save their state after each execution.
 //! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in
 //!   their order: either `{"default": [...]}`, or one list for each value of a property. A class without loops has
 //!   neither.
@@ -90,6 +94,7 @@
 //! | `required` | `true`: it has to be given |
 //! | `allowed` | the only texts, for enumerations and some strings |
 //! | `nonEmpty` | `true`: the text must not be empty or blank |
+//! | `live` | `true`: it can be changed while the component runs |
 //! | `many` | `true`: any number of values; everything else is said of each |
 //! | `unique` | a word: no two components have the same value for properties with this word |
 //! | `properties` | those of a `complex` one |

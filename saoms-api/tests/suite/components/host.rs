@@ -120,6 +120,14 @@ impl Host for FakeHost {
         Ok(0)
     }
 
+    fn keep(&mut self, _: &[u8]) -> Result<u64, Failure> {
+        Ok(1)
+    }
+
+    fn kept(&self) -> (u64, &[u8]) {
+        (0, &[])
+    }
+
     fn register_stop(&mut self, _: saoms_api::StopFunction) -> Result<(), Failure> {
         Ok(())
     }

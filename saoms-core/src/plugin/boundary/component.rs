@@ -125,6 +125,14 @@ impl DynComponent for ImportedComponent {
         self.call(context, Function::React, react)
     }
 
+    fn update(&mut self, values: &[(SmolStr, PropertyValue)]) -> Result<(), Failure> {
+        let update = self.table.update.ok_or("its library has no function `update`")?;
+        let (instance, views) = (self.instance, PropertyViews::of(values));
+        let _entered = enter(self.owner, Function::Update);
+        // SAFETY: the functions keep the rules, the instance is theirs, and the rest is lent to this call.
+        call(|error| unsafe { update(instance, views.top.as_ptr(), views.top.len(), error) })
+    }
+
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.call(context, Function::Shutdown, self.table.shutdown)
     }

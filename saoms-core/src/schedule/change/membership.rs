@@ -5,7 +5,7 @@ use saoms_lang::assembly::ComponentSpec;
 use super::takeover::{Outgoing, Predecessor, Takeover};
 use crate::journal::ComponentName;
 use crate::observe::Occurrence;
-use crate::schedule::component::body::Body;
+use crate::schedule::component::body::{Body, KeptBytes};
 use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::engine::slot::{NEVER, PendingRequest, Slot, SlotState, TaskPolicy};
 use crate::schedule::engine::trace::TraceStep;
@@ -58,8 +58,33 @@ impl Engine {
             self.slots.push(slot);
         }
         shared.names.add(names);
+        self.set_apart();
         if self.phase == RunPhase::Starting {
             self.journal_capacity /= self.slots.len().max(1);
+        }
+    }
+
+    /// Moves components to worker threads whose class never runs on the timer, and those that call them: a call runs on
+    /// the thread of its caller. In virtual time there are no others.
+    fn set_apart(&mut self) {
+        if !self.real {
+            return;
+        }
+        let of_class = |slot: &Slot| slot.spec.class.declaration().apart;
+        let mut apart: Vec<bool> = self.slots.iter().map(of_class).collect();
+        let mut has_changed = apart.contains(&true);
+        while std::mem::take(&mut has_changed) {
+            for (place, slot) in self.slots.iter().enumerate() {
+                let targets = slot.spec.references.iter().flat_map(|wire| &wire.targets);
+                let mut targets = targets.map(|target| apart.get(target.component) == Some(&true));
+                if !apart[place] && targets.any(|is_apart| is_apart) {
+                    (apart[place], has_changed) = (true, true);
+                }
+            }
+        }
+        for (slot, always) in self.slots.iter_mut().zip(apart) {
+            slot.isolation.always = always;
+            slot.isolation.active |= always;
         }
     }
 
@@ -201,8 +226,10 @@ impl Slot {
         self.renew(Arc::clone(&spec));
         (self.state, self.held) = (SlotState::Idle, true);
         (self.due, self.last_due, self.until) = (NEVER, None, NEVER);
+        (self.react_due, self.last_react) = (NEVER, None);
         if let Some(body) = &mut self.body {
             (body.part.spec, body.part.period, body.part.held) = (spec, self.policy.period, true);
+            (body.part.saved, body.part.kept_bytes) = (None, KeptBytes::default());
         }
     }
 }

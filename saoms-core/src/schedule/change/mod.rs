@@ -6,6 +6,7 @@
 //! change is committed at one instant, and the old instances shut down.
 
 mod error;
+mod live;
 mod membership;
 mod takeover;
 mod transaction;
@@ -19,6 +20,8 @@ use super::shared::Shared;
 use crate::assemble::{ChangePlan, Replacement};
 
 pub use error::{ChangeError, StartError};
+pub use live::SetError;
+pub(crate) use live::set;
 pub use takeover::Takeover;
 
 /// A change that was made, by the paths of components.

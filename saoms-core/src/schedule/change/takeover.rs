@@ -102,6 +102,7 @@ impl Body {
         let part = &self.part;
         let mut body = Body::new(part.index, spec, Arc::clone(&part.name), part.period, Arc::clone(&part.cancelled));
         body.part.chance = part.chance.clone();
+        body.part.kept_bytes = part.kept_bytes.clone();
         (body.part.now, body.part.due, body.part.execution) = (part.now, part.due, part.execution);
         Box::new(body)
     }
@@ -214,6 +215,8 @@ impl Endpoints {
         part.schemas.append(&mut successor.schemas);
         part.outbox.append(&mut successor.outbox);
         part.vote = successor.vote.take();
+        part.bytes_to_keep = successor.bytes_to_keep.take();
+        part.saved = None;
         part.chance = successor.chance.clone();
         part.held = true;
         Endpoints {

@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use saoms_api::host::{DynComponent, Invocation, SharedMessage};
-use saoms_api::{CallError, Cause, Chance, Context, Failure};
+use saoms_api::{CallError, Cause, Chance, Context, Failure, Saved};
 
 use super::host::ComponentHost;
 use crate::bus::{TopicId, TopicReader};
@@ -43,6 +43,15 @@ pub(crate) struct Part {
     /// Subscriptions of a failed instance, for the instance that replaces it.
     pub(crate) kept: Vec<TopicReader>,
     pub(crate) outbox: Vec<(TopicId, SharedMessage)>,
+    /// Bytes that the present code keeps once it has finished, and the newest ones that are kept.
+    pub(crate) bytes_to_keep: Option<KeptBytes>,
+    pub(crate) kept_bytes: KeptBytes,
+    /// State of the last execution that did not fail, where a restart continues from it.
+    pub(crate) saved: Option<Saved>,
+    /// True if that state is saved after each execution.
+    pub(crate) saves: bool,
+    /// True if the present instance has continued from it.
+    pub(crate) continued: bool,
     /// Bytes in the outbox from code of libraries.
     pub(crate) sent_bytes: usize,
     /// Number of calls within which its code runs.
@@ -68,6 +77,13 @@ pub(crate) struct Part {
     pub(crate) spec: Arc<ComponentSpec>,
     /// True if the instance is part of a change that is not committed: its messages are held back.
     pub(crate) held: bool,
+}
+
+/// Bytes that a component keeps beyond its crash.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct KeptBytes {
+    pub(crate) number: u64,
+    pub(crate) bytes: Vec<u8>,
 }
 
 /// Jobs of a component.
@@ -103,6 +119,11 @@ impl Body {
             subscriptions: Vec::new(),
             kept: Vec::new(),
             outbox: Vec::new(),
+            bytes_to_keep: None,
+            kept_bytes: KeptBytes::default(),
+            saved: None,
+            saves: false,
+            continued: false,
             sent_bytes: 0,
             call_depth: 0,
             chance: Chance::new(0),
@@ -131,7 +152,7 @@ impl Body {
             // Before its code runs, which may hang.
             shared.stops.request(&self.part.stops);
         }
-        let result = match job {
+        let mut result = match job {
             Job::Execute => {
                 let fault = self.part.fault.take();
                 let execute = |instance: &mut dyn DynComponent, context: &mut Context<'_>| {
@@ -154,6 +175,9 @@ impl Body {
             && self.part.keeps_instance(job, failure)
         {
             return result;
+        }
+        if result.is_ok() && self.part.saves && matches!(job, Job::Execute | Job::React) {
+            result = self.save();
         }
         for inbox in if job == Job::React { &mut self.reactions } else { &mut self.inboxes } {
             inbox.clear();
@@ -185,7 +209,33 @@ impl Body {
         let result = self.call(shared, |instance, context| instance.initialize(context));
         self.part.initializing = false;
         result??;
-        self.part.has_registered_stop()
+        self.part.has_registered_stop()?;
+        let continued = self.go_on();
+        self.part.continued = matches!(continued, Ok(true));
+        continued.map(drop)
+    }
+
+    /// Saves the state after an execution, for the instance that a restart puts in its place.
+    #[cold]
+    fn save(&mut self) -> Result<(), Failure> {
+        let Some(instance) = &mut self.instance else { return Ok(()) };
+        let saved = contained(|| instance.save()).and_then(|saved| saved);
+        let saved = saved.map_err(|failure| Failure::new(format!("could not save its state: {failure}")))?;
+        if self.part.saved.as_ref() != Some(&saved) {
+            self.part.saved = Some(saved);
+        }
+        Ok(())
+    }
+
+    /// Continues from what the instance before had saved; true if there was something. A state that cannot be restored
+    /// is forgotten.
+    fn go_on(&mut self) -> Result<bool, Failure> {
+        let Some(saved) = self.part.saved.take().filter(|saved| !saved.is_nothing()) else { return Ok(false) };
+        let Some(instance) = &mut self.instance else { return Ok(false) };
+        let restored = contained(|| instance.restore(&saved)).and_then(|restored| restored);
+        restored.map_err(|failure| Failure::new(format!("could not go on from its saved state: {failure}")))?;
+        self.part.saved = Some(saved);
+        Ok(true)
     }
 
     /// Serves a call to one of the component's services, for a caller with this cause. The outer error is a panic,

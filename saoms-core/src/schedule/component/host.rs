@@ -8,7 +8,7 @@ use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, To
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
 use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
 
-use super::body::{Part, subject};
+use super::body::{KeptBytes, Part, subject};
 use crate::bus::TopicId;
 use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
@@ -271,6 +271,20 @@ impl Host for ComponentHost<'_> {
             "class `{}` declares no reference `{name}` with the interface `{interface}`; it declares: {known}",
             self.spec().class.name()
         )))
+    }
+
+    fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
+        if bytes.len() > saoms_abi::MAX_BYTES {
+            let most = saoms_abi::MAX_BYTES >> 20;
+            return Err(Failure::new(format!("{} bytes are more than a component can keep: {most} MiB", bytes.len())));
+        }
+        let before = self.part.bytes_to_keep.as_ref().unwrap_or(&self.part.kept_bytes).number;
+        self.part.bytes_to_keep = Some(KeptBytes { number: before + 1, bytes: bytes.to_vec() });
+        Ok(before + 1)
+    }
+
+    fn kept(&self) -> (u64, &[u8]) {
+        (self.part.kept_bytes.number, &self.part.kept_bytes.bytes)
     }
 
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {

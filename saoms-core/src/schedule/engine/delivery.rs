@@ -37,6 +37,9 @@ impl Engine {
     #[inline]
     pub(crate) fn deliver(&mut self, part: &mut Part, now: u64) {
         self.record(part, now);
+        if let Some(kept) = part.bytes_to_keep.take() {
+            part.kept_bytes = kept;
+        }
         if part.outbox.is_empty() {
             return;
         }

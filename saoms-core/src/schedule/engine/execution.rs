@@ -75,6 +75,7 @@ impl Engine {
                 body.part.chance = Chance::for_component(seed, &slot.name);
                 body.part.due = now;
                 body.part.execution = 0;
+                body.part.saves = slot.policy.restarts > 0 && slot.spec.class.declaration().saves;
                 body.part.heartbeats = self.heartbeats_of(index);
                 if !body.part.heartbeats.is_empty() && !self.with_hardware.contains(&index) {
                     self.with_hardware.push(index);
@@ -159,7 +160,7 @@ impl Engine {
         self.note_return();
         let slot = &mut self.slots[index as usize];
         if matches!(job, Job::Execute | Job::React) && self.real {
-            let slow = ended.saturating_sub(started) > self.budget;
+            let slow = ended.saturating_sub(started) > self.budget && !slot.isolation.always;
             slot.statistics.slow += u64::from(slow);
             if slot.isolation.active {
                 slot.isolation.count_execution(slow);

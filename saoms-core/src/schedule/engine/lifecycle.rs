@@ -114,11 +114,12 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         slot.state = SlotState::Active;
         let (number, again) = (slot.restarts, std::mem::take(&mut slot.restarting));
+        let continued = slot.body.as_ref().is_some_and(|body| body.part.continued);
         if slot.held {
             return;
         }
         self.step(now, index, TraceStep::Started);
-        self.emit(now, index, if again { Occurrence::Restarted { number } } else { Occurrence::Started });
+        self.emit(now, index, if again { Occurrence::Restarted { number, continued } } else { Occurrence::Started });
         let slot = &mut self.slots[index as usize];
         slot.due = now.saturating_add(slot.policy.delay);
         if let Some(last) = slot.last_due.filter(|last| slot.due <= *last) {
@@ -136,6 +137,8 @@ impl Engine {
 
     /// Handles the end of a component's shutdown.
     pub(crate) fn left(&mut self, index: u32, now: u64) {
+        // Whoever schedules it again wants a new one.
+        self.slots[index as usize].body.iter_mut().for_each(|body| body.part.saved = None);
         self.leave_topics(index, now);
         self.step(now, index, TraceStep::Left);
         self.stop_its_hardware(index);
@@ -163,6 +166,7 @@ impl Engine {
         self.record(&mut body.part, now);
         let unsent = body.part.outbox.len();
         body.part.outbox.clear();
+        body.part.bytes_to_keep = None;
         body.part.sent_bytes = 0;
         body.part.vote = None;
         let doing = match job {

@@ -110,6 +110,8 @@ pub(crate) enum PendingRequest {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Isolation {
     pub(crate) active: bool,
+    /// True if its class, or that of a component that it calls, never runs on the timer.
+    pub(crate) always: bool,
     /// Executions within the budget since it runs on a worker thread.
     pub(crate) within_budget: u32,
     /// Number of such executions that bring it back to the timer; doubles each time.
@@ -124,13 +126,18 @@ impl Isolation {
     /// Moves it to a worker thread, because it held up the others.
     pub(crate) fn isolate(&mut self) {
         let required = if self.required == 0 { EXECUTIONS_TO_RETURN } else { self.required.saturating_mul(2) };
-        *self = Isolation { active: true, within_budget: 0, required: required.min(MAX_EXECUTIONS_TO_RETURN) };
+        *self = Isolation {
+            active: true,
+            within_budget: 0,
+            always: self.always,
+            required: required.min(MAX_EXECUTIONS_TO_RETURN),
+        };
     }
 
     /// Counts an execution on a worker thread, within the budget or not.
     pub(crate) fn count_execution(&mut self, slow: bool) {
         self.within_budget = if slow { 0 } else { self.within_budget + 1 };
-        self.active = self.within_budget < self.required;
+        self.active = self.always || self.within_budget < self.required;
     }
 }
 

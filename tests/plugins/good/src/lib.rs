@@ -155,7 +155,63 @@ static ONE_SENDER: FleetRule = FleetRule {
     check: one_sender,
 };
 
+#[derive(Clone, Debug, Message)]
+struct Count {
+    count: u32,
+}
+
+/// Counts in steps, keeps the number, and goes on from it after a failure.
+#[derive(Class)]
+#[class(name = "good.Keeper", periodic, saves)]
+pub struct Keeper {
+    /// Step of the count; 8 is refused.
+    #[property(default = 1, range = 1..=10, live)]
+    step: u32,
+    /// The count at which it fails once.
+    #[property(default = 0)]
+    fails_at: u32,
+    count: u32,
+    has_failed: bool,
+}
+
+impl Component for Keeper {
+    type Properties = saoms_api::Own<Self>;
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.has_failed = context.kept().0 > 0;
+        context.info(format!("kept {:?}", context.kept()));
+        Ok(())
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.count += self.step;
+        if self.count == self.fails_at && !self.has_failed {
+            return Err("once".into());
+        }
+        context.keep(&[self.count as u8, 0xff])?;
+        context.info(format!("counts {}", self.count));
+        Ok(())
+    }
+
+    fn update(&mut self, properties: saoms_api::Own<Self>) -> Result<(), Failure> {
+        if properties.step == 8 {
+            return Err("not eight".into());
+        }
+        self.step = properties.step;
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<saoms_api::Saved, Failure> {
+        Ok(saoms_api::Saved::of(&Count { count: self.count }))
+    }
+
+    fn restore(&mut self, saved: &saoms_api::Saved) -> Result<(), Failure> {
+        self.count = saved.read::<Count>()?.map_or(0, |count| count.count);
+        Ok(())
+    }
+}
+
 saoms_api::plugin! {
-    classes: [Sender, Reader],
+    classes: [Sender, Reader, Keeper],
     rules: [ONE_SENDER],
 }

@@ -277,6 +277,7 @@ static COMPONENT: ComponentTable = ComponentTable {
     restore: None,
     waits_for: None,
     react: None,
+    update: None,
 };
 static CLASS: ClassTable =
     ClassTable { size: size_of::<ClassTable>(), construct, component: &raw const COMPONENT };
