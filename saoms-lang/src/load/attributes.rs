@@ -5,8 +5,6 @@ use std::borrow::Cow;
 use super::Loader;
 use super::children::is_known;
 use super::vocabulary::{self, Holds, Kind, Known};
-use saoms_api::host::is_invisible;
-
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
 use crate::limits::LIST_WORDS;
 use crate::model::{Multiplicity, SAOMS_NAMESPACE, Version};
@@ -238,9 +236,8 @@ impl Loader<'_> {
         if is_local_name(&name) {
             return name;
         }
-        // Copied from a page or a document, unseen.
-        let is_unseen =
-            |letter: char| is_invisible(letter) || matches!(letter, '\u{ad}' | '\u{200b}'..='\u{200d}' | '\u{2060}');
+        // Copied from a page or a document, of no width.
+        let is_unseen = |letter| matches!(letter, '\u{ad}' | '\u{200b}'..='\u{200d}' | '\u{2060}' | '\u{feff}');
         if let Some(unseen) = name.chars().find(|letter| is_unseen(*letter)) {
             let clean: String = name.chars().filter(|letter| !is_unseen(*letter)).collect();
             let code = format!("U+{:04X}", unseen as u32);
