@@ -24,9 +24,9 @@ use crate::check::classes::registry;
 const HEAD: &str = "\
 # Diagnostics
 
-What `saoms check` and `saoms run` say about composites. Each code keeps its meaning for good. An error stops everything
-before anything starts; a warning stops nothing. Where a rule of the SCA Assembly specification says the same, it stands
-behind the code. `--format json` gives the same as data, with each suggestion as edits.
+These are the diagnostics of `saoms check` and `saoms run`. The meaning of a code never changes. With an error, nothing
+starts; a warning stops nothing. If the SCA Assembly specification has the same rule, its name follows the code.
+`--format json` prints diagnostics as data, with each suggestion as edits.
 
 | codes | about |
 | --- | --- |

@@ -24,10 +24,10 @@ struct Rule {
 const HEAD: &str = "\
 # Rules
 
-What composites are held to. Each code is described, with an example, in [diagnostics.md](diagnostics.md). The test of a code is its
-example, which has to have that one fault, and loses it when the rule is gone: the file of its name in `saoms-lang/tests/suite/check/examples`, or
-in `tests/rules` for `S50`. Those of `S0001` to `S0009`, `S2035` and `S3016` are no files that could be kept: `saoms-lang/tests/suite/check/report/reference.rs`
-makes them.
+These are the rules for composites. [diagnostics.md](diagnostics.md) describes each code, with an example. The example is
+also the test of the code: it has this fault and no other. The examples are in `saoms-lang/tests/suite/check/examples`, for
+`S50` in `tests/rules`, each in a file with the name of its code. `saoms-lang/tests/suite/check/report/reference.rs` makes
+those of `S0001` to `S0009`, `S2035` and `S3016`, which cannot be files.
 
 ## Codes
 
