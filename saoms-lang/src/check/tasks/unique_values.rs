@@ -103,6 +103,8 @@ impl RepeatedValues {
         report: &Report<'_>,
     ) {
         let mut first: HashMap<(SmolStr, &str, SmolStr), User> = HashMap::new();
+        // The values that replicas share in one use already.
+        let mut of_replicas: HashSet<Location> = HashSet::new();
         for (member, given) in given.enumerate() {
             let Some(class) = fleet.class_of(member) else { continue };
             for (value, place, entry) in uses(&fleet.members[member], class, given) {
@@ -113,11 +115,14 @@ impl RepeatedValues {
                     continue;
                 }
                 let Some([one, two]) = apart(fleet, [earlier, user]) else { continue };
+                if fleet.members[earlier.member].scope == fleet.members[member].scope {
+                    of_replicas.insert(place);
+                }
                 let main = |member: usize| fleet.inner(member).map(|inner| inner.main().origin);
                 let is_one = main(one).is_some() && main(one) == main(two);
                 let is_written = names(report.written(place)).iter().all(|name| name == INDEX);
                 let is_own = |member: usize| fleet.members[member].instance.is_none();
-                if is_one && is_written && is_own(one) && is_own(two) {
+                if is_one && is_written && is_own(one) && is_own(two) && !of_replicas.contains(&place) {
                     self.alike.insert(two);
                 }
             }
