@@ -206,7 +206,8 @@ impl<'a> Entry<'a> {
         });
         text.member("doc", &self.doc);
         text.member("unit", &self.unit);
-        text.plain(if self.effector { ",\"effector\":true}" } else { "}" });
+        text.plain(if self.effector { ",\"effector\":true" } else { "" });
+        text.plain(if self.quiet { ",\"quiet\":true}" } else { "}" });
     }
 
     /// An arm of a `match` over the number of an entry: one expression for a plain field, another for a flattened one.

@@ -16,22 +16,29 @@ pub struct FixedBatteryProperties {
 
 /// Goes to the charger at a fixed battery level, in spite of the job, and stays there until the battery is full.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "own.FixedBattery",
-    senses("battery", "charging", "block", "next", "chargeBlock", "asleep", "chargeAt", "trouble"),
-    effects("mustCharge", "inCharge", "trouble")
-)]
+#[looping(name = "own.FixedBattery", senses("trouble"))]
 pub struct FixedBattery {
+    #[properties]
     properties: FixedBatteryProperties,
+    #[senses]
     battery: Entry<f64>,
+    #[senses]
     charging: Entry<bool>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     next: Entry<Block>,
+    #[senses]
     charge_block: Entry<Block>,
+    #[senses]
     asleep: Entry<bool>,
+    #[senses]
     charge_at: Entry<f64>,
+    #[effects]
     must_charge: Effector<bool>,
+    #[effects]
     in_charge: Effector<bool>,
+    #[effects]
     trouble: Effector<Option<Trouble>>,
 }
 
@@ -53,36 +60,6 @@ impl Loop for FixedBattery {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
-
-    fn new(properties: FixedBatteryProperties) -> Result<Self, Failure> {
-        Ok(FixedBattery {
-            properties,
-            battery: Entry::default(),
-            charging: Entry::default(),
-            block: Entry::default(),
-            next: Entry::default(),
-            charge_block: Entry::default(),
-            asleep: Entry::default(),
-            charge_at: Entry::default(),
-            must_charge: Effector::default(),
-            in_charge: Effector::default(),
-            trouble: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.battery = robot.entry("battery")?;
-        self.charging = robot.entry("charging")?;
-        self.block = robot.entry("block")?;
-        self.next = robot.entry("next")?;
-        self.charge_block = robot.entry("chargeBlock")?;
-        self.asleep = robot.entry("asleep")?;
-        self.charge_at = robot.entry("chargeAt")?;
-        self.must_charge = robot.effector("mustCharge")?;
-        self.in_charge = robot.effector("inCharge")?;
-        self.trouble = robot.effector("trouble")?;
-        Ok(())
-    }
 
     fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Step<Act>>, Failure> {
         let (battery, charging, charger) =

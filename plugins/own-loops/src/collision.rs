@@ -17,14 +17,21 @@ pub struct DistanceProperties {
 /// Waits while a robot with a lower number is near the block that the robot is about to enter, or while any other robot
 /// holds or wants that block.
 #[derive(Debug, LoopClass)]
-#[looping(name = "own.Distance", senses("number", "next", "block", "wanted", "positions"), effects("stopAPeriod"))]
+#[looping(name = "own.Distance")]
 pub struct Distance {
+    #[properties]
     properties: DistanceProperties,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     next: Entry<Block>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     wanted: Entry<Option<Block>>,
+    #[senses]
     positions: Entry<Vec<Position>>,
+    #[effects("stopAPeriod")]
     stops: Effector<bool>,
 }
 
@@ -33,28 +40,6 @@ impl Loop for Distance {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<bool>;
     type Decision = Decision<bool>;
-
-    fn new(properties: DistanceProperties) -> Result<Self, Failure> {
-        Ok(Distance {
-            properties,
-            number: Entry::default(),
-            next: Entry::default(),
-            block: Entry::default(),
-            wanted: Entry::default(),
-            positions: Entry::default(),
-            stops: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.number = robot.entry("number")?;
-        self.next = robot.entry("next")?;
-        self.block = robot.entry("block")?;
-        self.wanted = robot.entry("wanted")?;
-        self.positions = robot.entry("positions")?;
-        self.stops = robot.effector("stopAPeriod")?;
-        Ok(())
-    }
 
     fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Step<bool>>, Failure> {
         let (number, at, next) = (self.number.get(robot)?, self.block.get(robot)?, self.next.get(robot)?);

@@ -14,32 +14,36 @@ use crate::step::{Decision, Step};
 /// Asks for help when the robot breaks, and never helps another robot. The robot stops its hardware by itself once it
 /// is `critical`.
 #[derive(Debug, Default, LoopClass)]
-#[looping(
-    name = "own.Loner",
-    senses("number", "period", "block", "battery", "chargeBlock"),
-    effects(
-        "critical", "trouble", "job", "busy", "transporter", "hasLuggage", "healer", "asleep", "inCharge",
-        "offersHelp", "standsInFor"
-    ),
-    publishes(CRITICAL_SITUATION, ROBOT_LIST),
-    subscribes(FAULT)
-)]
+#[looping(name = "own.Loner", effects("busy", "transporter", "healer", "asleep", "inCharge", "offersHelp"))]
 pub struct Loner {
+    #[subscribes(FAULT)]
     faults: Subscription<Fault>,
+    #[publishes(CRITICAL_SITUATION)]
     situations: Publisher<CriticalSituation>,
+    #[publishes(ROBOT_LIST)]
     robots: Publisher<RobotList>,
     broken_by: Option<Cause>,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     period: Entry<u64>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     battery: Entry<f64>,
+    #[senses]
     charge_block: Entry<Block>,
+    #[effects]
     critical: Effector<bool>,
+    #[effects]
     trouble: Effector<Option<Trouble>>,
+    #[effects]
     job: Effector<Option<Job>>,
+    #[effects]
     has_luggage: Effector<bool>,
     /// What a broken robot is not any more.
     rest: [Effector<bool>; 6],
+    #[effects]
     stands_in_for: Effector<Option<u32>>,
 }
 
@@ -60,27 +64,10 @@ impl Loop for Loner {
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(Loner::default())
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.faults = context.subscribe(&FAULT)?;
-        self.situations = context.publish(&CRITICAL_SITUATION)?;
-        self.robots = context.publish(&ROBOT_LIST)?;
-        self.number = robot.entry("number")?;
-        self.period = robot.entry("period")?;
-        self.block = robot.entry("block")?;
-        self.battery = robot.entry("battery")?;
-        self.charge_block = robot.entry("chargeBlock")?;
-        self.critical = robot.effector("critical")?;
-        self.trouble = robot.effector("trouble")?;
-        self.job = robot.effector("job")?;
-        self.has_luggage = robot.effector("hasLuggage")?;
+    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         for (entry, name) in self.rest.iter_mut().zip(REST) {
             *entry = robot.effector(name)?;
         }
-        self.stands_in_for = robot.effector("standsInFor")?;
         Ok(())
     }
 

@@ -17,27 +17,36 @@ pub struct SlowGripperProperties {
 
 /// Looks at luggage for a while before the gripper collects it.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "own.SlowGripper",
-    senses("number", "block", "next", "busy", "hasLuggage", "job", "moving", "handling", "lasts", "wayHome"),
-    effects("grip", "untold"),
-    publishes(EVENT_LUGGAGE)
-)]
+#[looping(name = "own.SlowGripper")]
 pub struct SlowGripper {
+    #[properties]
     properties: SlowGripperProperties,
     looked: u32,
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     next: Entry<Block>,
+    #[senses]
     busy: Entry<bool>,
+    #[senses]
     has_luggage: Entry<bool>,
+    #[senses]
     job: Entry<Option<Job>>,
+    #[senses]
     moving: Entry<bool>,
+    #[senses]
     handling: Entry<bool>,
+    #[senses]
     lasts: Entry<u32>,
+    #[senses]
     way_home: Entry<u32>,
+    #[effects]
     grip: Effector<bool>,
+    #[effects]
     untold: Effector<Option<JobEnd>>,
 }
 
@@ -55,43 +64,6 @@ impl Loop for SlowGripper {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
-
-    fn new(properties: SlowGripperProperties) -> Result<Self, Failure> {
-        Ok(SlowGripper {
-            properties,
-            looked: 0,
-            luggage: Publisher::default(),
-            number: Entry::default(),
-            block: Entry::default(),
-            next: Entry::default(),
-            busy: Entry::default(),
-            has_luggage: Entry::default(),
-            job: Entry::default(),
-            moving: Entry::default(),
-            handling: Entry::default(),
-            lasts: Entry::default(),
-            way_home: Entry::default(),
-            grip: Effector::default(),
-            untold: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.number = robot.entry("number")?;
-        self.block = robot.entry("block")?;
-        self.next = robot.entry("next")?;
-        self.busy = robot.entry("busy")?;
-        self.has_luggage = robot.entry("hasLuggage")?;
-        self.job = robot.entry("job")?;
-        self.moving = robot.entry("moving")?;
-        self.handling = robot.entry("handling")?;
-        self.lasts = robot.entry("lasts")?;
-        self.way_home = robot.entry("wayHome")?;
-        self.grip = robot.effector("grip")?;
-        self.untold = robot.effector("untold")?;
-        Ok(())
-    }
 
     fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Step<Act>>, Failure> {
         if let Some(end) = self.untold.get(robot)? {

@@ -24,24 +24,32 @@ pub struct ZoneProperties {
 #[looping(
     name = "own.Zone",
     senses(
-        "number", "block", "requests", "lasts", "asleep", "inCharge", "critical", "healer", "mustCharge",
-        "readyToGoUnderCharge", "relieved", "offersHelp", "handling", "loaded", "chargeBlock"
-    ),
-    effects("job", "busy", "transporter"),
-    publishes(EVENT_LUGGAGE)
+        "asleep", "inCharge", "critical", "healer", "mustCharge", "readyToGoUnderCharge", "relieved", "offersHelp",
+        "handling", "loaded"
+    )
 )]
 pub struct Zone {
+    #[properties]
     zone: ZoneProperties,
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     requests: Entry<Vec<WaitingLuggage>>,
+    #[senses]
     lasts: Entry<u32>,
+    #[senses]
     charge_block: Entry<Block>,
     /// What keeps it from taking a job.
     otherwise: [Entry<bool>; 9],
+    #[effects]
     job: Effector<Option<Job>>,
+    #[effects]
     busy: Effector<bool>,
+    #[effects]
     transporter: Effector<bool>,
 }
 
@@ -69,35 +77,10 @@ impl Loop for Zone {
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
 
-    fn new(zone: ZoneProperties) -> Result<Self, Failure> {
-        Ok(Zone {
-            zone,
-            luggage: Publisher::default(),
-            number: Entry::default(),
-            block: Entry::default(),
-            requests: Entry::default(),
-            lasts: Entry::default(),
-            charge_block: Entry::default(),
-            otherwise: Default::default(),
-            job: Effector::default(),
-            busy: Effector::default(),
-            transporter: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.number = robot.entry("number")?;
-        self.block = robot.entry("block")?;
-        self.requests = robot.entry("requests")?;
-        self.lasts = robot.entry("lasts")?;
-        self.charge_block = robot.entry("chargeBlock")?;
+    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         for (entry, name) in self.otherwise.iter_mut().zip(OTHERWISE) {
             *entry = robot.entry(name)?;
         }
-        self.job = robot.effector("job")?;
-        self.busy = robot.effector("busy")?;
-        self.transporter = robot.effector("transporter")?;
         Ok(())
     }
 

@@ -18,19 +18,18 @@ pub struct AllHandsProperties {
 /// In place of `AwakeAsleepMS`: wakes all robots at once, however many pieces are expected, and sends all to charge
 /// when nothing happened for long.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "own.AllHands",
-    senses("active", "robots", "asleep", "counter", "piecesPerRobot"),
-    effects("onShift"),
-    subscribes(EXCEPTIONAL_EVENT),
-    publishes(ROBOT_STATE)
-)]
+#[looping(name = "own.AllHands", senses("robots", "asleep", "counter", "piecesPerRobot"))]
 pub struct AllHands {
+    #[properties]
     properties: AllHandsProperties,
     left: u32,
+    #[subscribes(EXCEPTIONAL_EVENT)]
     events: Subscription<ExceptionalEvent>,
+    #[publishes(ROBOT_STATE)]
     states: Publisher<RobotState>,
+    #[senses]
     active: Entry<Vec<RobotList>>,
+    #[effects]
     on_shift: Effector<u32>,
 }
 
@@ -39,25 +38,6 @@ impl Loop for AllHands {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<bool>;
     type Decision = Decision<bool>;
-
-    fn new(properties: AllHandsProperties) -> Result<Self, Failure> {
-        Ok(AllHands {
-            properties,
-            left: 0,
-            events: Subscription::default(),
-            states: Publisher::default(),
-            active: Entry::default(),
-            on_shift: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, master: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.events = context.subscribe(&EXCEPTIONAL_EVENT)?;
-        self.states = context.publish(&ROBOT_STATE)?;
-        self.active = master.entry("active")?;
-        self.on_shift = master.effector("onShift")?;
-        Ok(())
-    }
 
     fn analyze(&mut self, _: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<Option<Step<bool>>, Failure> {
         let heard = context.receive(&self.events).with_headers().last();
@@ -101,9 +81,10 @@ impl Loop for AllHands {
 
 /// In place of `RobotListMS`: tells the mean battery level of the robots.
 #[derive(Debug, Default, LoopClass)]
-#[looping(name = "own.MeanBattery", senses("active", "robots", "asleep"))]
+#[looping(name = "own.MeanBattery", senses("robots", "asleep"))]
 pub struct MeanBattery {
     said: Option<f64>,
+    #[senses]
     active: Entry<Vec<RobotList>>,
 }
 
@@ -112,15 +93,6 @@ impl Loop for MeanBattery {
     type Knowledge = dyn Knowledge;
     type Symptom = Record;
     type Decision = Record;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(MeanBattery::default())
-    }
-
-    fn initialize(&mut self, master: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.active = master.entry("active")?;
-        Ok(())
-    }
 
     fn analyze(&mut self, master: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<Option<Record>, Failure> {
         let active = self.active.get(master)?;

@@ -12,36 +12,48 @@ use crate::step::{Decision, Step};
 /// As every robot with the policy `safe` it says which block it wants, and enters it in a later execution, if
 /// `CollisionMS` does not stop it.
 #[derive(Debug, Default, LoopClass)]
-#[looping(
-    name = "own.Straight",
-    senses(
-        "number", "block", "next", "job", "busy", "hasLuggage", "mustCharge", "relieved", "transporter", "offersHelp",
-        "chargeBlock", "stopAPeriod", "critical", "moving", "handling", "inCharge", "positions"
-    ),
-    effects("drive", "next", "wanted", "readyToGoUnderCharge", "reachingCharge"),
-    publishes(POSITION)
-)]
+#[looping(name = "own.Straight", senses("inCharge", "positions"), effects("next"))]
 pub struct Straight {
     said: Option<Position>,
+    #[publishes(POSITION)]
     announced: Publisher<Position>,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     next: Entry<Block>,
+    #[senses]
     job: Entry<Option<Job>>,
+    #[senses]
     busy: Entry<bool>,
+    #[senses]
     has_luggage: Entry<bool>,
+    #[senses]
     must_charge: Entry<bool>,
+    #[senses]
     relieved: Entry<bool>,
+    #[senses]
     transporter: Entry<bool>,
+    #[senses]
     offers_help: Entry<bool>,
+    #[senses]
     charge_block: Entry<Block>,
+    #[senses("stopAPeriod")]
     stops: Entry<bool>,
+    #[senses]
     critical: Entry<bool>,
+    #[senses]
     moving: Entry<bool>,
+    #[senses]
     handling: Entry<bool>,
+    #[effects]
     drive: Effector<Option<Block>>,
+    #[effects]
     wanted: Effector<Option<Block>>,
+    #[effects("readyToGoUnderCharge")]
     ready: Effector<bool>,
+    #[effects("reachingCharge")]
     reaching: Effector<bool>,
 }
 
@@ -93,35 +105,7 @@ impl Loop for Straight {
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(Straight::default())
-    }
-
     fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.announced = context.publish(&POSITION)?;
-        self.number = robot.entry("number")?;
-        self.block = robot.entry("block")?;
-        self.next = robot.entry("next")?;
-        self.job = robot.entry("job")?;
-        for (entry, name) in [
-            (&mut self.busy, "busy"),
-            (&mut self.has_luggage, "hasLuggage"),
-            (&mut self.must_charge, "mustCharge"),
-            (&mut self.relieved, "relieved"),
-            (&mut self.transporter, "transporter"),
-            (&mut self.offers_help, "offersHelp"),
-            (&mut self.stops, "stopAPeriod"),
-            (&mut self.critical, "critical"),
-            (&mut self.moving, "moving"),
-            (&mut self.handling, "handling"),
-        ] {
-            *entry = robot.entry(name)?;
-        }
-        self.charge_block = robot.entry("chargeBlock")?;
-        self.drive = robot.effector("drive")?;
-        self.wanted = robot.effector("wanted")?;
-        self.ready = robot.effector("readyToGoUnderCharge")?;
-        self.reaching = robot.effector("reachingCharge")?;
         // The others have to know which blocks are held before the first robot moves.
         let position = self.next_act(robot)?.position;
         let position = Position { wanted: position.block, ..position };

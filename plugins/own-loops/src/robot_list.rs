@@ -16,21 +16,26 @@ pub struct AnnouncerProperties {
 
 /// Announces the robot only when something changed that others have to know, or its battery by much.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "own.Announcer",
-    senses("number", "period", "battery", "inCharge", "asleep", "critical", "chargeBlock", "robots"),
-    publishes(ROBOT_LIST)
-)]
+#[looping(name = "own.Announcer", senses("robots"))]
 pub struct Announcer {
+    #[properties]
     properties: AnnouncerProperties,
     said: Option<RobotList>,
+    #[publishes(ROBOT_LIST)]
     robots: Publisher<RobotList>,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     period: Entry<u64>,
+    #[senses]
     battery: Entry<f64>,
+    #[senses]
     in_charge: Entry<bool>,
+    #[senses]
     asleep: Entry<bool>,
+    #[senses]
     critical: Entry<bool>,
+    #[senses]
     charge_block: Entry<Block>,
 }
 
@@ -53,33 +58,6 @@ impl Loop for Announcer {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<RobotList>;
     type Decision = Decision<RobotList>;
-
-    fn new(properties: AnnouncerProperties) -> Result<Self, Failure> {
-        Ok(Announcer {
-            properties,
-            said: None,
-            robots: Publisher::default(),
-            number: Entry::default(),
-            period: Entry::default(),
-            battery: Entry::default(),
-            in_charge: Entry::default(),
-            asleep: Entry::default(),
-            critical: Entry::default(),
-            charge_block: Entry::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.robots = context.publish(&ROBOT_LIST)?;
-        self.number = robot.entry("number")?;
-        self.period = robot.entry("period")?;
-        self.battery = robot.entry("battery")?;
-        self.in_charge = robot.entry("inCharge")?;
-        self.asleep = robot.entry("asleep")?;
-        self.critical = robot.entry("critical")?;
-        self.charge_block = robot.entry("chargeBlock")?;
-        Ok(())
-    }
 
     fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Step<RobotList>>, Failure> {
         let now = self.now(robot)?;

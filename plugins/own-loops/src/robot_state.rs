@@ -16,25 +16,29 @@ pub struct NapsProperties {
 
 /// Sleeps by itself when nothing is to be done, and wakes as soon as luggage waits, or when it is called.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "own.Naps",
-    senses("number", "busy", "transporter", "offersHelp", "critical", "block", "chargeBlock", "requests"),
-    effects("asleep", "relieved", "standsInFor"),
-    subscribes(ROBOT_STATE)
-)]
+#[looping(name = "own.Naps", senses("busy", "transporter", "offersHelp", "critical"))]
 pub struct Naps {
+    #[properties]
     properties: NapsProperties,
+    #[subscribes(ROBOT_STATE)]
     calls: Subscription<RobotState>,
     called: Option<RobotState>,
     idle: u32,
+    #[senses]
     number: Entry<u32>,
     /// What it is kept awake by.
     works: [Entry<bool>; 4],
+    #[senses]
     block: Entry<saoms_components::grid::Block>,
+    #[senses]
     charge_block: Entry<saoms_components::grid::Block>,
+    #[senses]
     requests: Entry<Vec<WaitingLuggage>>,
+    #[effects]
     asleep: Effector<bool>,
+    #[effects]
     relieved: Effector<bool>,
+    #[effects]
     stands_in_for: Effector<Option<u32>>,
 }
 
@@ -55,35 +59,10 @@ impl Loop for Naps {
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
 
-    fn new(properties: NapsProperties) -> Result<Self, Failure> {
-        Ok(Naps {
-            properties,
-            calls: Subscription::default(),
-            called: None,
-            idle: 0,
-            number: Entry::default(),
-            works: Default::default(),
-            block: Entry::default(),
-            charge_block: Entry::default(),
-            requests: Entry::default(),
-            asleep: Effector::default(),
-            relieved: Effector::default(),
-            stands_in_for: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.calls = context.subscribe(&ROBOT_STATE)?;
-        self.number = robot.entry("number")?;
+    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         for (entry, name) in self.works.iter_mut().zip(["busy", "transporter", "offersHelp", "critical"]) {
             *entry = robot.entry(name)?;
         }
-        self.block = robot.entry("block")?;
-        self.charge_block = robot.entry("chargeBlock")?;
-        self.requests = robot.entry("requests")?;
-        self.asleep = robot.effector("asleep")?;
-        self.relieved = robot.effector("relieved")?;
-        self.stands_in_for = robot.effector("standsInFor")?;
         Ok(())
     }
 

@@ -89,6 +89,9 @@ pub struct DeclaredEntry {
     /// True if only one of the loops of a component may change it.
     #[serde(default)]
     pub effector: bool,
+    /// True if its changes are not written to the journal.
+    #[serde(default)]
+    pub quiet: bool,
 }
 
 /// The loops that components of a class have unless a composite says otherwise.

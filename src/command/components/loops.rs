@@ -70,6 +70,9 @@ fn entry_lines(entry: &DeclaredEntry) -> String {
     if entry.effector {
         facts.push("effector".to_owned());
     }
+    if entry.quiet {
+        facts.push("quiet".to_owned());
+    }
     let mut text = format!("  {}: {}\n", entry.name, facts.join(", "));
     for line in wrapped(&entry.doc, 96) {
         let _ = writeln!(text, "      {line}");

@@ -16,7 +16,7 @@ use saoms_testkit::{Bench, Fleet, Run, comply_as};
 use serde_json::Value;
 
 use super::examples::library;
-use crate::support::{saoms, text};
+use crate::support::{root, saoms, text};
 
 const NAMESPACES: &str = r#"xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" xmlns:saoms="urn:saoms:1""#;
 
@@ -63,13 +63,20 @@ fn linked(composite: &str) -> Run {
 
 /// The same, and with the loops from the library, which comes to the same run.
 fn both(composite: &str) -> Run {
+    both_with(composite, &["saoms_own_loops"])
+}
+
+/// The same with several libraries.
+fn both_with(composite: &str, libraries: &[&str]) -> Run {
     let linked = linked(composite);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("own.composite");
     fs::write(&path, composite).unwrap();
-    let library = library("saoms_own_loops");
-    let arguments = ["--virtual", "--seed", "3", "--for", "300s", "--quiet", "--report", "-", "--plugin"];
-    let run = saoms(&[&["run", path.to_str().unwrap()], &arguments[..], &[library.to_str().unwrap()]].concat());
+    let libraries: Vec<_> = libraries.iter().map(|name| library(name)).collect();
+    let mut arguments = vec!["run", path.to_str().unwrap(), "--virtual", "--seed", "3", "--for", "300s", "--quiet"];
+    arguments.extend(["--report", "-"]);
+    arguments.extend(libraries.iter().flat_map(|library| ["--plugin", library.to_str().unwrap()]));
+    let run = saoms(&arguments);
     let report: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{}", text(&run)));
     assert_eq!(report["trace_hash"].as_str(), linked.trace_hash.as_deref(), "{}", linked.log());
     linked
@@ -344,6 +351,23 @@ fn what_a_loop_does_not_serve_is_told_before_the_start() {
     }
     let shown = Fleet::of_text(fleet(WORK, &[robot("Robot1", "safe", &instead("CollisionMS", "own.Announcer", &[]))]));
     assert!(shown.diagnostics().contains("no loop effects `stopAPeriod` any more"), "{}", shown.diagnostics());
+}
+
+#[test]
+fn a_robot_of_one_library_takes_loops_of_another() {
+    let camera = fs::read_to_string(root().join("plugins/camera/fleet.composite")).unwrap();
+    let loops = instead("GripperMS", "own.SlowGripper", &[("looks", "7")])
+        + &instead("PathFollowerMS", "own.Straight", &[])
+        + &instead("BatteryMS", "own.FixedBattery", &[]);
+    let own = camera.replacen("<composite ", "<composite xmlns:saoms=\"urn:saoms:1\" ", 1).replacen(
+        "<property name=\"reach\" value=\"3\"/>",
+        &format!("<property name=\"reach\" value=\"3\"/>{loops}"),
+        1,
+    );
+    let run = both_with(&own, &["saoms_camera", "saoms_own_loops"]);
+    assert_eq!(delivered(&run), 2, "{}", run.log());
+    assert!(!run.journal().of("Robot1").of_record("has_looked").is_empty());
+    assert!(run.journal().of("Robot1").of_loop("PathFollowerMS").changes("block").len() > 5);
 }
 
 /// Holds a robot with this loop to the rules for every component.

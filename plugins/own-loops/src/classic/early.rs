@@ -15,21 +15,27 @@ pub struct EarlyBatteryProperties {
 
 /// Sends the robot to charge at another level than the manual's, and lets it sleep when the battery is full.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "own.classic.EarlyBattery",
-    senses("battery", "charging", "inCharge", "healer", "block", "chargeBlock", "chargeAt"),
-    effects("busy", "readyToGoUnderCharge")
-)]
+#[looping(name = "own.classic.EarlyBattery")]
 pub struct EarlyBattery {
+    #[properties]
     properties: EarlyBatteryProperties,
+    #[senses]
     battery: Entry<f64>,
+    #[senses]
     charging: Entry<bool>,
+    #[senses]
     in_charge: Entry<bool>,
+    #[senses]
     healer: Entry<bool>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     charge_block: Entry<Block>,
+    #[senses]
     charge_at: Entry<f64>,
+    #[effects]
     busy: Effector<bool>,
+    #[effects("readyToGoUnderCharge")]
     ready: Effector<bool>,
 }
 
@@ -47,34 +53,6 @@ impl Loop for EarlyBattery {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
-
-    fn new(properties: EarlyBatteryProperties) -> Result<Self, Failure> {
-        Ok(EarlyBattery {
-            properties,
-            battery: Entry::default(),
-            charging: Entry::default(),
-            in_charge: Entry::default(),
-            healer: Entry::default(),
-            block: Entry::default(),
-            charge_block: Entry::default(),
-            charge_at: Entry::default(),
-            busy: Effector::default(),
-            ready: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.battery = robot.entry("battery")?;
-        self.charging = robot.entry("charging")?;
-        self.in_charge = robot.entry("inCharge")?;
-        self.healer = robot.entry("healer")?;
-        self.block = robot.entry("block")?;
-        self.charge_block = robot.entry("chargeBlock")?;
-        self.charge_at = robot.entry("chargeAt")?;
-        self.busy = robot.effector("busy")?;
-        self.ready = robot.effector("readyToGoUnderCharge")?;
-        Ok(())
-    }
 
     fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Step<Act>>, Failure> {
         let (battery, healer) = (self.battery.get(robot)?, self.healer.get(robot)?);

@@ -15,22 +15,26 @@ pub struct RestedProperties {
 
 /// Wakes when it is called, but not before its battery is charged so far, and lets nobody send it to charge.
 #[derive(Debug, LoopClass)]
-#[looping(
-    name = "own.classic.Rested",
-    senses("number", "battery", "healer"),
-    effects("inCharge", "asleep", "busy", "readyToGoUnderCharge", "standsInFor", "relieved"),
-    subscribes(ROBOT_STATE)
-)]
+#[looping(name = "own.classic.Rested", effects("readyToGoUnderCharge", "relieved"))]
 pub struct Rested {
+    #[properties]
     properties: RestedProperties,
+    #[subscribes(ROBOT_STATE)]
     calls: Subscription<RobotState>,
     called: Option<u32>,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     battery: Entry<f64>,
+    #[senses]
     healer: Entry<bool>,
+    #[effects]
     in_charge: Effector<bool>,
+    #[effects]
     asleep: Effector<bool>,
+    #[effects]
     busy: Effector<bool>,
+    #[effects]
     stands_in_for: Effector<Option<u32>>,
 }
 
@@ -39,33 +43,6 @@ impl Loop for Rested {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<u32>;
     type Decision = Decision<u32>;
-
-    fn new(properties: RestedProperties) -> Result<Self, Failure> {
-        Ok(Rested {
-            properties,
-            calls: Subscription::default(),
-            called: None,
-            number: Entry::default(),
-            battery: Entry::default(),
-            healer: Entry::default(),
-            in_charge: Effector::default(),
-            asleep: Effector::default(),
-            busy: Effector::default(),
-            stands_in_for: Effector::default(),
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.calls = context.subscribe(&ROBOT_STATE)?;
-        self.number = robot.entry("number")?;
-        self.battery = robot.entry("battery")?;
-        self.healer = robot.entry("healer")?;
-        self.in_charge = robot.effector("inCharge")?;
-        self.asleep = robot.effector("asleep")?;
-        self.busy = robot.effector("busy")?;
-        self.stands_in_for = robot.effector("standsInFor")?;
-        Ok(())
-    }
 
     fn monitor(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let number = self.number.get(robot)?;

@@ -14,37 +14,51 @@ use crate::step::{Decision, Step};
 /// Drives along y first, uses the gripper at the ends of a job, and charges: as the manual's robots, which announce a
 /// block in one execution and enter it in the next one.
 #[derive(Debug, Default, LoopClass)]
-#[looping(
-    name = "own.classic.Walker",
-    senses("number", "block", "chargeBlock", "job", "hasLuggage", "stopAPeriod", "moving", "handling", "critical"),
-    effects(
-        "drive", "grip", "next", "untold", "busy", "reachingCharge", "readyToGoUnderCharge", "inCharge", "asleep",
-        "relieved"
-    ),
-    publishes(POSITION, EVENT_LUGGAGE, CRITICAL_SITUATION)
-)]
+#[looping(name = "own.classic.Walker")]
 pub struct ClassicWalker {
+    #[publishes(POSITION)]
     positions: Publisher<Position>,
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[publishes(CRITICAL_SITUATION)]
     situations: Publisher<CriticalSituation>,
+    #[senses]
     number: Entry<u32>,
+    #[senses]
     block: Entry<Block>,
+    #[senses]
     charge_block: Entry<Block>,
+    #[senses]
     job: Entry<Option<Job>>,
+    #[senses]
     has_luggage: Entry<bool>,
+    #[senses("stopAPeriod")]
     stops: Entry<bool>,
+    #[senses]
     moving: Entry<bool>,
+    #[senses]
     handling: Entry<bool>,
+    #[senses]
     critical: Entry<bool>,
+    #[effects]
     drive: Effector<Option<Block>>,
+    #[effects]
     grip: Effector<bool>,
+    #[effects]
     next: Effector<Block>,
+    #[effects]
     untold: Effector<Option<JobEnd>>,
+    #[effects]
     busy: Effector<bool>,
+    #[effects("reachingCharge")]
     reaching: Effector<bool>,
+    #[effects("readyToGoUnderCharge")]
     ready: Effector<bool>,
+    #[effects]
     in_charge: Effector<bool>,
+    #[effects]
     asleep: Effector<bool>,
+    #[effects]
     relieved: Effector<bool>,
 }
 
@@ -87,44 +101,6 @@ impl Loop for ClassicWalker {
     type Knowledge = dyn Knowledge;
     type Symptom = Step<Act>;
     type Decision = Decision<Act>;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicWalker::default())
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.positions = context.publish(&POSITION)?;
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.situations = context.publish(&CRITICAL_SITUATION)?;
-        self.number = robot.entry("number")?;
-        self.block = robot.entry("block")?;
-        self.charge_block = robot.entry("chargeBlock")?;
-        self.job = robot.entry("job")?;
-        for (entry, name) in [
-            (&mut self.has_luggage, "hasLuggage"),
-            (&mut self.stops, "stopAPeriod"),
-            (&mut self.moving, "moving"),
-            (&mut self.handling, "handling"),
-            (&mut self.critical, "critical"),
-        ] {
-            *entry = robot.entry(name)?;
-        }
-        self.drive = robot.effector("drive")?;
-        self.next = robot.effector("next")?;
-        self.untold = robot.effector("untold")?;
-        for (effector, name) in [
-            (&mut self.grip, "grip"),
-            (&mut self.busy, "busy"),
-            (&mut self.reaching, "reachingCharge"),
-            (&mut self.ready, "readyToGoUnderCharge"),
-            (&mut self.in_charge, "inCharge"),
-            (&mut self.asleep, "asleep"),
-            (&mut self.relieved, "relieved"),
-        ] {
-            *effector = robot.effector(name)?;
-        }
-        Ok(())
-    }
 
     fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Step<Act>>, Failure> {
         let (block, next) = (self.block.get(robot)?, self.next.get(robot)?);

@@ -80,6 +80,7 @@
 //! | `value` | `bool`, `integer`, `number`, `pair` or `word`: it is a single value; absent where it crosses a boundary as CDR alone |
 //! | `doc`, `unit` | for people |
 //! | `effector` | `true`: of the loops of a component only one may change it |
+//! | `quiet` | `true`: its changes are not written to the journal |
 //!
 //! An entry is known by its place: those of the knowledge in order, then those that loops add, loop by loop.
 //!

@@ -16,7 +16,9 @@ use crate::robot::{Help, RobotKnowledge};
 #[looping(
     name = "saoms.classic.CriticalSituationMS",
     knowledge = RobotKnowledge,
-    senses("battery", "block", "transporter", "readyToGoUnderCharge", "hasLuggage", "standsInFor", "robots"),
+    senses(
+        "battery", "block", "transporter", "readyToGoUnderCharge", "hasLuggage", "standsInFor", "robots", "helpRequests"
+    ),
     effects("critical", "healer", "busy", "transporter", "job", "inCharge", "asleep", "standsInFor"),
     publishes(CRITICAL_SITUATION, ROBOT_STATE, ROBOT_LIST, EVENT_LUGGAGE, POSITION),
     subscribes(CRITICAL_SITUATION, FAULT)

@@ -27,7 +27,8 @@ pub struct Lists {
     /// Luggage that waits for a robot, oldest first, without that in which this robot takes an interest.
     #[entry]
     pub requests: Requests,
-    /// Robots that wait for a healer, oldest first.
+    /// Robots that wait for a healer, oldest first, as `CriticalSituationMS` hears of them.
+    #[entry(name = "helpRequests")]
     pub helps: Helps,
     /// Blocks that the other robots hold and want, by number of the robot.
     #[entry(name = "positions")]

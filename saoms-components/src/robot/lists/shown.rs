@@ -4,10 +4,10 @@ use saoms_api::Field;
 use saoms_api::host::cdr::{DecodeError, Reader, Writer};
 use saoms_api::host::declaration::ConstText;
 
-use crate::messages::Position;
+use crate::messages::{CriticalSituation, Position};
 use crate::robot::Job;
 
-use super::{Peers, Requests, Rival};
+use super::{Helps, Peers, Requests, Rival};
 
 /// Luggage that waits for a robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Field)]
@@ -42,6 +42,21 @@ impl Field for Requests {
         let open = self.open().iter();
         let open: Vec<WaitingLuggage> =
             open.map(|request| WaitingLuggage { job: request.job, rivals: request.rivals.clone() }).collect();
+        open.write(writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        Err(kept(reader))
+    }
+}
+
+/// Read as a `Vec` of the requests.
+impl Field for Helps {
+    const TYPE: ConstText = <Vec<CriticalSituation> as Field>::TYPE;
+    const LEAST_SIZE: usize = <Vec<CriticalSituation> as Field>::LEAST_SIZE;
+
+    fn write(&self, writer: &mut Writer) {
+        let open: Vec<CriticalSituation> = self.open().iter().map(|help| help.situation.clone()).collect();
         open.write(writer);
     }
 

@@ -15,7 +15,10 @@ const TURN: u32 = 5;
 #[looping(
     name = "saoms.RobotMS",
     knowledge = RobotKnowledge,
-    senses("busy", "transporter", "critical", "block", "chargeBlock", "offersHelp", "relieved", "robots", "requests"),
+    senses(
+        "busy", "transporter", "critical", "block", "chargeBlock", "offersHelp", "relieved", "robots", "requests",
+        "helpRequests"
+    ),
     effects("asleep", "relieved", "standsInFor"),
     subscribes(ROBOT_STATE)
 )]

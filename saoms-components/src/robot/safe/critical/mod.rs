@@ -36,7 +36,7 @@ use substitute::Substitution;
     knowledge = RobotKnowledge,
     senses(
         "battery", "block", "inCharge", "asleep", "transporter", "hasLuggage", "lasts", "mustCharge", "relieved",
-        "standsInFor", "moving", "handling", "loaded", "robots"
+        "standsInFor", "moving", "handling", "loaded", "robots", "helpRequests"
     ),
     effects(
         "job", "busy", "transporter", "hasLuggage", "healer", "critical", "asleep", "inCharge", "offersHelp",
