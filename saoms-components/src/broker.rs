@@ -1,6 +1,6 @@
 //! The message broker of the manual's figure 6.25.
 
-use saoms_api::{Class, Component, Context, Failure, Properties, interface};
+use saoms_api::{Class, Component, Context, Failure, Properties, info, interface};
 
 /// Service by which other components learn where the broker is.
 #[interface(name = "unibg.robotics.tca.MessageBroker")]
@@ -40,7 +40,7 @@ impl Component for MessageBroker {
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        context.info(format_args!("serves the topics of {} inside this process", self.address));
+        info!(context, "serves the topics of {} inside this process", self.address);
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterface, TaskInterfaceReference, Time};
+use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterface, TaskInterfaceReference, Time, info};
 
 /// Properties of shifts.
 #[derive(Clone, Debug, Properties)]
@@ -55,7 +55,7 @@ impl Component for Shift {
         let (due, is_over) = (self.next.filter(is_due), self.ends.take_if(|end| is_due(end)).is_some());
         // Another shift without a pause goes on with the same components.
         if is_over && due.is_none() {
-            context.info(format_args!("shift {} is over for {}", self.begun, self.names()));
+            info!(context, "shift {} is over for {}", self.begun, self.names());
         }
         let Some(due) = due else { return Ok(()) };
         let ShiftProperties { work, pause, shifts, .. } = self.properties;
@@ -66,7 +66,7 @@ impl Component for Shift {
         self.begun = self.begun.saturating_add(1);
         self.ends = Some(context.now() + work);
         self.next = Some(due + work + pause).filter(|_| shifts.is_none_or(|shifts| self.begun < shifts));
-        context.info(format_args!("starts shift {} of {} s for {}", self.begun, work.as_secs_f64(), self.names()));
+        info!(context, "starts shift {} of {} s for {}", self.begun, work.as_secs_f64(), self.names());
         Ok(())
     }
 }

@@ -4,45 +4,28 @@
 //! to the charger allows. With this loop it learns from each time that this was too low, and charges earlier from then
 //! on. The loop does not depend on robots: it reads and sets entries of any knowledge that has them.
 
-use saoms_api::{
-    Context, Effector, Entries, Entry, Failure, Knowledge, Loop, LoopClass, Properties, Record, Recordable, record,
-};
+use saoms_api::{Context, Effector, Entry, Failure, Knowledge, Loop, LoopClass, Own, Record, Recordable, record};
 
-/// Properties of the loop.
-#[derive(Debug, Properties)]
-pub struct BatterySaverProperties {
+/// A loop that learns the battery level at which a robot has to charge, so that its battery is never discharged deeply.
+#[derive(Debug, LoopClass)]
+#[looping(name = "saver.BatterySaver")]
+pub struct BatterySaver {
     /// Minimum battery level that the loop aims for.
     #[property(default = 40.0, range = 0.0..=100.0, unit = "%")]
     floor: f64,
     /// Step by which the robot charges earlier after a lower level, and later after a far higher level.
     #[property(default = 10.0, range = 1.0..=50.0, unit = "%")]
     step: f64,
-}
-
-/// Entry that the loop adds to the knowledge.
-#[derive(Debug, Entries)]
-pub struct Discharge {
-    /// Lowest battery level since the last charge.
-    #[entry(unit = "%")]
-    lowest: f64,
-}
-
-impl Default for Discharge {
-    fn default() -> Self {
-        Discharge { lowest: 100.0 }
-    }
-}
-
-/// A loop that learns the battery level at which a robot has to charge, so that its battery is never discharged deeply.
-#[derive(Debug, LoopClass)]
-#[looping(name = "saver.BatterySaver", senses("battery", "inCharge"), effects("chargeAt"), entries(Discharge))]
-pub struct BatterySaver {
-    properties: BatterySaverProperties,
+    #[senses]
     battery: Entry<f64>,
+    #[senses]
     in_charge: Entry<bool>,
+    #[effects]
     charge_at: Effector<f64>,
+    /// Lowest battery level since the last charge.
+    #[entry(unit = "%", default = 100.0)]
     lowest: Effector<f64>,
-    was_in_charge: bool,
+    has_left: bool,
 }
 
 /// Observation when the robot starts to charge.
@@ -77,48 +60,29 @@ impl Recordable for ChargeAt {
 }
 
 impl Loop for BatterySaver {
-    type Properties = BatterySaverProperties;
+    type Properties = Own<Self>;
     type Knowledge = dyn Knowledge;
     type Symptom = Symptom;
     type Decision = ChargeAt;
-
-    fn new(properties: BatterySaverProperties) -> Result<Self, Failure> {
-        Ok(BatterySaver {
-            properties,
-            battery: Entry::default(),
-            in_charge: Entry::default(),
-            charge_at: Effector::default(),
-            lowest: Effector::default(),
-            was_in_charge: true,
-        })
-    }
-
-    fn initialize(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-        self.battery = robot.entry("battery")?;
-        self.in_charge = robot.entry("inCharge")?;
-        self.charge_at = robot.effector("chargeAt")?;
-        self.lowest = robot.effector("lowest")?;
-        Ok(())
-    }
 
     /// Records the lowest battery level.
     fn monitor(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
         if self.in_charge.get(robot)? {
             return Ok(());
         }
-        let lowest = if self.was_in_charge { 100.0 } else { self.lowest.get(robot)? };
-        let lowest = lowest.min(self.battery.get(robot)?);
-        self.was_in_charge = false;
+        let before = if self.has_left { self.lowest.get(robot)? } else { 100.0 };
+        let lowest = before.min(self.battery.get(robot)?);
+        self.has_left = true;
         self.lowest.set(robot, lowest)
     }
 
     /// Decides once, when the robot starts to charge, if that was too late, or far too early.
     fn analyze(&mut self, robot: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Symptom>, Failure> {
         let in_charge = self.in_charge.get(robot)?;
-        if !in_charge || std::mem::replace(&mut self.was_in_charge, in_charge) {
+        if !in_charge || !std::mem::replace(&mut self.has_left, false) {
             return Ok(None);
         }
-        let BatterySaverProperties { floor, step } = self.properties;
+        let (floor, step) = (self.floor, self.step);
         let (lowest, charges_early) = (self.lowest.get(robot)?, self.charge_at.get(robot)? > 0.0);
         Ok(if lowest < floor {
             Some(Symptom::Deep(lowest))
@@ -134,7 +98,7 @@ impl Loop for BatterySaver {
         robot: &mut dyn Knowledge,
         _: &mut Context<'_>,
     ) -> Result<Option<ChargeAt>, Failure> {
-        let BatterySaverProperties { floor, step } = self.properties;
+        let (floor, step) = (self.floor, self.step);
         let now = self.charge_at.get(robot)?;
         Ok(Some(ChargeAt(match symptom {
             Symptom::Deep(_) => (now.max(floor) + step).min(100.0),

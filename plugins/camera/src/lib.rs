@@ -8,8 +8,8 @@ mod robot;
 mod viewer;
 
 pub use picture::{CAMERA, CameraPicture};
-pub use robot::{CameraRobot, CameraRobotProperties};
-pub use viewer::{Viewer, ViewerProperties};
+pub use robot::CameraRobot;
+pub use viewer::Viewer;
 
 saoms_api::plugin! {
     classes: [CameraRobot, Viewer],

@@ -1,21 +1,7 @@
-use saoms_api::{Class, Component, Context, Failure, Properties, Publisher, Saved};
-use saoms_components::robot::{Robot, RobotProperties};
+use saoms_api::{Class, Component, Context, Failure, Own, Publisher};
+use saoms_components::robot::Robot;
 
 use crate::picture::{CAMERA, CameraPicture, FLOOR, ROBOT, WALL};
-
-/// Properties of a robot with a camera.
-#[derive(Debug, Properties)]
-pub struct CameraRobotProperties {
-    /// Properties of any robot.
-    #[property(flatten)]
-    robot: RobotProperties,
-    /// Number of blocks that the camera sees in each direction.
-    #[property(default = 2, range = 0..=20, unit = "blocks")]
-    reach: u32,
-    /// Number of executions from one picture to the next.
-    #[property(default = 1, range = 1..)]
-    every: u64,
-}
 
 /// A robot that brings luggage as any other, and publishes the pictures of its camera.
 ///
@@ -24,31 +10,25 @@ pub struct CameraRobotProperties {
 #[class(
     name = "camera.Robot",
     periodic,
-    publishes(CAMERA),
     also("robot.Robot999", number = 999, chargeX = 0, chargeY = 1, discharge = 2.0)
 )]
 pub struct CameraRobot {
     #[extends]
     robot: Robot,
+    /// Number of blocks that the camera sees in each direction.
+    #[property(default = 2, range = 0..=20, unit = "blocks")]
     reach: u32,
+    /// Number of executions from one picture to the next.
+    #[property(default = 1, range = 1..)]
     every: u64,
+    #[publishes(CAMERA)]
     camera: Publisher<CameraPicture>,
 }
 
 impl Component for CameraRobot {
-    type Properties = CameraRobotProperties;
+    type Properties = Own<Self>;
 
-    fn new(properties: CameraRobotProperties) -> Result<Self, Failure> {
-        let CameraRobotProperties { robot, reach, every } = properties;
-        Ok(CameraRobot { robot: Robot::new(robot)?, reach, every, camera: Publisher::default() })
-    }
-
-    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.robot.initialize(context)?;
-        self.camera = context.publish(&CAMERA)?;
-        Ok(())
-    }
-
+    // The rest, such as `initialize` and `save`, is that of the robot: the camera has no state of its own.
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.robot.execute(context)?;
         // A broken robot takes no pictures.
@@ -56,19 +36,6 @@ impl Component for CameraRobot {
             return Ok(());
         }
         context.send(&self.camera, self.snapshot())
-    }
-
-    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.robot.shutdown(context)
-    }
-
-    // The camera has no state of its own, so a new build only restores the robot.
-    fn save(&mut self) -> Result<Saved, Failure> {
-        self.robot.save()
-    }
-
-    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
-        self.robot.restore(saved)
     }
 }
 

@@ -6,7 +6,7 @@
 
 mod motor;
 
-use saoms_api::{Chance, Class, Component, Context, Failure, Properties};
+use saoms_api::{Chance, Class, Component, Context, Failure, Properties, warn};
 use saoms_components::grid::{Block, Map};
 use saoms_components::hardware::{Action, ActionKind, Area, Hardware, HardwareReference, Progress};
 
@@ -32,14 +32,14 @@ pub struct DriveProperties {
 #[class(
     name = "drive.Drive",
     passive,
-    service("hardware": Hardware),
-    reference("world": Hardware, optional)
+    service("hardware": Hardware)
 )]
 pub struct Drive {
+    #[properties]
     properties: DriveProperties,
-    world: HardwareReference,
-    /// True if there is a world. Without one, the drive has an area of 11 x 11 blocks for itself.
-    has_world: bool,
+    /// The world. Without one, the drive has an area of 11 x 11 blocks for itself.
+    #[reference]
+    world: Option<HardwareReference>,
     robot: Option<u32>,
     block: Block,
     motor: Motor,
@@ -52,22 +52,7 @@ pub struct Drive {
 impl Component for Drive {
     type Properties = DriveProperties;
 
-    fn new(properties: DriveProperties) -> Result<Self, Failure> {
-        Ok(Drive {
-            properties,
-            world: HardwareReference::default(),
-            has_world: false,
-            robot: None,
-            block: Block::default(),
-            motor: Motor::default(),
-            in_world: None,
-            at_edge: None,
-        })
-    }
-
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.world = context.reference("world")?;
-        self.has_world = context.is_wired(&self.world);
         context.count("drive.jams", 0);
         Ok(())
     }
@@ -84,7 +69,10 @@ impl DriveProperties {
 impl Drive {
     /// Starts the action in the world.
     fn begin_in_world(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
-        let progress = if self.has_world { self.world.begin(context, robot, action)? } else { Progress::Done };
+        let progress = match self.world {
+            Some(world) => world.begin(context, robot, action)?,
+            None => Progress::Done,
+        };
         self.in_world = (progress == Progress::Running).then_some(action);
         if progress == Progress::Done {
             self.arrive(action);
@@ -102,8 +90,8 @@ impl Drive {
     fn stop(&mut self, context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
         self.motor.stop();
         self.at_edge = None;
-        if self.in_world.is_some() {
-            self.world.cancel(context, robot)?;
+        if let (Some(_), Some(world)) = (self.in_world, self.world) {
+            world.cancel(context, robot)?;
             self.in_world = None;
         }
         Ok(())
@@ -115,13 +103,19 @@ impl Hardware for Drive {
         if let Some(other) = self.robot.filter(|other| *other != robot) {
             return Err(Failure::new(format!("these are the wheels of robot {other}: give robot {robot} its own")));
         }
-        self.block = if self.has_world { self.world.enter(context, robot, name, block)? } else { block };
+        self.block = match self.world {
+            Some(world) => world.enter(context, robot, name, block)?,
+            None => block,
+        };
         self.robot = Some(robot);
         Ok(self.block)
     }
 
     fn area(&mut self, context: &mut Context<'_>) -> Result<Area, Failure> {
-        Ok(if self.has_world { self.world.area(context)? } else { Area::from(&Map::new(11, 11)) })
+        Ok(match self.world {
+            Some(world) => world.area(context)?,
+            None => Area::from(&Map::new(11, 11)),
+        })
     }
 
     fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
@@ -139,7 +133,7 @@ impl Hardware for Drive {
             Turn::Goes => return Ok(Progress::Running),
             Turn::Jams(action, number) => {
                 context.count("drive.jams", 1);
-                context.warn(format_args!("jams in move {number}, from {} to {}", self.block, action.block));
+                warn!(context, "jams in move {number}, from {} to {}", self.block, action.block);
                 return Ok(Progress::Failed);
             }
             Turn::Through(action) => self.at_edge = Some(action),
@@ -151,8 +145,8 @@ impl Hardware for Drive {
             self.at_edge = None;
             return Ok(progress);
         }
-        let Some(action) = self.in_world else { return Ok(Progress::Done) };
-        let progress = self.world.poll(context, robot)?;
+        let (Some(action), Some(world)) = (self.in_world, self.world) else { return Ok(Progress::Done) };
+        let progress = world.poll(context, robot)?;
         if progress != Progress::Running {
             self.in_world = None;
         }
@@ -170,7 +164,10 @@ impl Hardware for Drive {
         self.motor.stop();
         (self.at_edge, self.in_world) = (None, None);
         // From now on other robots can reach the robot's block.
-        Ok(if self.has_world { self.world.retire(context, robot)? } else { self.block })
+        Ok(match self.world {
+            Some(world) => world.retire(context, robot)?,
+            None => self.block,
+        })
     }
 }
 

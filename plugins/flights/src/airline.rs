@@ -1,13 +1,14 @@
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Finding, Place, Properties, Publisher, Subscription, Time, Work};
+use saoms_api::{Class, Component, Context, Failure, Finding, Own, Place, Publisher, Subscription, Time, Work};
 use saoms_components::grid::Block;
 
 use crate::messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
 
-/// Properties of an airline.
-#[derive(Debug, Properties)]
-pub struct AirlineProperties {
+/// An airline, which announces a flight and waits until its luggage is on board.
+#[derive(Debug, Class)]
+#[class(name = "flights.Airline", periodic)]
+pub struct Airline {
     /// Number of its flight.
     #[property(unique = "flight")]
     flight: u32,
@@ -15,54 +16,43 @@ pub struct AirlineProperties {
     #[property(range = 1..=500)]
     pieces: u32,
     /// Block where the luggage waits, such as `(1,1)`.
+    #[property]
     from: String,
     /// Block of the airplane.
+    #[property]
     to: String,
     /// Time of the announcement, since the start of the airline.
     #[property(default = "0s", range = "0s"..)]
     at: Duration,
-}
-
-/// An airline, which announces a flight and waits until its luggage is on board.
-#[derive(Debug, Class)]
-#[class(name = "flights.Airline", periodic, publishes(FLIGHT), subscribes(FLIGHT_STATE))]
-pub struct Airline {
-    flight: Flight,
-    at: Duration,
+    #[publishes(FLIGHT)]
+    flights: Publisher<Flight>,
+    #[subscribes(FLIGHT_STATE)]
+    states: Subscription<FlightState>,
+    announcement: Flight,
     /// Time of its first execution.
     start: Option<Time>,
     announced: bool,
-    flights: Publisher<Flight>,
-    states: Subscription<FlightState>,
 }
 
 impl Component for Airline {
-    type Properties = AirlineProperties;
+    type Properties = Own<Self>;
 
-    fn new(properties: AirlineProperties) -> Result<Self, Failure> {
-        let AirlineProperties { flight, pieces, from, to, at } = properties;
+    fn new(properties: Own<Self>) -> Result<Self, Failure> {
+        let mut airline = Self::made(properties)?;
         let mut wrong = Vec::new();
         let mut block = |name: &str, text: &str| {
             let refuse = |problem| wrong.push(Finding::new(Place::property(name), problem));
             text.parse::<Block>().map_err(refuse).unwrap_or_default()
         };
-        let (from, to) = (block("from", &from), block("to", &to));
+        let (from, to) = (block("from", &airline.from), block("to", &airline.to));
         if !wrong.is_empty() {
             return Err(Failure::of_findings(wrong));
         }
-        Ok(Airline {
-            flight: Flight { number: flight, pieces, from, to },
-            at,
-            start: None,
-            announced: false,
-            flights: Publisher::default(),
-            states: Subscription::default(),
-        })
+        airline.announcement = Flight { number: airline.flight, pieces: airline.pieces, from, to };
+        Ok(airline)
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.flights = context.publish(&FLIGHT)?;
-        self.states = context.subscribe(&FLIGHT_STATE)?;
         context.vote(Work::Open);
         Ok(())
     }
@@ -71,9 +61,9 @@ impl Component for Airline {
         let start = *self.start.get_or_insert(context.due());
         if !self.announced && context.due().since(start) >= self.at {
             self.announced = true;
-            context.send(&self.flights, self.flight.clone())?;
+            context.send(&self.flights, self.announcement.clone())?;
         }
-        for state in context.receive(&self.states).filter(|state| state.number == self.flight.number) {
+        for state in context.receive(&self.states).filter(|state| state.number == self.flight) {
             if state.lost > 0 {
                 context.vote(Work::GivenUp);
             }
@@ -85,7 +75,7 @@ impl Component for Airline {
     }
 
     fn waits_for(&self) -> Option<String> {
-        self.announced.then(|| format!("the luggage of flight {}", self.flight.number))
+        self.announced.then(|| format!("the luggage of flight {}", self.flight))
     }
 }
 

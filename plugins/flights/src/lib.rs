@@ -9,8 +9,8 @@ mod master;
 mod messages;
 mod open;
 
-pub use airline::{Airline, AirlineProperties};
-pub use master::{FlightMaster, FlightMasterProperties};
+pub use airline::Airline;
+pub use master::FlightMaster;
 pub use messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
 
 saoms_api::plugin! {

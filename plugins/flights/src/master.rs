@@ -1,61 +1,47 @@
-use saoms_api::{Cause, Class, Component, Context, Failure, Properties, Publisher, Subscription};
-use saoms_components::master;
+use saoms_api::{Cause, Class, Component, Context, Failure, Own, Publisher, Subscription, info, warn};
+use saoms_components::master::MasterEnvironment;
 use saoms_components::messages::{ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage};
 
 use crate::messages::{FLIGHT, FLIGHT_STATE, Flight, FlightState};
 use crate::open::Flights;
 
-/// Properties of the master.
-#[derive(Debug, Properties)]
-pub struct FlightMasterProperties {
+/// A master that distributes the events of the environment, and requests the luggage of flights.
+#[derive(Debug, Class)]
+#[class(name = "flights.MasterEnvironment", periodic)]
+pub struct FlightMaster {
+    #[extends]
+    master: MasterEnvironment,
     /// First number of the luggage of flights; other luggage must have lower numbers.
     #[property(default = 1000, range = 1..)]
     first_luggage: u32,
-}
-
-/// A master that distributes the events of the environment, and requests the luggage of flights.
-#[derive(Debug, Class)]
-#[class(name = "flights.MasterEnvironment", periodic, subscribes(FLIGHT), publishes(ENVIRONMENT, FLIGHT_STATE))]
-pub struct FlightMaster {
-    #[extends]
-    master: master::MasterEnvironment,
-    flights: Flights,
+    #[subscribes(FLIGHT)]
     announced: Subscription<Flight>,
+    #[subscribes(EVENT_LUGGAGE)]
     responses: Subscription<EventLuggage>,
+    #[publishes(ENVIRONMENT)]
     events: Publisher<EnvironmentEvent>,
+    #[publishes(FLIGHT_STATE)]
     states: Publisher<FlightState>,
+    flights: Flights,
 }
 
 impl Component for FlightMaster {
-    type Properties = FlightMasterProperties;
+    type Properties = Own<Self>;
 
-    fn new(properties: FlightMasterProperties) -> Result<Self, Failure> {
-        Ok(FlightMaster {
-            master: master::MasterEnvironment::new(())?,
-            flights: Flights::new(properties.first_luggage),
-            announced: Subscription::default(),
-            responses: Subscription::default(),
-            events: Publisher::default(),
-            states: Publisher::default(),
-        })
+    fn new(properties: Own<Self>) -> Result<Self, Failure> {
+        let mut master = Self::made(properties)?;
+        master.flights = Flights::new(master.first_luggage);
+        Ok(master)
     }
 
-    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.master.initialize(context)?;
-        self.announced = context.subscribe(&FLIGHT)?;
-        self.responses = context.subscribe(&EVENT_LUGGAGE)?;
-        self.events = context.publish(&ENVIRONMENT)?;
-        self.states = context.publish(&FLIGHT_STATE)?;
-        Ok(())
-    }
-
+    // The rest, such as `initialize`, is that of the master that ships.
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.master.execute(context)?;
         for (header, flight) in context.receive(&self.announced).with_headers() {
             context.because(header.cause);
             match self.flights.add(flight) {
                 Ok((state, luggage)) => {
-                    context.info(format_args!("flight {} has {} pieces of luggage", flight.number, flight.pieces));
+                    info!(context, "flight {} has {} pieces of luggage", flight.number, flight.pieces);
                     context.send(&self.states, state)?;
                     // Like luggage from any other sender, the master receives and checks this itself.
                     context.send(&self.events, EnvironmentEvent { luggage, ..EnvironmentEvent::default() })?;
@@ -63,7 +49,7 @@ impl Component for FlightMaster {
                 Err(reason) => {
                     let sender = context.sender_name(header).unwrap_or("nobody").to_owned();
                     context.count("flights.ignored", 1);
-                    context.warn(format_args!("ignores what `{sender}` says: {reason}"));
+                    warn!(context, "ignores what `{sender}` says: {reason}");
                 }
             }
         }
@@ -73,20 +59,12 @@ impl Component for FlightMaster {
             if state.open == 0 {
                 context.count("flights.done", 1);
                 let FlightState { number, loaded, lost, .. } = state;
-                context.info(format_args!("flight {number} has {loaded} pieces on board, {lost} are lost"));
+                info!(context, "flight {number} has {loaded} pieces on board, {lost} are lost");
             }
             context.send(&self.states, state)?;
         }
         context.because(Cause::default());
         Ok(())
-    }
-
-    fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.master.shutdown(context)
-    }
-
-    fn waits_for(&self) -> Option<String> {
-        self.master.waits_for()
     }
 }
 

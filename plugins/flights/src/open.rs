@@ -8,7 +8,7 @@ use crate::messages::{Flight, FlightState};
 const MOST: u32 = 500;
 
 /// Flights and their luggage.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Flights {
     /// Number of the next piece.
     next: u32,

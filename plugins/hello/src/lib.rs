@@ -1,31 +1,21 @@
 //! The smallest plugin: a component that greets in each period.
 
-use saoms_api::{Class, Component, Context, Failure, Properties};
-
-/// Properties of a greeter.
-#[derive(Debug, Properties)]
-pub struct GreeterProperties {
-    /// Name to greet.
-    #[property(default = "world")]
-    name: String,
-}
+use saoms_api::{Class, Component, Context, Failure, Own, info};
 
 /// A greeter, which logs a greeting in each period.
 #[derive(Debug, Class)]
 #[class(name = "hello.Greeter", periodic)]
 pub struct Greeter {
-    properties: GreeterProperties,
+    /// Name to greet.
+    #[property(default = "world")]
+    name: String,
 }
 
 impl Component for Greeter {
-    type Properties = GreeterProperties;
-
-    fn new(properties: GreeterProperties) -> Result<Self, Failure> {
-        Ok(Greeter { properties })
-    }
+    type Properties = Own<Self>;
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        context.info(format_args!("hello, {}", self.properties.name));
+        info!(context, "hello, {}", self.name);
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! In place of `CriticalSituationMS`, with either policy.
 
 use saoms_api::{
-    Cause, Context, Effector, Entry, Failure, Knowledge, Loop, LoopClass, Publisher, Subscription, record,
+    Cause, Context, Effector, Entry, Failure, Knowledge, Loop, LoopClass, Publisher, Subscription, record, warn,
 };
 use saoms_components::grid::Block;
 use saoms_components::messages::{
@@ -133,7 +133,7 @@ impl Loop for Loner {
         let last = RobotList { robot: number, active: false, battery, charger, period, ..RobotList::default() };
         context.send(&self.robots, last)?;
         context.count("assistance", 1);
-        context.warn(format_args!("breaks down at {block}: asks for help"));
+        warn!(context, "breaks down at {block}: asks for help");
         self.job.set(robot, None)?;
         self.has_luggage.set(robot, false)?;
         for entry in &self.rest {

@@ -5,7 +5,7 @@ mod driver;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Properties, StopFunction, Time};
+use saoms_api::{Class, Component, Context, Failure, Own, StopFunction, Time, warn};
 use saoms_components::grid::{Block, Map};
 use saoms_components::hardware::{Action, ActionKind, Area, Hardware, Progress};
 
@@ -14,40 +14,29 @@ use driver::{Driver, OrderState};
 /// Time in which the controller has to confirm that the wheels stand still.
 const STOP_PATIENCE: Duration = Duration::from_secs(2);
 
-/// What a composite can set.
-#[derive(Debug, Properties)]
-pub struct WheelsProperties {
+/// Wheels and an arm behind a controller in the network.
+#[derive(Debug, Class)]
+#[class(name = "wheels.Wheels", passive, stops, service("hardware": Hardware))]
+pub struct Wheels {
     /// Where the controller listens, `host:port`.
     #[property(required_text)]
     address: String,
     /// Time after which an order without an answer has failed.
     #[property(default = "30s", range = "10ms"..="10min")]
     patience: Duration,
-}
-
-/// Wheels and an arm behind a controller in the network.
-#[derive(Debug, Class)]
-#[class(name = "wheels.Wheels", passive, stops, service("hardware": Hardware))]
-pub struct Wheels {
-    properties: WheelsProperties,
     block: Block,
     running: Option<(Action, Time)>,
     driver: Option<Arc<Driver>>,
 }
 
 impl Component for Wheels {
-    type Properties = WheelsProperties;
-
-    /// The checker makes components that never run: nothing is opened here.
-    fn new(properties: WheelsProperties) -> Result<Self, Failure> {
-        Ok(Wheels { properties, block: Block::default(), running: None, driver: None })
-    }
+    type Properties = Own<Self>;
 
     /// Starts the driver, and says how to stop the wheels from any thread, whatever this component does then.
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        let driver = Driver::start(self.properties.address.clone());
+        let driver = Driver::start(self.address.clone());
         let driver = Arc::new(driver.map_err(|error| Failure::new(format!("no thread for the driver: {error}")))?);
-        let (stopped, alive, address) = (Arc::clone(&driver), Arc::clone(&driver), self.properties.address.clone());
+        let (stopped, alive, address) = (Arc::clone(&driver), Arc::clone(&driver), self.address.clone());
         self.driver = Some(driver);
         let stop = StopFunction::new(move || confirmed(stopped.stop(STOP_PATIENCE), &address));
         context.register_stop(stop.with_heartbeat(move |period| alive.alive(period)))
@@ -56,7 +45,7 @@ impl Component for Wheels {
     /// Waits until the wheels stand still. That nobody confirmed it is a failure: somebody has to look.
     fn shutdown(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
         let Some(driver) = self.driver.take() else { return Ok(()) };
-        confirmed(driver.stop(STOP_PATIENCE), &self.properties.address)
+        confirmed(driver.stop(STOP_PATIENCE), &self.address)
     }
 }
 
@@ -101,7 +90,7 @@ impl Hardware for Wheels {
     fn poll(&mut self, context: &mut Context<'_>, _: u32) -> Result<Progress, Failure> {
         let Some((action, begun)) = self.running else { return Ok(Progress::Done) };
         match self.driver()?.state() {
-            OrderState::Running if context.now() - begun < self.properties.patience => Ok(Progress::Running),
+            OrderState::Running if context.now() - begun < self.patience => Ok(Progress::Running),
             OrderState::Done => {
                 match action.kind {
                     ActionKind::Move => self.block = action.block,
@@ -114,7 +103,7 @@ impl Hardware for Wheels {
             }
             state => {
                 let why = if state == OrderState::Failed { "the controller failed" } else { "no answer came" };
-                context.warn(format_args!("{why}: {:?} at {}", action.kind, self.block));
+                warn!(context, "{why}: {:?} at {}", action.kind, self.block);
                 self.running = None;
                 // The order may still be carried out: it is not, after a stop.
                 self.driver()?.order("stop");

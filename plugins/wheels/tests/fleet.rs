@@ -225,8 +225,10 @@ fn wheels_are_stopped_from_outside_the_component() {
 #[test]
 fn wheels_whose_robot_is_silent_stop_by_themselves() {
     let (address, wheels) = careful_controller();
-    let robot = driving(&address);
+    let mut robot = driving(&address);
     wait_for(&wheels, "turn");
+    // A heartbeat before the connection is there reaches nobody.
+    robot.execute().unwrap();
     wait_for(&wheels, "hear the robot");
     wait_for(&wheels, "stop by themselves");
     drop(robot);

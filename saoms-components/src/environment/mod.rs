@@ -9,7 +9,8 @@ mod tests;
 use std::collections::BTreeMap;
 
 use saoms_api::{
-    Class, Component, Context, Failure, Level, Properties, Publisher, Record, Subscription, Time, Work, record,
+    Class, Component, Context, Failure, Level, Properties, Publisher, Record, Subscription, Time, Work, info, record,
+    warn,
 };
 
 use crate::console::Timestamp;
@@ -97,7 +98,7 @@ impl Component for Environment {
         let now = Timestamp::now(context);
         context.console(format_args!("Environment tests start at {now}"));
         if self.scenario.lines().is_empty() {
-            context.info(format_args!("has no scenario: publishes nothing"));
+            info!(context, "has no scenario: publishes nothing");
             self.done = true;
         } else {
             context.console(format_args!("Environment: ready to test at {now}"));
@@ -186,7 +187,7 @@ impl Environment {
     fn begin(&self, context: &mut Context<'_>) -> Option<(Time, Player)> {
         if self.scenario.needs_area() && self.map.is_none() {
             if context.execution() == 0 {
-                context.warn(format_args!("waits for a world, which defines the area"));
+                warn!(context, "waits for a world, which defines the area");
             }
             return None;
         }
@@ -246,6 +247,6 @@ impl Environment {
 
 /// Writes an event to the log and, as the root of what follows from it, to the journal.
 fn tell(context: &mut Context<'_>, event: Record) {
-    context.info(format_args!("{event}"));
+    info!(context, "{event}");
     context.symptom(event);
 }

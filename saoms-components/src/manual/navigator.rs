@@ -1,4 +1,4 @@
-use saoms_api::{CallError, Class, Component, Context, Failure, Finding, Place, Properties, Work};
+use saoms_api::{CallError, Class, Component, Context, Failure, Finding, Place, Properties, Work, info};
 
 use super::{Point, RobotInterface, RobotInterfaceReference};
 
@@ -67,7 +67,7 @@ impl Component for Navigator {
             Err(error) => return Err(error.into()),
         }
         if distance <= step {
-            context.info(format_args!("reached corner {} of {} at {corner}", self.next + 1, self.path.len()));
+            info!(context, "reached corner {} of {} at {corner}", self.next + 1, self.path.len());
             self.next += 1;
             if self.next == self.path.len() {
                 context.vote(Work::Done);

@@ -1,4 +1,4 @@
-use saoms_api::{Class, Component, Context, Failure, Properties, interface};
+use saoms_api::{Class, Component, Context, Failure, Properties, info, interface};
 
 use super::{GpsInterface, GpsInterfaceReference, Point};
 
@@ -52,7 +52,7 @@ impl Component for ManualRobot {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.gps = context.reference("updatePosition")?;
         let ManualRobotProperties { id, nickname, weight, height, price } = &self.properties;
-        context.info(format_args!("{id} `{nickname}`: {weight} kg, {height} cm, {price} EUR"));
+        info!(context, "{id} `{nickname}`: {weight} kg, {height} cm, {price} EUR");
         Ok(())
     }
 }
@@ -61,7 +61,7 @@ impl RobotInterface for ManualRobot {
     fn move_by(&mut self, context: &mut Context<'_>, by: Point) -> Result<Point, Failure> {
         self.gps.carried(context, by)?;
         let position = self.gps.position(context)?;
-        context.info(format_args!("moved by {by}, is at {position}"));
+        info!(context, "moved by {by}, is at {position}");
         Ok(position)
     }
 }

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Record, record};
+use saoms_api::{Context, Failure, Record, info, record, warn};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind, Progress};
@@ -134,12 +134,12 @@ impl RobotKnowledge {
             }
             ActionKind::Collect => {
                 context.console(format_args!("{name} says: Luggage collected."));
-                context.info(format_args!("collected luggage {luggage} at {block}"));
+                info!(context, "collected luggage {luggage} at {block}");
                 self.variables.has_luggage = true;
             }
             ActionKind::Deposit => {
                 context.console(format_args!("{name} says: Luggage deposited."));
-                context.info(format_args!("deposited luggage {luggage} at {block}"));
+                info!(context, "deposited luggage {luggage} at {block}");
                 self.untold = self.job.map(|job| JobEnd { job, stage: LuggageStage::Delivered });
                 self.tally.delivered += u64::from(self.job.is_some());
                 if self.job.is_some() && !self.hardware.is_wired() {
@@ -161,21 +161,21 @@ impl RobotKnowledge {
         match kind {
             ActionKind::Move => {
                 self.next = self.block;
-                context.warn(format_args!("could not move to {block}"));
+                warn!(context, "could not move to {block}");
             }
             ActionKind::Collect => {
                 if self.failures < MOST_ATTEMPTS {
-                    context.warn(format_args!("could not collect luggage {luggage} at {block}: tries again"));
+                    warn!(context, "could not collect luggage {luggage} at {block}: tries again");
                     return;
                 }
-                context.warn(format_args!("could not collect luggage {luggage} at {block}: gives up the job"));
+                warn!(context, "could not collect luggage {luggage} at {block}: gives up the job");
                 self.untold = self.job.map(|job| JobEnd { job, stage: LuggageStage::Refused });
                 self.lists.requests.refuse(luggage);
                 self.failures = 0;
                 self.drop_job();
             }
             ActionKind::Deposit => {
-                context.warn(format_args!("could not deposit luggage {luggage} at {block}: tries again"));
+                warn!(context, "could not deposit luggage {luggage} at {block}: tries again");
             }
         }
     }
@@ -195,7 +195,7 @@ impl RobotKnowledge {
         let Some(other) = other.map(|peer| peer.robot) else { return Ok(()) };
         let collision = Collision { robot: self.number, other, block, swap: false };
         context.count("collisions.vertex", 1);
-        context.warn(format_args!("{collision}"));
+        warn!(context, "{collision}");
         context.send(&self.collisions, collision)
     }
 

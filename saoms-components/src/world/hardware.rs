@@ -1,6 +1,6 @@
 //! The simulated hardware of the robots.
 
-use saoms_api::{Context, Failure};
+use saoms_api::{Context, Failure, warn};
 
 use super::World;
 use super::luggage::HandlingOutcome;
@@ -19,7 +19,7 @@ impl World {
                 Ok(self.referee.progress(robot, context.now()))
             }
             Err(reason) => {
-                context.warn(format_args!("robot {robot} cannot move: {reason}"));
+                warn!(context, "robot {robot} cannot move: {reason}");
                 Ok(Progress::Failed)
             }
         }
@@ -34,7 +34,7 @@ impl World {
             context.count("collisions.vertex", 1);
             self.collided += 1;
         }
-        context.warn(format_args!("{collision}"));
+        warn!(context, "{collision}");
         context.send(&self.collisions, collision)
     }
 
@@ -62,7 +62,7 @@ impl World {
             }
             Ok(HandlingOutcome::Handled) => {}
             Err(reason) => {
-                context.warn(format_args!("robot {robot} at {block}: {reason}"));
+                warn!(context, "robot {robot} at {block}: {reason}");
                 self.referee.end_handling(robot);
                 return Ok(Progress::Failed);
             }

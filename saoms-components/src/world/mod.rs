@@ -10,7 +10,7 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue, Subscription, Work};
+use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue, Subscription, Work, warn};
 
 use crate::hardware::Hardware;
 use crate::messages::{
@@ -174,7 +174,7 @@ impl World {
             if self.broken.insert(fault.robot) {
                 context.count("robots.broken", 1);
             }
-            context.warn(format_args!("{fault}"));
+            warn!(context, "{fault}");
         }
     }
 }

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, info, record};
 
 use crate::console::JavaList;
 use crate::messages::{EXCEPTIONAL_EVENT, ExceptionalEvent, ROBOT_STATE, RobotState};
@@ -185,14 +185,14 @@ impl MasterAwakeAsleep {
         }
         match (&called[..], awake) {
             ([], _) => {}
-            (called, true) => context.info(format_args!("wakes {}", Robots(called))),
-            (called, false) => context.info(format_args!("sends {} to charge", Robots(called))),
+            (called, true) => info!(context, "wakes {}", Robots(called)),
+            (called, false) => info!(context, "sends {} to charge", Robots(called)),
         }
         let missing = (count as usize).saturating_sub(called.len());
         if missing > 0 && awake {
             let missing = u32::try_from(missing).unwrap_or(u32::MAX);
             let robots = robots(missing);
-            context.info(format_args!("needs {missing} more {robots}, but none is asleep"));
+            info!(context, "needs {missing} more {robots}, but none is asleep");
             context.effect(record!(
                 too_few_robots_asleep: "needs {missing} more {missing:robot|robots}, but none is asleep",
                 missing

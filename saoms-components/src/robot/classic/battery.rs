@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, info, record};
 
 use crate::robot::RobotKnowledge;
 
@@ -111,7 +111,7 @@ impl Loop for ClassicBattery {
             ClassicBatteryDecision::Charge => {
                 variables.ready_to_go_under_charge = true;
                 let battery = &knowledge.battery;
-                context.info(format_args!("battery is low ({battery} %): goes to charge after its job"));
+                info!(context, "battery is low ({battery} %): goes to charge after its job");
             }
             ClassicBatteryDecision::Sleep => variables.busy = false,
         }

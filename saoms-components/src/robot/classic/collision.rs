@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, info, record};
 
 use crate::grid::Block;
 use crate::robot::RobotKnowledge;
@@ -117,7 +117,7 @@ impl Loop for ClassicCollision {
         }
         knowledge.variables.stop_a_period = matches!(decision, ClassicCollisionDecision::Stop { .. });
         if let ClassicCollisionDecision::Stop { robot, block } = decision {
-            context.info(format_args!("waits: robot {robot} enters {block} first"));
+            info!(context, "waits: robot {robot} enters {block} first");
         }
         Ok(())
     }

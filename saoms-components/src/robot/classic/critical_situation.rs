@@ -1,6 +1,8 @@
 use std::cmp::Reverse;
 
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, record};
+use saoms_api::{
+    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, info, record, warn,
+};
 
 use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
@@ -205,7 +207,7 @@ impl ClassicCriticalSituation {
     ) -> Result<(), Failure> {
         knowledge.retire(context)?;
         context.send(&self.situations, knowledge.situation(kind))?;
-        context.warn(format_args!("breaks down at {}: asks for help, and for human assistance", knowledge.block));
+        warn!(context, "breaks down at {}: asks for help, and for human assistance", knowledge.block);
         // The luggage that the robot was interested in waits again, for robots that dropped it because of that.
         if let Some(request) = knowledge.lists.requests.settle() {
             let job = request.job;
@@ -255,11 +257,10 @@ impl ClassicCriticalSituation {
             }
         }
         match job {
-            Some(job) => context.info(format_args!(
-                "helps robot {critical}: takes luggage {} from {} to {}",
-                job.luggage, job.from, job.to
-            )),
-            None => context.info(format_args!("helps robot {critical}")),
+            Some(job) => {
+                info!(context, "helps robot {critical}: takes luggage {} from {} to {}", job.luggage, job.from, job.to)
+            }
+            None => info!(context, "helps robot {critical}"),
         }
         self.respond(situation, CriticalStage::Taken, knowledge, context)
     }

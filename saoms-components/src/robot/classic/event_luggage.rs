@@ -1,6 +1,6 @@
 use std::cmp::Reverse;
 
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, info, record};
 
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::{Job, Request, RobotKnowledge};
@@ -153,7 +153,7 @@ impl Loop for ClassicEventLuggage {
                 knowledge.lists.requests.settle();
                 knowledge.variables.busy = true;
                 knowledge.job = Some(job);
-                context.info(format_args!("takes luggage {} from {} to {}", job.luggage, job.from, job.to));
+                info!(context, "takes luggage {} from {} to {}", job.luggage, job.from, job.to);
                 (job, LuggageStage::Taken)
             }
             ClassicLuggageDecision::Forget => {

@@ -1,4 +1,4 @@
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, info, record};
 
 use crate::grid::Block;
 use crate::hardware::{Action, ActionKind};
@@ -230,7 +230,7 @@ fn go_charging(
     }
     let name = &knowledge.name;
     context.console(format_args!("{name} says: I've arrived to charge position."));
-    context.info(format_args!("starts charging (battery {} %)", knowledge.battery));
+    info!(context, "starts charging (battery {} %)", knowledge.battery);
     let variables = &mut knowledge.variables;
     (variables.reaching_charge, variables.ready_to_go_under_charge) = (false, false);
     (variables.in_charge, variables.asleep, variables.busy) = (true, true, true);

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, record};
+use saoms_api::{Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, info, record};
 
 use crate::messages::{ROBOT_STATE, RobotState};
 use crate::robot::RobotKnowledge;
@@ -125,13 +125,13 @@ impl Loop for ClassicRobotState {
                 // This wakes a healer too, which stays a healer.
                 (variables.in_charge, variables.asleep, variables.busy) = (false, false, variables.healer);
                 knowledge.stands_in_for = (emulate != 0).then_some(emulate);
-                context.info(format_args!("wakes up (battery {} %)", knowledge.battery));
+                info!(context, "wakes up (battery {} %)", knowledge.battery);
             }
             ClassicRobotDecision::Charge => {
                 variables.ready_to_go_under_charge = true;
                 // The component that sent it to charge knows that one robot less is there.
                 knowledge.relieved = true;
-                context.info(format_args!("is sent to charge"));
+                info!(context, "is sent to charge");
             }
         }
         Ok(())

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, record};
+use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, info, record};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{RobotKnowledge, Trouble};
@@ -236,7 +236,7 @@ impl Loop for SafeBattery {
                 knowledge.turn_back();
                 let (name, battery) = (&knowledge.name, &knowledge.battery);
                 context.console(format_args!("{name} has low battery and is going under charge..."));
-                context.info(format_args!("battery is low ({battery} %): goes to charge"));
+                info!(context, "battery is low ({battery} %): goes to charge");
             }
             SafeBatteryDecision::Stop => {
                 knowledge.trouble = Some(Trouble::Battery);
@@ -253,12 +253,12 @@ impl Loop for SafeBattery {
             SafeBatteryDecision::Use(other) => {
                 self.own = None;
                 knowledge.use_charger(other);
-                context.info(format_args!("charges at {other} from now on"));
+                info!(context, "charges at {other} from now on");
             }
             SafeBatteryDecision::Borrow(other) => {
                 self.own = self.own.or(Some(knowledge.charge_block));
                 knowledge.use_charger(other);
-                context.info(format_args!("charges at {other} this time: its own is out of reach"));
+                info!(context, "charges at {other} this time: its own is out of reach");
             }
         }
         Ok(())
@@ -317,13 +317,13 @@ impl SafeBattery {
         if charging && !charged {
             let (name, battery) = (&knowledge.name, knowledge.level_before);
             context.console(format_args!("{name} says: I've arrived to charge position."));
-            context.info(format_args!("starts charging (battery {battery:.1} %)"));
+            info!(context, "starts charging (battery {battery:.1} %)");
         }
         if !charging && charged {
             let (name, asleep) = (&knowledge.name, knowledge.variables.asleep);
             let still = if asleep { " (but still asleep)" } else { "" };
             context.console(format_args!("{name} is now fully charged and ready{still}"));
-            context.info(format_args!("is fully charged"));
+            info!(context, "is fully charged");
         }
         self.note_level(knowledge, context);
         self.in_charge = charging || knowledge.variables.asleep;

@@ -1,4 +1,4 @@
-use saoms_api::{Cause, Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, record};
+use saoms_api::{Cause, Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, info, record};
 
 use crate::messages::{ROBOT_STATE, RobotList, RobotState};
 use crate::robot::{Help, Request, RobotKnowledge};
@@ -194,7 +194,7 @@ impl Loop for SafeRobotState {
                 (knowledge.variables.asleep, knowledge.relieved) = (false, false);
                 self.sent = Cause::default();
                 knowledge.stands_in_for = Some(emulate).filter(|emulate| *emulate > 0);
-                context.info(format_args!("wakes up"));
+                info!(context, "wakes up");
                 let (name, heals) = (&knowledge.name, emulate > 0);
                 context.console(format_args!("{name} {}now is awake", if heals { "is a healer and " } else { "" }));
             }
@@ -204,7 +204,7 @@ impl Loop for SafeRobotState {
             }
             SafeRobotDecision::Sleep => {
                 (knowledge.variables.asleep, knowledge.relieved) = (true, false);
-                context.info(format_args!("sleeps"));
+                info!(context, "sleeps");
             }
         }
         Ok(())

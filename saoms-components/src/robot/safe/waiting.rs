@@ -1,7 +1,7 @@
 //! Reports of a robot that gets nowhere because others are in its way: once when it has waited for a while, and once
 //! when that ends.
 
-use saoms_api::{Context, Time};
+use saoms_api::{Context, Time, info};
 
 use crate::grid::Block;
 use crate::robot::RobotKnowledge;
@@ -43,9 +43,9 @@ impl Waiting {
                     let since = way.since;
                     match knowledge.traffic.blocker(at, goal, &knowledge.routes) {
                         Some(robot) => {
-                            context.info(format_args!("has been waiting at {at} for robot {robot} since {since}"))
+                            info!(context, "has been waiting at {at} for robot {robot} since {since}")
                         }
-                        None => context.info(format_args!("has been waiting at {at} for other robots since {since}")),
+                        None => info!(context, "has been waiting at {at} for other robots since {since}"),
                     }
                 }
             }
@@ -60,7 +60,7 @@ impl Waiting {
     pub(super) fn end(&mut self, context: &mut Context<'_>) {
         if let Some(Progress { since, is_told: true, .. }) = self.way.take() {
             let waited = Time::from_nanos(context.now().as_nanos() - since.as_nanos());
-            context.info(format_args!("goes on after waiting {waited}"));
+            info!(context, "goes on after waiting {waited}");
         }
     }
 }

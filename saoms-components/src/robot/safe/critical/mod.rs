@@ -3,7 +3,7 @@
 mod records;
 mod substitute;
 
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subscription};
+use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subscription, info};
 
 use crate::grid::Block;
 use crate::messages::{
@@ -251,7 +251,7 @@ impl Loop for SafeCriticalSituation {
                 if let Some(substitution) = &mut self.substitution {
                     substitution.ask(sleeper);
                 }
-                context.info(format_args!("wakes robot {sleeper} to stand in for robot {robot}"));
+                info!(context, "wakes robot {sleeper} to stand in for robot {robot}");
                 let name = &knowledge.name;
                 context.console(format_args!("{name} is a healer and awakes another robot"));
                 self.awake(context, sleeper, robot)?;
@@ -331,7 +331,7 @@ impl SafeCriticalSituation {
             (knowledge.variables.busy, knowledge.variables.healer) = (true, true);
             knowledge.set_out(&job);
             let luggage = job.luggage;
-            context.info(format_args!("takes over luggage {luggage} from robot {critical}"));
+            info!(context, "takes over luggage {luggage} from robot {critical}");
         }
         self.substitution = Some(Substitution::of(critical));
         self.missing = context.cause();

@@ -2,7 +2,7 @@
 
 mod records;
 
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Work};
+use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Work, info};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
@@ -166,7 +166,7 @@ impl Loop for SafeEventLuggage {
                 knowledge.variables.busy = true;
                 knowledge.job = Some(job);
                 knowledge.set_out(&job);
-                context.info(format_args!("takes luggage {} from {} to {}", job.luggage, job.from, job.to));
+                info!(context, "takes luggage {} from {} to {}", job.luggage, job.from, job.to);
                 (job, LuggageStage::Taken)
             }
             SafeLuggageDecision::Release(job) => {
