@@ -10,15 +10,15 @@ use std::time::Duration;
 use crate::plugins::examples::library;
 use crate::support::{root, text};
 
-/// A controller whose wheels turn for ever; it answers `stop` with this word. Returns its address, its orders, and
-/// `silence` where it heard nothing for twice the period of the last heartbeat.
+/// A controller whose wheels turn for ever; it answers `stop` with this word. Returns its address, its orders, `alive`
+/// at the first heartbeat, and `silence` where it heard nothing for twice the period of the last one.
 fn controller(answer: &'static str) -> (String, Receiver<String>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
     let (told, orders) = channel();
     thread::spawn(move || {
         let mut stream = BufReader::new(listener.accept().unwrap().0);
-        let mut line = String::new();
+        let (mut line, mut has_heard) = (String::new(), false);
         loop {
             match stream.read_line(&mut line) {
                 Ok(1..) => {}
@@ -31,6 +31,9 @@ fn controller(answer: &'static str) -> (String, Receiver<String>) {
             if number == "alive" {
                 let limit = Duration::from_millis(2 * order.parse::<u64>().unwrap());
                 stream.get_mut().set_read_timeout(Some(limit)).unwrap();
+                if !std::mem::replace(&mut has_heard, true) {
+                    let _ = told.send("alive".to_owned());
+                }
                 line.clear();
                 continue;
             }
@@ -46,7 +49,7 @@ fn controller(answer: &'static str) -> (String, Receiver<String>) {
     (address, orders)
 }
 
-/// Runs the example until the wheels turn.
+/// Runs the example until the wheels turn and the controller has heard a heartbeat, without which silence is none.
 fn driving(address: &str, orders: &Receiver<String>) -> Child {
     let child = Command::new(env!("CARGO_BIN_EXE_saoms"))
         .current_dir(root())
@@ -56,7 +59,9 @@ fn driving(address: &str, orders: &Receiver<String>) -> Child {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    assert_eq!(orders.recv_timeout(Duration::from_secs(60)).as_deref(), Ok("move 1 0"));
+    for expected in ["move 1 0", "alive"] {
+        assert_eq!(orders.recv_timeout(Duration::from_secs(60)).as_deref(), Ok(expected));
+    }
     child
 }
 
