@@ -302,6 +302,22 @@ typedef struct SaomsStopView {
     void (*release)(void *state);
 } SaomsStopView;
 
+// A region of blocks, from one corner to the other, both included.
+typedef struct SaomsRegionView {
+    // Column and row of the least corner.
+    int32_t least[2];
+    // Column and row of the greatest corner.
+    int32_t most[2];
+} SaomsRegionView;
+
+// The message of a state topic that is not in the region of a subscription any more.
+typedef struct SaomsDepartedView {
+    // The key of the message; 0 where it has none.
+    uint64_t key;
+    // The index of its sender.
+    uint32_t sender;
+} SaomsDepartedView;
+
 // The functions of a component's context. The first argument of each is the `state` of the handle that the present
 // call was lent.
 //
@@ -406,6 +422,15 @@ typedef struct SaomsHostFunctions {
     // The newest bytes that are kept, lent for the time of the call, and their number; 0 and none before there are
     // any. `number` may be null.
     struct SaomsBytes (*kept)(void *state, uint64_t *number);
+    // Lets a subscription receive the messages of a region alone; with null it receives all. The schema of the topic
+    // has a `place`.
+    SaomsStatus (*set_region)(void *state,
+                              uint32_t subscription,
+                              const struct SaomsRegionView *region,
+                              struct SaomsSink error);
+    // The message at this place of those that left the region of a subscription since the execution before: 1 if there
+    // is one, else 0.
+    uint32_t (*departed)(void *state, uint32_t subscription, size_t place, struct SaomsDepartedView *departed);
 } SaomsHostFunctions;
 
 // A message that arrived.

@@ -1,7 +1,8 @@
 use core::ffi::c_void;
 
 use crate::{
-    Bytes, Inbox, LoopInstance, PropertyView, RecordView, ReportView, Sink, Status, StopView, TopicView, ValueView,
+    Bytes, DepartedView, Inbox, LoopInstance, PropertyView, RecordView, RegionView, ReportView, Sink, Status, StopView,
+    TopicView, ValueView,
 };
 
 /// The context that a component is lent for the time of a call: its functions, and the messages that arrived.
@@ -132,6 +133,14 @@ pub struct HostFunctions {
     /// The newest bytes that are kept, lent for the time of the call, and their number; 0 and none before there are
     /// any. `number` may be null.
     pub kept: unsafe extern "C" fn(state: *mut c_void, number: *mut u64) -> Bytes,
+    /// Lets a subscription receive the messages of a region alone; with null it receives all. The schema of the topic
+    /// has a `place`.
+    pub set_region:
+        unsafe extern "C" fn(state: *mut c_void, subscription: u32, region: *const RegionView, error: Sink) -> Status,
+    /// The message at this place of those that left the region of a subscription since the execution before: 1 if there
+    /// is one, else 0.
+    pub departed:
+        unsafe extern "C" fn(state: *mut c_void, subscription: u32, place: usize, departed: *mut DepartedView) -> u32,
 }
 
 /// The visitor of a component's loops, called with a name, a class, values and their number.

@@ -4,8 +4,8 @@ use std::time::Duration;
 use crate::host::{Host, TARGET_SHIFT};
 use crate::host::{Phase, Reference, ServiceCall, SharedMessage};
 use crate::{
-    CallError, Cause, Chance, Failure, Header, Loops, Message, Messages, Publisher, Record, ReportValue, StopFunction,
-    Subscription, Time, Topic, Value, Work,
+    CallError, Cause, Chance, Departed, Failure, Header, Loops, Message, Messages, Publisher, Record, Region,
+    ReportValue, StopFunction, Subscription, Time, Topic, Value, Work,
 };
 
 /// Severity of a log line.
@@ -147,6 +147,78 @@ impl<'a> Context<'a> {
         let first = self.host.reference(name, R::INTERFACE)?;
         let targets = self.host.targets(first);
         Ok((0..targets).map(|target| R::from_index(first | target << TARGET_SHIFT)).collect())
+    }
+
+    /// Lets a subscription receive the messages of a region alone, or again all with `None`. Their type declares a
+    /// [`place`](Message#). It may change at any time; what arrived for this execution stays.
+    ///
+    /// Of a state topic the newest message of each key that is in the region comes with the next execution, also where
+    /// it was sent long ago: its block entered the region, or the region came to it. [`departed`](Context::departed)
+    /// says what is not in the region any more. Of an event topic comes what is sent in the region from now on. The
+    /// cost of a message depends on the subscriptions around its block, and not on how many there are.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Context, Failure, Field, Message, Region, Subscription, Topic};
+    ///
+    /// #[derive(Clone, Copy, Debug, Field)]
+    /// #[field(pair)]
+    /// struct Block {
+    ///     x: i32,
+    ///     y: i32,
+    /// }
+    ///
+    /// #[derive(Clone, Debug, Message)]
+    /// #[message(place = "block")]
+    /// struct Seen {
+    ///     block: Block,
+    /// }
+    ///
+    /// const SEEN: Topic<Seen> = Topic::state("SEEN");
+    ///
+    /// /// Watches the blocks around (5,5).
+    /// #[derive(Class)]
+    /// #[class(name = "example.Watch", periodic)]
+    /// struct Watch {
+    ///     #[subscribes(SEEN)]
+    ///     seen: Subscription<Seen>,
+    /// }
+    ///
+    /// impl Component for Watch {
+    ///     type Properties = ();
+    ///
+    ///     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         context.set_region(&self.seen, Some(Region::around((5, 5), 3)))
+    ///     }
+    ///
+    ///     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+    ///         let came = context.receive(&self.seen).count();
+    ///         let went = context.departed(&self.seen).len();
+    ///         context.info(format!("{came} came or moved, {went} went"));
+    ///         Ok(())
+    ///     }
+    /// }
+    /// ```
+    ///
+    /// # Errors
+    /// The messages have no place, or the subscription belongs to no topic.
+    pub fn set_region<M: Message>(
+        &mut self,
+        subscription: &Subscription<M>,
+        region: Option<Region>,
+    ) -> Result<(), Failure> {
+        if !M::HAS_PLACE {
+            let name = M::NAME;
+            return Err(Failure::new(format!(
+                "messages `{name}` have no place, and no region: say which field is their block, `#[message(place = \"...\")]`"
+            )));
+        }
+        self.host.set_region(subscription.index(), region)
+    }
+
+    /// The messages of a state topic that left the [region](Context::set_region) of a subscription since the execution
+    /// before.
+    pub fn departed<M: Message>(&self, subscription: &Subscription<M>) -> &[Departed] {
+        self.host.departed(subscription.index())
     }
 
     /// Keeps these bytes beyond a crash of the component, in place of those that it kept before:

@@ -62,6 +62,7 @@ mod finding;
 pub mod host;
 mod message;
 mod property;
+mod region;
 mod registration;
 mod report;
 pub mod rule;
@@ -86,6 +87,7 @@ pub use field::Field;
 pub use finding::{Finding, Place};
 pub use message::{Header, Message, Messages};
 pub use property::{Properties, PropertyField};
+pub use region::{Departed, Region};
 pub use report::{ReportValue, Work};
 pub use saved::Saved;
 pub use stop::StopFunction;
@@ -103,7 +105,7 @@ pub mod generated {
     pub use crate::derived::{DefaultOf, Different, NoDefault, Same, no_update, parts};
     pub use crate::host::contain::install_hook;
     pub use crate::host::declaration::ConstText;
-    pub use crate::message::Key;
+    pub use crate::message::{Key, is_pair, pair_of};
     pub use crate::property::{
         PropertyShape, Values, all_names, are_distinct, complex, contains, continued, count, default_fits, equal, flat,
         list, property, read, refuse_reserved, scalar,

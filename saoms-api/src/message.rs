@@ -12,6 +12,7 @@ use crate::{Cause, Field, Time};
 /// | attribute | meaning |
 /// | --- | --- |
 /// | `key = "field"` | the integer field that is the key of a state topic |
+/// | `place = "block"` | the field that is the block of the message, a struct with `#[field(pair)]`: subscriptions can receive a [region](crate::Context::set_region) alone |
 /// | `name = "sensor_msgs/msg/LaserScan"` | the name, if it is not that of the struct |
 /// | `constants(NO_FIX: i8 = -1, FIX: i8 = 0)` | constants of the struct, which stand in the schema, too |
 ///
@@ -46,6 +47,14 @@ pub trait Message: Field + Clone + fmt::Debug + Send + Sync + 'static {
     fn key(&self) -> Option<u64> {
         None
     }
+
+    /// True if messages of this type have a block.
+    const HAS_PLACE: bool = false;
+
+    /// Column and row of the block of the message, where the type declares a `place`.
+    fn place(&self) -> Option<(i32, i32)> {
+        None
+    }
 }
 
 /// An integer that can be the key of a state topic.
@@ -65,6 +74,20 @@ macro_rules! keys {
 }
 
 keys!(i8, i16, i32, i64, u8, u16, u32, u64);
+
+/// For generated code: true if a field is a single value of two numbers. Runs at compile time.
+pub const fn is_pair(value: &str) -> bool {
+    crate::property::equal(value.as_bytes(), b"pair")
+}
+
+/// For generated code: the two numbers of such a value.
+#[inline]
+pub fn pair_of(value: Option<crate::Value>) -> Option<(i32, i32)> {
+    match value {
+        Some(crate::Value::Pair(x, y)) => Some((x, y)),
+        _ => None,
+    }
+}
 
 /// Sender, time and cause of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,6 +110,7 @@ pub struct SharedMessage(Arc<Shared<dyn Payload>>);
 struct Shared<P: ?Sized> {
     header: Header,
     key: Option<u64>,
+    place: Option<(i32, i32)>,
     bytes: OnceLock<Vec<u8>>,
     forms: OnceLock<Box<Form>>,
     payload: P,
@@ -96,13 +120,29 @@ impl SharedMessage {
     /// Shares a value.
     pub fn new<M: Message>(header: Header, value: M) -> SharedMessage {
         let (bytes, forms) = (OnceLock::new(), OnceLock::new());
-        SharedMessage(Arc::new(Shared { header, key: value.key(), bytes, forms, payload: Typed(value) }))
+        let (key, place) = (value.key(), value.place());
+        SharedMessage(Arc::new(Shared { header, key, place, bytes, forms, payload: Typed(value) }))
     }
 
     /// Takes over a message that arrived as bytes (see [`cdr`]). The schema must have been checked against the topic's.
     pub fn from_bytes(header: Header, key: Option<u64>, bytes: Vec<u8>) -> SharedMessage {
         let (bytes, forms) = (OnceLock::from(bytes), OnceLock::new());
-        SharedMessage(Arc::new(Shared { header, key, bytes, forms, payload: Arrived }))
+        SharedMessage(Arc::new(Shared { header, key, place: None, bytes, forms, payload: Arrived }))
+    }
+
+    /// The same message with this block, which its bytes say.
+    #[must_use]
+    pub fn at(mut self, place: Option<(i32, i32)>) -> SharedMessage {
+        // Nobody shares a message that was made just now.
+        if let Some(shared) = Arc::get_mut(&mut self.0) {
+            shared.place = place;
+        }
+        self
+    }
+
+    /// Column and row of its block, if its type declares a place.
+    pub fn place(&self) -> Option<(i32, i32)> {
+        self.0.place
     }
 
     /// Sender, time and cause.

@@ -11,8 +11,8 @@ use std::time::Instant;
 
 use saoms_api::host::{DynLoop, PropertyValue, Registration};
 use saoms_api::{
-    Class, Component, Context, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties, Publisher,
-    Record, Subscription, Time, Topic, record,
+    Class, Component, Context, Extras, Failure, Field, Knowledge, Loop, LoopClass, Loops, Message, Own, Properties,
+    Publisher, Record, Region, Subscription, Time, Topic, record,
 };
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::{Assembly, ComponentSpec, TaskProperties};
@@ -141,6 +141,86 @@ impl Component for Robot {
     }
 }
 
+/// A block of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Field)]
+#[field(pair)]
+struct Block {
+    x: i32,
+    y: i32,
+}
+
+/// Position of a roamer.
+#[derive(Clone, Debug, Message)]
+#[message(place = "block")]
+struct Roams {
+    block: Block,
+}
+
+const ROAMS: Topic<Roams> = Topic::state("ROAMS");
+
+/// Moves by a block in each execution, and sees those around it: one of 25 blocks has a roamer.
+#[derive(Class)]
+#[class(name = "roamer", periodic)]
+struct Roamer {
+    #[property(default = 0)]
+    number: i32,
+    /// Number of roamers side by side.
+    #[property(default = 1)]
+    side: i32,
+    #[publishes(ROAMS)]
+    publisher: Publisher<Roams>,
+    #[subscribes(ROAMS)]
+    others: Subscription<Roams>,
+    seen: usize,
+}
+
+impl Component for Roamer {
+    type Properties = Own<Self>;
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.seen += context.receive(&self.others).count();
+        let step = (context.execution() % 5) as i32;
+        let block = Block { x: self.number % self.side * 5 + step, y: self.number / self.side * 5 };
+        context.send(&self.publisher, Roams { block })?;
+        black_box(self.seen);
+        context.set_region(&self.others, Some(Region::around((block.x, block.y), 5)))
+    }
+}
+
+/// Nanoseconds per execution of so many roamers.
+fn roam(side: i32) -> Result<f64, Box<dyn std::error::Error>> {
+    let mut registry = Registry::new();
+    registry.add(Registration::of::<Roamer>())?;
+    let class = registry.get("roamer").ok_or("the class is registered")?;
+    let count = side * side;
+    let mut components = Vec::new();
+    for number in 0..count {
+        let task = [("ID", "roamer"), ("period", "1s")];
+        let task = task.map(|(name, value)| (name.into(), PropertyValue::from(value)));
+        let values = [("number", number), ("side", side)];
+        components.push(ComponentSpec {
+            path: format!("R{number}"),
+            class: Arc::clone(class),
+            site: Default::default(),
+            library: None,
+            values: values.map(|(name, value)| (name.into(), PropertyValue::from(&*value.to_string()))).to_vec(),
+            written: Default::default(),
+            task: Some(TaskProperties::from_values(&task).map_err(|failure| failure.to_string())?),
+            references: Vec::new(),
+            loops: Arc::default(),
+        });
+    }
+    let fleet = RunningFleet::start(Assembly { components }, Settings::simulated(0), Vec::new())?;
+    let periods = (200_000 / count as u64).max(5);
+    let mut best = f64::INFINITY;
+    for round in 0..5 {
+        let begin = Instant::now();
+        fleet.run_until(Time::from_nanos((round + 1) * periods * 1_000_000_000));
+        best = best.min(begin.elapsed().as_nanos() as f64 / (periods * count as u64) as f64);
+    }
+    Ok(best)
+}
+
 /// A fleet of equal periods.
 struct Shape {
     senders: usize,
@@ -192,6 +272,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let deliveries = (senders * receivers * sends as usize) as f64;
             println!("{:6.1} ns per delivery, {name}, {sends} {kind} in each execution", net / deliveries);
         }
+    }
+    for side in [10, 32, 100] {
+        let time = roam(side)?;
+        println!(
+            "{time:6.0} ns per execution of a robot that moves and sees those within 5 blocks, {} robots",
+            side * side
+        );
     }
     Ok(())
 }

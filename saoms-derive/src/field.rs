@@ -1,5 +1,5 @@
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, quote_spanned};
 use syn::ext::IdentExt;
 use syn::{Data, DeriveInput, Error, Fields, Generics, Ident, LitStr, Result, Type};
 
@@ -12,6 +12,7 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
     let fields = struct_fields(input, "a message")?;
     let mut name = input.ident.unraw().to_string();
     let mut key: Option<LitStr> = None;
+    let mut place: Option<LitStr> = None;
     let mut constants = Vec::new();
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("message")) {
         attribute.parse_nested_meta(|meta| {
@@ -19,15 +20,27 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
                 name = meta.value()?.parse::<LitStr>()?.value();
             } else if meta.path.is_ident("key") {
                 key = Some(meta.value()?.parse()?);
+            } else if meta.path.is_ident("place") {
+                place = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("constants") {
                 constants.extend(Constant::list(meta.input)?);
             } else {
-                return Err(meta.error("expected `name = \"...\"`, `key = \"field\"` or `constants(NAME: u8 = 1)`"));
+                return Err(meta.error(
+                    "expected `name = \"...\"`, `key = \"field\"`, `place = \"field\"` or `constants(NAME: u8 = 1)`",
+                ));
             }
             Ok(())
         })?;
     }
+    let place_field = place.as_ref().map(|place| key_field(place, &fields)).transpose()?;
+    let place_name = place_field.as_ref().map(|field| field.unraw().to_string()).unwrap_or_default();
+    let place = place.as_ref().zip(place_field).map(|(text, field)| place_of(text, field, &fields));
     let key_field = key.as_ref().map(|key| key_field(key, &fields)).transpose()?;
+    // A constant of a trait is evaluated where it is used.
+    let evaluated = place.as_ref().map(|_| {
+        let ident = &input.ident;
+        quote!(const _: bool = <#ident as ::saoms_api::Message>::HAS_PLACE;)
+    });
     let key_name = key_field.as_ref().map(|field| field.unraw().to_string()).unwrap_or_default();
     let key = key_field.map(|field| {
         quote! {
@@ -37,7 +50,7 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
         }
     });
     let ident = &input.ident;
-    let field = structure(ident, (&name, &key_name), &fields, &constants, &TokenStream::new());
+    let field = structure(ident, (&name, &key_name, &place_name), &fields, &constants, &TokenStream::new());
     let constants = constants::associated(ident, &input.vis, &constants);
     let schema = json::flat(&quote!(<#ident as ::saoms_api::Field>::TYPE));
     Ok(quote! {
@@ -50,7 +63,10 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
             const SCHEMA: &'static str = #schema;
 
             #key
+            #place
         }
+
+        #evaluated
     })
 }
 
@@ -77,7 +93,7 @@ pub(crate) fn field(input: &DeriveInput) -> Result<TokenStream> {
             Ok(())
         })?;
     }
-    let field = structure(&input.ident, (&name, ""), &fields, &constants, &value);
+    let field = structure(&input.ident, (&name, "", ""), &fields, &constants, &value);
     let constants = constants::associated(&input.ident, &input.vis, &constants);
     Ok(quote!(#field #constants))
 }
@@ -88,6 +104,24 @@ fn key_field<'a>(key: &LitStr, fields: &[(&'a Ident, &Type)]) -> Result<&'a Iden
         Some((name, _)) => Ok(name),
         None => {
             Err(Error::new(key.span(), format!("there is no field `{}`: expected one of {}", key.value(), names())))
+        }
+    }
+}
+
+/// The members of `Message` for a type whose field is the block of a message.
+fn place_of(text: &LitStr, field: &Ident, fields: &[(&Ident, &Type)]) -> TokenStream {
+    let of = fields.iter().find(|(name, _)| *name == field).map(|(_, of)| of);
+    let message =
+        format!("`{}` is no block: expected a struct with two fields of type `i32` and `#[field(pair)]`", text.value());
+    quote_spanned! {text.span()=>
+        const HAS_PLACE: bool = {
+            ::core::assert!(::saoms_api::generated::is_pair(<#of as ::saoms_api::Field>::VALUE), #message);
+            true
+        };
+
+        #[inline]
+        fn place(&self) -> ::core::option::Option<(i32, i32)> {
+            ::saoms_api::generated::pair_of(::saoms_api::Field::as_value(&self.#field))
         }
     }
 }
@@ -141,7 +175,7 @@ fn pair(fields: &[(&Ident, &Type)]) -> std::result::Result<TokenStream, &'static
 
 fn structure(
     ident: &Ident,
-    (name, key): (&str, &str),
+    (name, key, place): (&str, &str, &str),
     fields: &[(&Ident, &Type)],
     constants: &[Constant],
     value: &TokenStream,
@@ -158,6 +192,7 @@ fn structure(
         text.plain("}");
     });
     text.member("key", key);
+    text.member("place", place);
     constants::declare(constants, &mut text);
     text.plain("}");
     let text = text.into_text();

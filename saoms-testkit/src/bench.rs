@@ -8,7 +8,8 @@ use saoms_api::host::{
     DynComponent, Invocation, LoopRegistration, PropertyValue, Registration, ServiceCall, SharedMessage, SmolStr,
 };
 use saoms_api::{
-    CallError, Cause, Class, Context, Failure, Header, LoopClass, Message, ReportValue, Time, Topic, Work,
+    CallError, Cause, Class, Context, Departed, Failure, Header, LoopClass, Message, Region, ReportValue, Time, Topic,
+    Work,
 };
 #[cfg(feature = "fleets")]
 use saoms_core::plugin::Plugin;
@@ -221,7 +222,8 @@ impl Bench {
         let messages = std::mem::take(&mut self.waiting);
         for (topic, message) in &messages {
             for (inbox, subscription) in inboxes.iter_mut().zip(&self.stage.subscriptions) {
-                if subscription.name == *topic {
+                let is_near = |region: &Region| message.place().is_none_or(|block| region.contains(block));
+                if subscription.name == *topic && subscription.region.as_ref().is_none_or(is_near) {
                     inbox.push(message.clone());
                 }
             }
@@ -229,6 +231,7 @@ impl Bench {
         self.step = self.stage.actions.len();
         let (component, mut context) = (&mut self.component, Context::new(&mut self.stage, &inboxes));
         let result = contained(|| code(component.as_mut(), &mut context)).and_then(|result| result);
+        self.stage.subscriptions.iter_mut().for_each(|subscription| subscription.departed.clear());
         if let Err(failure) = &result
             && let Some(provider) = failure.busy_provider()
         {
@@ -319,6 +322,15 @@ impl Bench {
     pub fn deliver<M: Message>(&mut self, topic: &Topic<M>, message: M) {
         let message = SharedMessage::new(self.header(), message);
         self.waiting.push((topic.name().to_owned(), message));
+    }
+
+    /// Lets the next execution find that a message of a state topic left the [region](Context::set_region) of the
+    /// component's subscription: that of the test with this key.
+    pub fn depart<M: Message>(&mut self, topic: &Topic<M>, key: u64) {
+        let departed = Departed { sender: TEST, key };
+        let subscriptions = self.stage.subscriptions.iter_mut();
+        let own = subscriptions.filter(|subscription| subscription.name == topic.name());
+        own.for_each(|subscription| subscription.departed.push(departed));
     }
 
     /// Delivers a message that is given as JSON.

@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use saoms_api::host::{Host, LoopVisit};
 use saoms_api::host::{NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration};
-use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
+use saoms_api::{
+    CallError, Cause, Chance, Departed, Failure, Level, Record, Region, ReportValue, StopFunction, Time, Value, Work,
+};
 use saoms_registry::registry::{ClassTopic, PropertyDeclaration, RegisteredClass, RegisteredLoop, Registry};
 use saoms_registry::schema::Schema;
 
@@ -30,6 +32,10 @@ pub(crate) enum Action {
 pub(crate) struct BoundTopic {
     pub(crate) name: String,
     schema: Option<Schema>,
+    /// The blocks whose messages it receives; all with `None`.
+    pub(crate) region: Option<Region>,
+    /// Messages that left the region.
+    pub(crate) departed: Vec<Departed>,
 }
 
 /// A reference of the component, and the service that it leads to.
@@ -212,7 +218,12 @@ impl Stage {
                 self.class.as_ref().map_or("(none)", |class| class.name())
             )));
         }
-        Ok(BoundTopic { name: topic.name.to_owned(), schema: Schema::parse(topic.schema).ok() })
+        Ok(BoundTopic {
+            name: topic.name.to_owned(),
+            schema: Schema::parse(topic.schema).ok(),
+            region: None,
+            departed: Vec::new(),
+        })
     }
 
     pub(crate) fn transcript(&self) -> String {
@@ -318,6 +329,22 @@ impl Host for Stage {
         // A reference that is not wired has a handle, too.
         let wired = self.wires.iter().position(|wire| wire.reference == name);
         Ok(wired.unwrap_or(usize::from(u16::MAX)) as u32)
+    }
+
+    fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure> {
+        match self.subscriptions.get_mut(subscription as usize) {
+            Some(topic) => topic.region = region,
+            None => return Err(Failure::new("this subscription belongs to no topic")),
+        }
+        Ok(())
+    }
+
+    fn departed(&self, subscription: u32) -> &[Departed] {
+        self.subscriptions.get(subscription as usize).map_or(&[], |topic| &topic.departed)
+    }
+
+    fn has_departed(&self) -> bool {
+        self.subscriptions.iter().any(|topic| !topic.departed.is_empty())
     }
 
     fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {

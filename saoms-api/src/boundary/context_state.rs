@@ -1,7 +1,7 @@
-use saoms_abi::{HostHandle, MessageView};
+use saoms_abi::{DepartedView, HostHandle, MessageView};
 
 use crate::host::SharedMessage;
-use crate::{Cause, Context, Failure, Header};
+use crate::{Cause, Context, Departed, Failure, Header};
 
 use super::host::time;
 use super::remote_host::{RemoteHost, check_size};
@@ -12,6 +12,8 @@ pub(super) struct ContextState {
     /// By the index of the subscription; only its own are ever filled.
     inboxes: Vec<Vec<SharedMessage>>,
     subscribed: Vec<u32>,
+    /// By the index of the subscription: messages that left its region.
+    departed: Vec<Vec<Departed>>,
     /// True if there is a message in them.
     is_filled: bool,
     buffer: Vec<u8>,
@@ -38,7 +40,7 @@ impl ContextState {
             unsafe { self.take_in(handle) }?;
         }
         // SAFETY: as the caller promises.
-        let mut host = unsafe { RemoteHost::new(handle, &mut self.buffer, &mut self.subscribed) };
+        let mut host = unsafe { RemoteHost::new(handle, &mut self.buffer, &mut self.subscribed, &self.departed) };
         code(&mut Context::new(&mut host, &self.inboxes))
     }
 
@@ -52,7 +54,10 @@ impl ContextState {
             let place = *subscription as usize;
             if self.inboxes.len() <= place {
                 self.inboxes.resize_with(place + 1, Vec::new);
+                self.departed.resize_with(place + 1, Vec::new);
             }
+            let departed = &mut self.departed[place];
+            departed.clear();
             let inbox = &mut self.inboxes[place];
             inbox.clear();
             if place >= handle.inbox_count {
@@ -63,6 +68,10 @@ impl ContextState {
                 let lent = *handle.inboxes.add(place);
                 for message in 0..lent.count {
                     inbox.push(copy(&*lent.messages.add(message))?);
+                }
+                let mut view = DepartedView { key: 0, sender: 0 };
+                while ((*handle.functions).departed)(handle.state, *subscription, departed.len(), &raw mut view) != 0 {
+                    departed.push(Departed { sender: view.sender, key: view.key });
                 }
             }
         }

@@ -4,13 +4,13 @@ use std::ffi::c_void;
 use std::time::Duration;
 
 use saoms_abi::{
-    Bytes, HostFunctions, LoopInstance, LoopVisitor, RecordView, ReportView, Sink, Status, StopView, TopicView,
-    ValueView,
+    Bytes, DepartedView, HostFunctions, LoopInstance, LoopVisitor, RecordView, RegionView, ReportView, Sink, Status,
+    StopView, TopicView, ValueView,
 };
 
 use crate::host::Host;
 use crate::host::{Phase, SharedMessage};
-use crate::{Cause, Failure, Header, Level, Time, Work};
+use crate::{Cause, Departed, Failure, Header, Level, Region, Time, Work};
 
 use super::convert::{PropertyViews, read_record, read_report, read_topic, read_value};
 use super::guard::{guarded, guarded_call, guarded_value};
@@ -141,6 +141,35 @@ unsafe extern "C" fn kept(state: *mut c_void, number: *mut u64) -> Bytes {
                 *number = newest;
             }
             Bytes::lend(bytes)
+        })
+    }
+}
+
+unsafe extern "C" fn set_region(
+    state: *mut c_void,
+    subscription: u32,
+    region: *const RegionView,
+    error: Sink,
+) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the region to this call, or null.
+    unsafe {
+        guarded(error, || {
+            let region =
+                region.as_ref().map(|RegionView { least, most }| Region::new(least[0]..=most[0], least[1]..=most[1]));
+            host(state)?.set_region(subscription, region)
+        })
+    }
+}
+
+unsafe extern "C" fn departed(state: *mut c_void, subscription: u32, place: usize, view: *mut DepartedView) -> u32 {
+    // SAFETY: callers pass the state of their handle, and a place for the answer, or null.
+    unsafe {
+        with_host(state, 0, |host| match (host.departed(subscription).get(place), view.as_mut()) {
+            (Some(Departed { sender, key }), Some(view)) => {
+                *view = DepartedView { key: *key, sender: *sender };
+                1
+            }
+            _ => 0,
         })
     }
 }
@@ -343,6 +372,8 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     register_stop,
     keep,
     kept,
+    set_region,
+    departed,
 };
 
 /// A time of the other side.

@@ -97,10 +97,10 @@ impl Lease {
     ) -> Status {
         let lease = self.0;
         let (host, inboxes) = context.parts();
+        let arrived = inboxes.iter().any(|inbox| !inbox.is_empty()) || host.has_departed();
         // SAFETY: this changes the lifetime alone; the pointer is taken out below, before the host's life can end.
         let host = unsafe { mem::transmute::<*mut (dyn Host + '_), *mut (dyn Host + 'static)>(host) };
         lease.host.set(Some(host));
-        let arrived = inboxes.iter().any(|inbox| !inbox.is_empty());
         if arrived {
             self.lend(inboxes);
         }

@@ -3,7 +3,9 @@ use std::fmt::{self, Write as _};
 use std::mem::MaybeUninit;
 use std::time::Duration;
 
-use saoms_abi::{Bytes, HostFunctions, HostHandle, LoopInstance, PropertyView, RecordView, Sink, Status, TopicView};
+use saoms_abi::{
+    Bytes, HostFunctions, HostHandle, LoopInstance, PropertyView, RecordView, RegionView, Sink, Status, TopicView,
+};
 
 use crate::host::Host;
 use crate::host::contain::contained;
@@ -11,7 +13,9 @@ use crate::host::present;
 use crate::host::{
     DynLoop, LoopRegistration, NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration,
 };
-use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
+use crate::{
+    CallError, Cause, Chance, Departed, Failure, Level, Record, Region, ReportValue, StopFunction, Time, Value, Work,
+};
 
 use super::buffer::{Buffer, sink};
 use super::convert::{read_properties, topic_view, value_view, with_report_view};
@@ -28,6 +32,8 @@ pub(super) struct RemoteHost<'a> {
     buffer: &'a mut Vec<u8>,
     /// The subscriptions that are made here.
     subscribed: &'a mut Vec<u32>,
+    /// By the index of the subscription: messages that left its region.
+    departed: &'a [Vec<Departed>],
 }
 
 /// The level of the classic console, behind those of the log.
@@ -40,10 +46,11 @@ impl<'a> RemoteHost<'a> {
         handle: &'a HostHandle,
         buffer: &'a mut Vec<u8>,
         subscribed: &'a mut Vec<u32>,
+        departed: &'a [Vec<Departed>],
     ) -> RemoteHost<'a> {
         // SAFETY: as the caller promises.
         let functions = unsafe { &*handle.functions };
-        RemoteHost { handle, functions, buffer, subscribed }
+        RemoteHost { handle, functions, buffer, subscribed, departed }
     }
 
     /// Asks for a topic.
@@ -220,6 +227,20 @@ impl Host for RemoteHost<'_> {
         let (name, interface) = (Bytes::text(name), Bytes::text(interface));
         let status = get!(self.reference, name, interface, &raw mut index, sink(&mut error));
         outcome(status, &error.bytes).map(|()| index)
+    }
+
+    fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure> {
+        let view = region.map(|region| {
+            let [least, most] = [region.least(), region.most()].map(|(x, y)| [x, y]);
+            RegionView { least, most }
+        });
+        let view = view.as_ref().map_or(std::ptr::null(), std::ptr::from_ref);
+        let mut error = Buffer::default();
+        outcome(get!(self.set_region, subscription, view, sink(&mut error)), &error.bytes)
+    }
+
+    fn departed(&self, subscription: u32) -> &[Departed] {
+        self.departed.get(subscription as usize).map_or(&[], Vec::as_slice)
     }
 
     fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {

@@ -33,7 +33,9 @@ pub use smol_str::SmolStr;
 pub use visible::{Visible, is_invisible, one_line, shorten};
 pub use xml::escaped;
 
-use crate::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
+use crate::{
+    CallError, Cause, Chance, Departed, Failure, Level, Record, Region, ReportValue, StopFunction, Time, Value, Work,
+};
 
 /// The lowest bit of the number of a target in the handle of a reference; the bits below are the place of the reference
 /// in its class.
@@ -101,6 +103,17 @@ pub trait Host {
     /// # Errors
     /// As [`CallError`] says.
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
+    /// See [`Context::set_region`](crate::Context::set_region).
+    ///
+    /// # Errors
+    /// As there.
+    fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure>;
+    /// See [`Context::departed`](crate::Context::departed).
+    fn departed(&self, subscription: u32) -> &[Departed];
+    /// True if one of the subscriptions has such messages.
+    fn has_departed(&self) -> bool {
+        false
+    }
     /// See [`Context::keep`](crate::Context::keep).
     ///
     /// # Errors

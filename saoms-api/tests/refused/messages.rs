@@ -48,4 +48,10 @@ struct Unknown {
     value: u8,
 }
 
+#[derive(Clone, Debug, Message)]
+#[message(place = "blok")]
+struct Misspelt {
+    block: u8,
+}
+
 fn main() {}

@@ -11,6 +11,9 @@
 
 mod events;
 mod hash;
+mod regions;
+#[cfg(test)]
+mod regions_tests;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -21,6 +24,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicDeclaration};
+use saoms_api::{Departed, Region};
 
 use topic::{BusTopic, ReadPosition};
 
@@ -163,11 +167,33 @@ impl Bus {
         self.topics[subscription.topic.0 as usize].collect(&mut subscription.reader, inbox)
     }
 
+    /// The same for a reader that has a region, with the messages that are not in it any more.
+    #[cold]
+    pub fn collect_in_region(
+        &mut self,
+        subscription: &TopicReader,
+        inbox: &mut Vec<SharedMessage>,
+        departed: &mut Vec<Departed>,
+    ) -> u64 {
+        self.topics[subscription.topic.0 as usize].collect_in_region(&subscription.reader, inbox, departed)
+    }
+
+    /// True if a reader gets the messages of a region alone.
+    #[inline]
+    pub fn has_region(&self, subscription: &TopicReader) -> bool {
+        matches!(subscription.reader, ReadPosition::Region(_))
+    }
+
+    /// Lets a reader get the messages of a region alone, of which at most `queue` events wait, or all again.
+    pub fn set_region(&mut self, subscription: &mut TopicReader, region: Option<Region>, queue: usize) {
+        self.topics[subscription.topic.0 as usize].set_region(&mut subscription.reader, region, queue);
+    }
+
     /// Puts back what the last [`collect`](Bus::collect) put into an inbox. Events stay in the inbox, since their topic
     /// does not keep them; of a state topic the next collection has the newest messages. Returns the number of messages
     /// that left the inbox.
     pub fn put_back(&mut self, subscription: &mut TopicReader, inbox: &mut Vec<SharedMessage>) -> u64 {
-        if !subscription.reader.put_back() {
+        if !self.topics[subscription.topic.0 as usize].put_back(&mut subscription.reader) {
             return 0;
         }
         let back = inbox.len() as u64;
@@ -177,7 +203,7 @@ impl Bus {
 
     /// Resets a reader: on a state topic it gets all retained messages again, on an event topic it has lost none.
     pub fn rewind(&mut self, subscription: &mut TopicReader) {
-        subscription.reader.rewind();
+        self.topics[subscription.topic.0 as usize].rewind(&mut subscription.reader);
     }
 
     /// Gives a reader another bound for the events that wait for it.

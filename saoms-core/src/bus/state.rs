@@ -34,22 +34,38 @@ impl Default for StateTable {
 }
 
 impl StateTable {
-    pub(super) fn publish(&mut self, message: SharedMessage) {
+    /// Takes in a message; gives its entry, and the message that it replaces.
+    pub(super) fn publish(&mut self, message: SharedMessage) -> (u32, Option<SharedMessage>) {
         self.changes += 1;
         // Either all messages of a topic have a key, or none has.
         let key = (message.header().sender, message.key().unwrap_or_default());
         if let Some(&place) = self.places.get(&key) {
             self.unlink(place);
             let entry = &mut self.entries[place as usize];
-            entry.message = message;
+            let before = std::mem::replace(&mut entry.message, message);
             entry.change = self.changes;
             self.link(place);
-            return;
+            return (place, Some(before));
         }
         let place = u32::try_from(self.entries.len()).unwrap_or(NONE);
         self.entries.push(Entry { message, change: self.changes, older: NONE, newer: NONE });
         self.places.insert(key, place);
         self.link(place);
+        (place, None)
+    }
+
+    /// The retained messages, by their entries.
+    pub(super) fn messages(&self) -> impl Iterator<Item = (u32, &SharedMessage)> {
+        (0..).zip(self.entries.iter().map(|entry| &entry.message))
+    }
+
+    pub(super) fn message(&self, entry: u32) -> &SharedMessage {
+        &self.entries[entry as usize].message
+    }
+
+    /// Number of the last change of an entry.
+    pub(super) fn change(&self, entry: u32) -> u64 {
+        self.entries[entry as usize].change
     }
 
     fn unlink(&mut self, place: u32) {

@@ -1,9 +1,11 @@
 use std::sync::Arc;
 
 use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
+use saoms_api::{Departed, Region};
 
 use super::Mismatch;
 use super::events::EventLog;
+use super::regions::RegionReaders;
 use super::state::StateTable;
 use crate::hash::fold;
 
@@ -21,6 +23,8 @@ pub(super) struct BusTopic {
     schema: String,
     first_user: Arc<str>,
     store: Store,
+    /// The readers that have a region, once there was one.
+    regions: Option<Box<RegionReaders>>,
 }
 
 enum Store {
@@ -35,25 +39,8 @@ pub(super) enum ReadPosition {
     State { read: u64, before: u64 },
     /// In an event topic: its place among the readers.
     Event(u32),
-}
-
-impl ReadPosition {
-    pub(super) fn rewind(&mut self) {
-        if let ReadPosition::State { read, .. } = self {
-            *read = 0;
-        }
-    }
-
-    /// Undoes the last collection, in a state topic.
-    pub(super) fn put_back(&mut self) -> bool {
-        match self {
-            ReadPosition::State { read, before } => {
-                *read = *before;
-                true
-            }
-            ReadPosition::Event(_) => false,
-        }
-    }
+    /// Of a region of the topic: its place among such readers.
+    Region(u32),
 }
 
 impl BusTopic {
@@ -68,6 +55,7 @@ impl BusTopic {
             schema: declared.schema.to_owned(),
             first_user: Arc::clone(by),
             store: store(declared.kind),
+            regions: None,
         }
     }
 
@@ -96,6 +84,7 @@ impl BusTopic {
             self.schema = declared.schema.to_owned();
             self.observers = None;
             self.store = store(declared.kind);
+            self.regions = None;
         }
         self.users += 1;
         Ok(())
@@ -125,14 +114,17 @@ impl BusTopic {
     }
 
     pub(super) fn resize(&mut self, reader: &ReadPosition, queue: usize) {
-        if let (Store::Event(log), ReadPosition::Event(place)) = (&mut self.store, reader) {
-            log.resize(*place, queue);
+        match (&mut self.store, &mut self.regions, reader) {
+            (Store::Event(log), _, ReadPosition::Event(place)) => log.resize(*place, queue),
+            (_, Some(regions), ReadPosition::Region(place)) => regions.resize(*place, queue),
+            _ => {}
         }
     }
 
     pub(super) fn leave(&mut self, reader: ReadPosition) -> u64 {
-        match (&mut self.store, reader) {
-            (Store::Event(log), ReadPosition::Event(place)) => log.leave(place),
+        match (&mut self.store, &mut self.regions, reader) {
+            (Store::Event(log), _, ReadPosition::Event(place)) => log.leave(place),
+            (_, Some(regions), ReadPosition::Region(place)) => regions.leave(place),
             _ => 0,
         }
     }
@@ -151,15 +143,93 @@ impl BusTopic {
         match (&self.store, reader) {
             (Store::State(table), ReadPosition::State { read, .. }) => table.has_news(*read),
             (Store::Event(log), ReadPosition::Event(place)) => log.has_news(*place),
+            (_, ReadPosition::Region(place)) => self.regions.as_ref().is_some_and(|regions| regions.has_news(*place)),
             _ => false,
         }
     }
 
     #[inline]
     pub(super) fn publish(&mut self, message: SharedMessage) {
+        if self.regions.is_some() {
+            return self.publish_in_regions(message);
+        }
         match &mut self.store {
-            Store::State(table) => table.publish(message),
+            Store::State(table) => drop(table.publish(message)),
             Store::Event(log) => log.publish(message),
+        }
+    }
+
+    #[cold]
+    fn publish_in_regions(&mut self, message: SharedMessage) {
+        let Some(regions) = &mut self.regions else { return };
+        match &mut self.store {
+            Store::State(table) => {
+                let place = message.place();
+                let (entry, before) = table.publish(message);
+                regions.changed(entry, before.and_then(|before| before.place()), place);
+            }
+            Store::Event(log) => {
+                regions.event(&message);
+                log.publish(message);
+            }
+        }
+    }
+
+    /// Lets a reader get the messages of a region alone, or all again.
+    pub(super) fn set_region(&mut self, reader: &mut ReadPosition, region: Option<Region>, queue: usize) {
+        let table = self.store.table();
+        match (region, &*reader) {
+            (Some(region), ReadPosition::Region(place)) => {
+                if let Some(regions) = &mut self.regions {
+                    regions.move_to(*place, region, table);
+                }
+            }
+            (Some(region), _) => {
+                let regions = self.regions.get_or_insert_with(|| Box::new(RegionReaders::of(table)));
+                let place = regions.join(region, queue, table);
+                let before = std::mem::replace(reader, ReadPosition::Region(place));
+                self.leave(before);
+            }
+            (None, ReadPosition::Region(_)) => {
+                let whole = self.reader(queue);
+                let before = std::mem::replace(reader, whole);
+                self.leave(before);
+            }
+            (None, _) => {}
+        }
+    }
+
+    pub(super) fn rewind(&mut self, reader: &mut ReadPosition) {
+        match (reader, &mut self.regions) {
+            (ReadPosition::State { read, .. }, _) => *read = 0,
+            (ReadPosition::Region(place), Some(regions)) => regions.rewind(*place, self.store.table()),
+            _ => {}
+        }
+    }
+
+    /// Undoes the last collection, in a state topic.
+    pub(super) fn put_back(&mut self, reader: &mut ReadPosition) -> bool {
+        match (reader, &mut self.regions) {
+            (ReadPosition::State { read, before }, _) => {
+                *read = *before;
+                true
+            }
+            (ReadPosition::Region(place), Some(regions)) => regions.put_back(*place, self.store.table().is_some()),
+            _ => false,
+        }
+    }
+
+    pub(super) fn collect_in_region(
+        &mut self,
+        reader: &ReadPosition,
+        inbox: &mut Vec<SharedMessage>,
+        departed: &mut Vec<Departed>,
+    ) -> u64 {
+        match (reader, &mut self.regions) {
+            (ReadPosition::Region(place), Some(regions)) => {
+                regions.collect(*place, self.store.table(), inbox, departed)
+            }
+            _ => 0,
         }
     }
 
@@ -174,6 +244,15 @@ impl BusTopic {
             (Store::Event(log), ReadPosition::Event(place)) => log.collect(*place, inbox),
             // A reader keeps its topic's kind: the kind changes only while the topic is unused.
             _ => 0,
+        }
+    }
+}
+
+impl Store {
+    fn table(&self) -> Option<&StateTable> {
+        match self {
+            Store::State(table) => Some(table),
+            Store::Event(_) => None,
         }
     }
 }

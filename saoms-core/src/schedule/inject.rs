@@ -108,6 +108,7 @@ enum Due {
         topic: TopicId,
         bytes: Vec<u8>,
         key: Option<u64>,
+        place: Option<(i32, i32)>,
         text: String,
     },
     /// A message that a fault holds up.
@@ -175,9 +176,10 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
             (bytes, schema.key(&fields))
         }
     };
+    let place = schema.place(&bytes);
     let mut engine = shared.lock();
     let when = at.map_or(0, Time::as_nanos).max(shared.clock.now());
-    engine.injections.add(when, Due::Message { topic: id, bytes, key, text });
+    engine.injections.add(when, Due::Message { topic: id, bytes, key, place, text });
     engine.look_at = engine.look_at.min(when);
     engine.wake |= when < engine.roles.asleep_until;
     shared.release(engine);
@@ -193,9 +195,9 @@ impl Engine {
         while let Some(entry) = self.injections.waiting.first_entry().filter(|entry| entry.key().0 <= now) {
             let when = entry.key().0;
             match entry.remove() {
-                Due::Message { topic, bytes, key, text } => {
+                Due::Message { topic, bytes, key, place, text } => {
                     // In real time the timer may be late; the message has the time at which it was due.
-                    self.deliver_injection(when, topic, bytes, key, text);
+                    self.deliver_injection(when, topic, (bytes, key, place), text);
                     delivered = true;
                 }
                 Due::Late { topic, message } => self.publish(topic, message, now),
@@ -210,11 +212,17 @@ impl Engine {
         }
     }
 
-    fn deliver_injection(&mut self, time: u64, topic: TopicId, bytes: Vec<u8>, key: Option<u64>, text: String) {
+    fn deliver_injection(
+        &mut self,
+        time: u64,
+        topic: TopicId,
+        (bytes, key, place): (Vec<u8>, Option<u64>, Option<(i32, i32)>),
+        text: String,
+    ) {
         let name = Arc::clone(self.bus.name(topic));
         let cause = self.record_outside(time, text);
         let header = Header { sender: OUTSIDE, sent: Time::from_nanos(time), cause };
-        let message = SharedMessage::from_bytes(header, key, bytes);
+        let message = SharedMessage::from_bytes(header, key, bytes).at(place);
         if let Some(trace) = &mut self.trace {
             trace.message(time, OUTSIDE, self.bus.name_hash(topic), &message);
         }

@@ -18,6 +18,7 @@ mod observer;
 mod order;
 mod reaction;
 mod real_time;
+mod regions;
 mod services;
 mod standstill;
 mod start;

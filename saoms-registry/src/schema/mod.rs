@@ -33,6 +33,8 @@ pub struct Schema {
     name: String,
     /// The field that is the key of a state topic.
     key: Option<String>,
+    /// Place of the field that is the block of a message.
+    place: Option<usize>,
     fields: Vec<Field>,
 }
 
@@ -117,6 +119,12 @@ impl Schema {
         value.as_u64().or_else(|| value.as_i64().map(|number| number as u64))
     }
 
+    /// Column and row of the block of a message that is given as bytes; `None` where its type declares no place.
+    pub fn place(&self, bytes: &[u8]) -> Option<(i32, i32)> {
+        let place = self.place?;
+        read::block(self, place, &mut Reader::new(bytes).ok()?)
+    }
+
     /// True if these bytes are such a message.
     ///
     /// # Errors
@@ -133,6 +141,7 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
     struct Shape {
         name: String,
         key: Option<String>,
+        place: Option<String>,
         fields: Vec<FieldShape>,
     }
     #[derive(Deserialize)]
@@ -151,7 +160,9 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
         })?;
         Ok(Field { name: field.name, kind })
     });
-    Ok(Schema { fields: fields.collect::<Result<_, _>>()?, key: shape.key, name: shape.name })
+    let fields = fields.collect::<Result<Vec<Field>, _>>()?;
+    let place = shape.place.and_then(|place| fields.iter().position(|field| field.name == place));
+    Ok(Schema { fields, key: shape.key, place, name: shape.name })
 }
 
 fn kind(value: &Value, deepest: usize) -> Result<Type, SchemaError> {

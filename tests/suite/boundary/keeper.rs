@@ -1,4 +1,5 @@
-//! A component of a library that keeps bytes, saves its state and takes new values while it runs.
+//! Components of a library that keep bytes, save their state, take new values while they run, or receive the messages
+//! of a region.
 
 use saoms_testkit::Bench;
 
@@ -32,4 +33,13 @@ fn a_restart_of_a_library_goes_on_from_what_it_saved_and_kept() {
     let counts: Vec<&str> =
         lines.iter().filter_map(|line| line.split_once("counts ")).map(|(_, count)| count).collect();
     assert_eq!(counts[..4], ["1", "2", "3", "4"], "{}", run.text);
+}
+
+#[test]
+fn a_library_receives_the_messages_of_a_region_and_what_left_it() {
+    let run = second(&component("S", "good.Spotter", ""), &[library("good")]);
+    let lines: Vec<&str> = run.text.lines().filter_map(|line| Some(line.split_once("sees ")?.1)).collect();
+    let expected = ["[], []", "[], []", "[], []", "[2], []", "[3], []", "[4], []"];
+    assert_eq!(lines[..6], expected, "{}", run.text);
+    assert_eq!(lines[6..8], ["[], [Departed { sender: 0, key: 7 }]", "[], []"], "{}", run.text);
 }

@@ -80,7 +80,7 @@ fn a_class_has_to_be_in_the_library_that_is_named() {
         wrong("good.Sendr", "good").path(),
         &[
             "error[S3015]: the library `fleet/libgood.so` has no class `good.Sendr`",
-            "its classes are `good.Keeper`, `good.Reader` and `good.Sender`",
+            "its classes are `good.Keeper`, `good.Reader`, `good.Sender` and `good.Spotter`",
             "replace `good.Sendr` with `good.Sender`",
         ],
     );

@@ -105,8 +105,8 @@
 //!
 //! # A schema
 //! The schema of a message is `{"name", "fields": [{"name", "type"}]}`, with `"key"`, the name of a field, where a
-//! state topic keeps one message for each value of that field, and `"constants": [{"name", "type", "value"}]` where the
-//! message has such. A type is one of
+//! state topic keeps one message for each value of that field, `"place"`, the name of the field that is its block, and
+//! `"constants": [{"name", "type", "value"}]` where the message has such. A type is one of
 //!
 //! | type | meaning |
 //! | --- | --- |

@@ -120,6 +120,14 @@ impl Host for FakeHost {
         Ok(0)
     }
 
+    fn set_region(&mut self, _: u32, _: Option<saoms_api::Region>) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn departed(&self, _: u32) -> &[saoms_api::Departed] {
+        &[]
+    }
+
     fn keep(&mut self, _: &[u8]) -> Result<u64, Failure> {
         Ok(1)
     }

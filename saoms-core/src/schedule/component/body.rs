@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use saoms_api::host::{DynComponent, Invocation, SharedMessage};
-use saoms_api::{CallError, Cause, Chance, Context, Failure, Saved};
+use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Saved};
 
 use super::host::ComponentHost;
 use crate::bus::{TopicId, TopicReader};
@@ -40,6 +40,9 @@ pub(crate) struct Part {
     /// Schemas of the topics on which messages were sent as bytes.
     pub(crate) schemas: Vec<(TopicId, Arc<Schema>)>,
     pub(crate) subscriptions: Vec<TopicReader>,
+    /// Messages that left the regions of subscriptions, for the present execution or reaction.
+    pub(crate) departed: Vec<Vec<Departed>>,
+    pub(crate) has_departed: bool,
     /// Subscriptions of a failed instance, for the instance that replaces it.
     pub(crate) kept: Vec<TopicReader>,
     pub(crate) outbox: Vec<(TopicId, SharedMessage)>,
@@ -117,6 +120,8 @@ impl Body {
             publishers: Vec::new(),
             schemas: Vec::new(),
             subscriptions: Vec::new(),
+            departed: Vec::new(),
+            has_departed: false,
             kept: Vec::new(),
             outbox: Vec::new(),
             bytes_to_keep: None,
@@ -174,6 +179,8 @@ impl Body {
         if let Err(failure) = &result
             && self.part.keeps_instance(job, failure)
         {
+            self.part.departed.iter_mut().for_each(Vec::clear);
+            self.part.has_departed = false;
             return result;
         }
         if result.is_ok() && self.part.saves && matches!(job, Job::Execute | Job::React) {
@@ -188,6 +195,10 @@ impl Body {
             }
             Ok(()) => {}
             Err(_) => shared.stops.request(&self.part.stops),
+        }
+        if self.part.has_departed {
+            self.part.departed.iter_mut().for_each(Vec::clear);
+            self.part.has_departed = false;
         }
         if result.is_err() || job == Job::Shutdown {
             self.discard();

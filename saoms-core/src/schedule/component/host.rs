@@ -6,7 +6,9 @@ use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
-use saoms_api::{CallError, Cause, Chance, Failure, Level, Record, ReportValue, StopFunction, Time, Value, Work};
+use saoms_api::{
+    CallError, Cause, Chance, Departed, Failure, Level, Record, Region, ReportValue, StopFunction, Time, Value, Work,
+};
 
 use super::body::{KeptBytes, Part, subject};
 use crate::bus::TopicId;
@@ -69,9 +71,9 @@ impl ComponentHost<'_> {
         Ok(task)
     }
 
-    /// Checks a message that a plugin sent as bytes, before it is published.
+    /// Checks a message that a plugin sent as bytes, before it is published; gives its block.
     #[cold]
-    fn check(&mut self, topic: TopicId, message: &SharedMessage) -> Result<(), Failure> {
+    fn check(&mut self, topic: TopicId, message: &SharedMessage) -> Result<Option<(i32, i32)>, Failure> {
         let known = self.part.schemas.iter().find(|(known, _)| *known == topic).map(|(_, schema)| Arc::clone(schema));
         let schema = match known {
             Some(schema) => schema,
@@ -87,7 +89,8 @@ impl ComponentHost<'_> {
         schema.check(message.bytes()).map_err(|error| {
             let name = self.shared.lock().bus.name(topic).to_string();
             Failure::new(format!("topic `{name}`: what it sends is not a message `{}`: {error}", schema.name()))
-        })
+        })?;
+        Ok(schema.place(message.bytes()))
     }
 }
 
@@ -241,8 +244,10 @@ impl Host for ComponentHost<'_> {
     fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure> {
         match self.part.publishers.get(publisher as usize).copied() {
             Some(topic) => {
+                let mut message = message;
                 if !message.is_value() {
-                    self.check(topic, &message)?;
+                    let place = self.check(topic, &message)?;
+                    message = message.at(place);
                     self.part.sent_bytes += message.bytes().len();
                 }
                 if self.part.outbox.len() >= MAX_SENT || self.part.sent_bytes > MAX_SENT_BYTES {
@@ -271,6 +276,24 @@ impl Host for ComponentHost<'_> {
             "class `{}` declares no reference `{name}` with the interface `{interface}`; it declares: {known}",
             self.spec().class.name()
         )))
+    }
+
+    fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure> {
+        let queue = self.spec().task.as_ref().map_or(1, |task| task.queue);
+        let Part { subscriptions, .. } = &mut *self.part;
+        let Some(reader) = subscriptions.get_mut(subscription as usize) else {
+            return Err(Failure::new("this subscription belongs to no topic: keep what `Context::subscribe` returned"));
+        };
+        self.shared.lock().bus.set_region(reader, region, queue);
+        Ok(())
+    }
+
+    fn departed(&self, subscription: u32) -> &[Departed] {
+        self.part.departed.get(subscription as usize).map_or(&[], Vec::as_slice)
+    }
+
+    fn has_departed(&self) -> bool {
+        self.part.has_departed
     }
 
     fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {

@@ -23,7 +23,7 @@ impl Engine {
                 slot.state = SlotState::Leaving;
                 Some(Job::Shutdown)
             }
-            SlotState::Active if now >= slot.react_due => Some(Job::React),
+            SlotState::Active if now >= slot.react_due => self.reaction(index),
             SlotState::Active if now < slot.due => {
                 let when = slot.next_time();
                 self.enqueue(index, when);
@@ -126,7 +126,17 @@ impl Engine {
                 // Events of an execution that was skipped: what came since waits in the queue.
                 continue;
             }
-            let missing = self.bus.collect(subscription, inbox);
+            let missing = if self.bus.has_region(subscription) {
+                let departed = &mut body.part.departed;
+                if departed.len() <= place {
+                    departed.resize_with(place + 1, Vec::new);
+                }
+                let missing = self.bus.collect_in_region(subscription, inbox, &mut departed[place]);
+                body.part.has_departed |= !departed[place].is_empty();
+                missing
+            } else {
+                self.bus.collect(subscription, inbox)
+            };
             slot.statistics.received += inbox.len() as u64;
             if missing > 0 {
                 let (topic, _, before) = lost.unwrap_or((self.bus.topic_of(subscription), place, 0));

@@ -3,7 +3,7 @@
 use super::Engine;
 use super::slot::{NEVER, SlotState};
 use crate::bus::TopicId;
-use crate::schedule::component::body::Body;
+use crate::schedule::component::body::{Body, Job};
 
 impl Engine {
     /// Triggers all components that react to messages of a topic.
@@ -32,11 +32,28 @@ impl Engine {
 
     /// Triggers a component that starts or goes on, if messages wait for it.
     pub(crate) fn react_to_news(&mut self, index: u32, now: u64) {
-        let Some(body) = &self.slots[index as usize].body else { return };
-        let is_news = |subscription| self.bus.is_trigger(subscription) && self.bus.has_news(subscription);
-        if body.part.subscriptions.iter().any(is_news) {
+        if self.has_news(index) {
             self.trigger(index, now);
         }
+    }
+
+    /// True if messages wait for a reaction.
+    fn has_news(&self, index: u32) -> bool {
+        let Some(body) = &self.slots[index as usize].body else { return false };
+        let is_news = |subscription| self.bus.is_trigger(subscription) && self.bus.has_news(subscription);
+        body.part.subscriptions.iter().any(is_news) || body.reactions.iter().any(|inbox| !inbox.is_empty())
+    }
+
+    /// The reaction that is due, unless what triggered it was in none of the component's regions.
+    pub(super) fn reaction(&mut self, index: u32) -> Option<Job> {
+        if self.has_news(index) {
+            return Some(Job::React);
+        }
+        let slot = &mut self.slots[index as usize];
+        slot.react_due = NEVER;
+        let when = slot.next_time();
+        self.enqueue(index, when);
+        None
     }
 
     /// Has a reaction tried again, with the messages that it had.

@@ -155,6 +155,48 @@ static ONE_SENDER: FleetRule = FleetRule {
     check: one_sender,
 };
 
+#[derive(Clone, Copy, Debug, saoms_api::Field)]
+#[field(pair)]
+struct Spot {
+    x: i32,
+    y: i32,
+}
+
+#[derive(Clone, Debug, Message)]
+#[message(key = "number", place = "spot")]
+struct Spotted {
+    number: u32,
+    spot: Spot,
+}
+
+const SPOTTED: Topic<Spotted> = Topic::state("SPOTTED");
+
+/// Moves by a block in each execution, and sees itself within a block around (3,0).
+#[derive(Class)]
+#[class(name = "good.Spotter", periodic)]
+pub struct Spotter {
+    #[publishes(SPOTTED)]
+    publisher: Publisher<Spotted>,
+    #[subscribes(SPOTTED)]
+    spotted: Subscription<Spotted>,
+}
+
+impl Component for Spotter {
+    type Properties = ();
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        context.set_region(&self.spotted, Some(saoms_api::Region::around((3, 0), 1)))
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let seen: Vec<i32> = context.receive(&self.spotted).map(|message| message.spot.x).collect();
+        let departed = context.departed(&self.spotted).to_vec();
+        context.info(format!("sees {seen:?}, {departed:?}"));
+        let spot = Spot { x: context.execution() as i32, y: 0 };
+        context.send(&self.publisher, Spotted { number: 7, spot })
+    }
+}
+
 #[derive(Clone, Debug, Message)]
 struct Count {
     count: u32,
@@ -212,6 +254,6 @@ impl Component for Keeper {
 }
 
 saoms_api::plugin! {
-    classes: [Sender, Reader, Keeper],
+    classes: [Sender, Reader, Keeper, Spotter],
     rules: [ONE_SENDER],
 }
