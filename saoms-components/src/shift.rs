@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterface, TaskInterfaceReference, Time, info};
+use saoms_api::{Class, Component, Context, Failure, Properties, TaskInterfaceReference, Time, info};
 
 /// Properties of shifts.
 #[derive(Clone, Debug, Properties)]
@@ -26,9 +26,11 @@ pub struct ShiftProperties {
 /// Their `runOnStartup` is `false`, so that they wait for their first shift. Its reference `tasks` leads to any
 /// periodic component. A new shift starts in the first execution that is due at its time or later.
 #[derive(Debug, Class)]
-#[class(name = "saoms.Shift", periodic, reference("tasks": TaskInterface, many))]
+#[class(name = "saoms.Shift", periodic)]
 pub struct Shift {
+    #[properties]
     properties: ShiftProperties,
+    #[reference]
     tasks: Vec<TaskInterfaceReference>,
     /// Time of the next shift; `None` after the last one.
     next: Option<Time>,
@@ -40,12 +42,7 @@ pub struct Shift {
 impl Component for Shift {
     type Properties = ShiftProperties;
 
-    fn new(properties: ShiftProperties) -> Result<Self, Failure> {
-        Ok(Shift { properties, tasks: Vec::new(), next: None, ends: None, begun: 0 })
-    }
-
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.tasks = context.references("tasks")?;
         self.next = Some(context.now() + self.properties.start);
         Ok(())
     }

@@ -25,7 +25,7 @@ use crate::bench::{given, loop_class};
 ///
 /// ```
 /// use saoms_api::{
-///     Context, Effector, Entry, Extras, Failure, Knowledge, Loop, LoopClass, Record, Value, record,
+///     Adaptation, Context, Effector, Entry, Extras, Failure, Knowledge, LoopClass, SimpleLoop, Value, record,
 /// };
 /// use saoms_testkit::LoopBench;
 ///
@@ -43,39 +43,23 @@ use crate::bench::{given, loop_class};
 ///
 /// /// Switches a lamp on when it is dark.
 /// #[derive(LoopClass)]
-/// #[looping(name = "test.Dusk", senses("brightness"), effects("isOn"))]
+/// #[looping(name = "test.Dusk")]
 /// struct Dusk {
+///     #[senses]
 ///     brightness: Entry<f64>,
+///     #[effects]
 ///     is_on: Effector<bool>,
 /// }
 ///
-/// impl Loop for Dusk {
+/// impl SimpleLoop for Dusk {
 ///     type Properties = ();
-///     type Knowledge = dyn Knowledge;
-///     type Symptom = Record;
-///     type Decision = Record;
 ///
-///     fn new((): ()) -> Result<Self, Failure> {
-///         Ok(Dusk { brightness: Entry::default(), is_on: Effector::default() })
-///     }
-///
-///     fn initialize(&mut self, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-///         self.brightness = lamp.entry("brightness")?;
-///         self.is_on = lamp.effector("isOn")?;
-///         Ok(())
-///     }
-///
-///     fn analyze(&mut self, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
-///         let dark = self.brightness.get(lamp)? < 10.0 && !self.is_on.get(lamp)?;
-///         Ok(dark.then(|| record!(is_dark: "is dark")))
-///     }
-///
-///     fn plan(&mut self, _: Record, _: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Record>, Failure> {
-///         Ok(Some(record!(switches_on: "switches it on")))
-///     }
-///
-///     fn execute(&mut self, _: Record, lamp: &mut dyn Knowledge, _: &mut Context<'_>) -> Result<(), Failure> {
-///         self.is_on.set(lamp, true)
+///     fn adapt(&mut self, lamp: &dyn Knowledge, _: &mut Context<'_>) -> Result<Option<Adaptation>, Failure> {
+///         if self.brightness.get(lamp)? >= 10.0 || self.is_on.get(lamp)? {
+///             return Ok(None);
+///         }
+///         let dark = Adaptation::of(record!(is_dark: "is dark"));
+///         Ok(Some(dark.decides(record!(switches_on: "switches it on")).sets(&self.is_on, true)))
 ///     }
 /// }
 ///

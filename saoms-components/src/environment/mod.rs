@@ -45,13 +45,7 @@ pub struct EnvironmentProperties {
 /// Votes that the run is done when the scenario is over and all its luggage is delivered or given up, and that work was
 /// given up if any of it was.
 #[derive(Debug, Class)]
-#[class(
-    name = "saoms.Environment",
-    periodic,
-    publishes(ENVIRONMENT),
-    subscribes(EVENT_LUGGAGE, ROBOT_LIST, AREA),
-    also("launch.Environment")
-)]
+#[class(name = "saoms.Environment", periodic, also("launch.Environment"))]
 pub struct Environment {
     scenario: Scenario,
     playing: Option<(Time, Player)>,
@@ -62,9 +56,13 @@ pub struct Environment {
     map: Option<Map>,
     validator: MessageValidator,
     has_world: bool,
+    #[publishes(ENVIRONMENT)]
     events: Publisher<EnvironmentEvent>,
+    #[subscribes(ROBOT_LIST)]
     robots: Subscription<RobotList>,
+    #[subscribes(EVENT_LUGGAGE)]
     responses: Subscription<EventLuggage>,
+    #[subscribes(AREA)]
     area: Subscription<Area>,
     done: bool,
 }
@@ -91,10 +89,6 @@ impl Component for Environment {
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.events = context.publish(&ENVIRONMENT)?;
-        self.robots = context.subscribe(&ROBOT_LIST)?;
-        self.responses = context.subscribe(&EVENT_LUGGAGE)?;
-        self.area = context.subscribe(&AREA)?;
         let now = Timestamp::now(context);
         context.console(format_args!("Environment tests start at {now}"));
         if self.scenario.lines().is_empty() {

@@ -36,10 +36,6 @@ pub struct Gps {
 
 impl Component for Gps {
     type Properties = ();
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(Gps::default())
-    }
 }
 
 impl GpsInterface for Gps {

@@ -1,6 +1,6 @@
 use saoms_api::{CallError, Class, Component, Context, Failure, Finding, Place, Properties, Work, info};
 
-use super::{Point, RobotInterface, RobotInterfaceReference};
+use super::{Point, RobotInterfaceReference};
 
 /// Properties of a navigator.
 #[derive(Clone, Debug, Properties)]
@@ -14,17 +14,14 @@ pub struct NavigatorProperties {
 
 /// Leads a robot along a path, one step in each period.
 #[derive(Debug, Class)]
-#[class(
-    name = "resources.robotEnvironment.Navigator",
-    periodic,
-    reference("move": RobotInterface)
-)]
+#[class(name = "resources.robotEnvironment.Navigator", periodic)]
 pub struct Navigator {
     path: Vec<Point>,
     step: f64,
     next: usize,
     /// The last position that the robot reported.
     place: Point,
+    #[reference("move")]
     robot: RobotInterfaceReference,
 }
 
@@ -50,7 +47,6 @@ impl Component for Navigator {
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.robot = context.reference("move")?;
         context.vote(Work::Open);
         Ok(())
     }

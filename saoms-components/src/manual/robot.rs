@@ -1,6 +1,6 @@
 use saoms_api::{Class, Component, Context, Failure, Properties, info, interface};
 
-use super::{GpsInterface, GpsInterfaceReference, Point};
+use super::{GpsInterfaceReference, Point};
 
 /// Service of the robot for the component that drives it.
 #[interface(name = "resources.robotEnvironment.RobotInterface")]
@@ -34,23 +34,19 @@ pub struct ManualRobotProperties {
 #[class(
     name = "resources.robotEnvironment.Robot",
     passive,
-    service("move": RobotInterface),
-    reference("updatePosition": GpsInterface)
+    service("move": RobotInterface)
 )]
 pub struct ManualRobot {
+    #[properties]
     properties: ManualRobotProperties,
+    #[reference("updatePosition")]
     gps: GpsInterfaceReference,
 }
 
 impl Component for ManualRobot {
     type Properties = ManualRobotProperties;
 
-    fn new(properties: ManualRobotProperties) -> Result<Self, Failure> {
-        Ok(ManualRobot { properties, gps: GpsInterfaceReference::default() })
-    }
-
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.gps = context.reference("updatePosition")?;
         let ManualRobotProperties { id, nickname, weight, height, price } = &self.properties;
         info!(context, "{id} `{nickname}`: {weight} kg, {height} cm, {price} EUR");
         Ok(())

@@ -18,52 +18,31 @@ use crate::validation::{MessageValidator, Problem, Validate};
 /// world, are reported with their sender, counted, and dropped. Luggage that all robots refuse, or for which no robot
 /// is left, is reported as given up.
 #[derive(Debug, Class)]
-#[class(
-    name = "saoms.MasterEnvironment",
-    periodic,
-    subscribes(ENVIRONMENT, AREA, EVENT_LUGGAGE, ROBOT_LIST),
-    publishes(EVENT_LUGGAGE, EXCEPTIONAL_EVENT, FAULT),
-    also("unibg.saoms.MasterEnvironmentManagingSystem")
-)]
+#[class(name = "saoms.MasterEnvironment", periodic, also("unibg.saoms.MasterEnvironmentManagingSystem"))]
 pub struct MasterEnvironment {
     validator: MessageValidator,
     filter: EventFilter,
     open: OpenLuggage,
+    #[subscribes(ENVIRONMENT)]
     events: Subscription<EnvironmentEvent>,
+    #[subscribes(AREA)]
     area: Subscription<Area>,
+    #[subscribes(EVENT_LUGGAGE)]
     responses: Subscription<EventLuggage>,
+    #[subscribes(ROBOT_LIST)]
     robots: Subscription<RobotList>,
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[publishes(EXCEPTIONAL_EVENT)]
     exceptional: Publisher<ExceptionalEvent>,
+    #[publishes(FAULT)]
     faults: Publisher<Fault>,
 }
 
 impl Component for MasterEnvironment {
     type Properties = ();
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(MasterEnvironment {
-            validator: MessageValidator::default(),
-            filter: EventFilter::default(),
-            open: OpenLuggage::default(),
-            events: Subscription::default(),
-            area: Subscription::default(),
-            responses: Subscription::default(),
-            robots: Subscription::default(),
-            luggage: Publisher::default(),
-            exceptional: Publisher::default(),
-            faults: Publisher::default(),
-        })
-    }
-
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.events = context.subscribe(&ENVIRONMENT)?;
-        self.area = context.subscribe(&AREA)?;
-        self.responses = context.subscribe(&EVENT_LUGGAGE)?;
-        self.robots = context.subscribe(&ROBOT_LIST)?;
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.exceptional = context.publish(&EXCEPTIONAL_EVENT)?;
-        self.faults = context.publish(&FAULT)?;
         context.count("luggage.requested", 0);
         context.count("luggage.ignored", 0);
         let now = Timestamp::now(context);

@@ -35,8 +35,7 @@ use referee::Referee;
 #[class(
     name = "saoms.World",
     periodic,
-    publishes(AREA, COLLISION),
-    subscribes(ENVIRONMENT, EVENT_LUGGAGE, ROBOT_LIST),
+    publishes(AREA),
     service("hardware": Hardware)
 )]
 pub struct World {
@@ -44,9 +43,13 @@ pub struct World {
     referee: Referee,
     stock: Stock,
     validator: MessageValidator,
+    #[subscribes(ENVIRONMENT)]
     events: Subscription<EnvironmentEvent>,
+    #[subscribes(ROBOT_LIST)]
     robots: Subscription<RobotList>,
+    #[subscribes(EVENT_LUGGAGE)]
     responses: Subscription<EventLuggage>,
+    #[publishes(COLLISION)]
     collisions: Publisher<Collision>,
     vote: Option<Work>,
     /// Number of collisions.
@@ -76,10 +79,6 @@ impl Component for World {
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.events = context.subscribe(&ENVIRONMENT)?;
-        self.robots = context.subscribe(&ROBOT_LIST)?;
-        self.responses = context.subscribe(&EVENT_LUGGAGE)?;
-        self.collisions = context.publish(&COLLISION)?;
         let area = context.publish(&AREA)?;
         context.send(&area, self.referee.map().into())?;
         for section in [

@@ -16,12 +16,12 @@ use super::MasterRobotKnowledge;
     name = "saoms.master.AwakeAsleepMS",
     knowledge = MasterRobotKnowledge,
     senses("piecesPerRobot", "counter", "robots", "asleep", "active"),
-    effects("onShift"),
-    subscribes(EXCEPTIONAL_EVENT),
-    publishes(ROBOT_STATE)
+    effects("onShift")
 )]
 pub struct MasterAwakeAsleep {
+    #[subscribes(EXCEPTIONAL_EVENT)]
     events: Subscription<ExceptionalEvent>,
+    #[publishes(ROBOT_STATE)]
     states: Publisher<RobotState>,
 }
 
@@ -98,16 +98,6 @@ impl Loop for MasterAwakeAsleep {
     type Knowledge = MasterRobotKnowledge;
     type Symptom = Workload;
     type Decision = AwakeAsleepDecision;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(MasterAwakeAsleep::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut MasterRobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.events = context.subscribe(&EXCEPTIONAL_EVENT)?;
-        self.states = context.publish(&ROBOT_STATE)?;
-        Ok(())
-    }
 
     fn analyze(
         &mut self,

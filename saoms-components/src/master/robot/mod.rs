@@ -34,12 +34,12 @@ pub struct MasterRobotProperties {
     periodic,
     knowledge = MasterRobotKnowledge,
     loops(MasterRobotList, MasterAwakeAsleep),
-    subscribes(ROBOT_LIST),
     also("unibg.saoms.MasterRobotManagingSystem")
 )]
 pub struct MasterRobot {
     knowledge: MasterRobotKnowledge,
     loops: Loops,
+    #[subscribes(ROBOT_LIST)]
     robots: Subscription<RobotList>,
 }
 
@@ -53,7 +53,6 @@ impl Component for MasterRobot {
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.loops = context.loops()?;
-        self.robots = context.subscribe(&ROBOT_LIST)?;
         let now = Timestamp::now(context);
         context.console(format_args!("MasterRobotManagingSystem starts at {now}"));
         self.loops.initialize(&mut self.knowledge, context)

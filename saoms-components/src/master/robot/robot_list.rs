@@ -19,10 +19,6 @@ impl Loop for MasterRobotList {
     type Symptom = Record;
     type Decision = Record;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(MasterRobotList::default())
-    }
-
     fn analyze(
         &mut self,
         knowledge: &mut MasterRobotKnowledge,

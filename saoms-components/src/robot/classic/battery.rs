@@ -57,10 +57,6 @@ impl Loop for ClassicBattery {
     type Symptom = ClassicBatterySymptom;
     type Decision = ClassicBatteryDecision;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicBattery)
-    }
-
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.variables.in_charge {
             knowledge.variables.busy |= knowledge.charging;

@@ -74,10 +74,6 @@ impl Loop for ClassicCollision {
     type Symptom = ClassicCollisionSymptom;
     type Decision = ClassicCollisionDecision;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicCollision)
-    }
-
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,

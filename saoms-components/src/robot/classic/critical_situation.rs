@@ -21,17 +21,22 @@ use crate::robot::{Help, RobotKnowledge};
     senses(
         "battery", "block", "transporter", "readyToGoUnderCharge", "hasLuggage", "standsInFor", "robots", "helpRequests"
     ),
-    effects("critical", "healer", "busy", "transporter", "job", "inCharge", "asleep", "standsInFor"),
-    publishes(CRITICAL_SITUATION, ROBOT_STATE, ROBOT_LIST, EVENT_LUGGAGE, POSITION),
-    subscribes(CRITICAL_SITUATION, FAULT)
+    effects("critical", "healer", "busy", "transporter", "job", "inCharge", "asleep", "standsInFor")
 )]
 pub struct ClassicCriticalSituation {
+    #[subscribes(FAULT)]
     faults: Subscription<Fault>,
+    #[publishes(CRITICAL_SITUATION)]
     situations: Publisher<CriticalSituation>,
+    #[subscribes(CRITICAL_SITUATION)]
     situations_heard: Subscription<CriticalSituation>,
+    #[publishes(ROBOT_STATE)]
     states: Publisher<RobotState>,
+    #[publishes(ROBOT_LIST)]
     robots: Publisher<RobotList>,
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[publishes(POSITION)]
     positions: Publisher<Position>,
     /// Cause of the robot's breakdown.
     cause: Cause,
@@ -104,21 +109,6 @@ impl Loop for ClassicCriticalSituation {
     type Knowledge = RobotKnowledge;
     type Symptom = ClassicCriticalSymptom;
     type Decision = ClassicCriticalDecision;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicCriticalSituation::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.faults = context.subscribe(&FAULT)?;
-        self.situations = context.publish(&CRITICAL_SITUATION)?;
-        self.situations_heard = context.subscribe(&CRITICAL_SITUATION)?;
-        self.states = context.publish(&ROBOT_STATE)?;
-        self.robots = context.publish(&ROBOT_LIST)?;
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.positions = context.publish(&POSITION)?;
-        Ok(())
-    }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, situation) in context.receive(&self.situations_heard).with_headers() {

@@ -14,10 +14,10 @@ use crate::robot::{Job, Request, RobotKnowledge};
     name = "saoms.classic.EventLuggageMS",
     knowledge = RobotKnowledge,
     senses("block", "inCharge", "readyToGoUnderCharge", "requests"),
-    effects("busy", "transporter", "job"),
-    publishes(EVENT_LUGGAGE)
+    effects("busy", "transporter", "job")
 )]
 pub struct ClassicEventLuggage {
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
     /// Cause of its interest; its next decision about that luggage follows from it.
     said: Cause,
@@ -78,15 +78,6 @@ impl Loop for ClassicEventLuggage {
     type Knowledge = RobotKnowledge;
     type Symptom = ClassicLuggageSymptom;
     type Decision = ClassicLuggageDecision;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicEventLuggage::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        Ok(())
-    }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hardware.has_entered() {

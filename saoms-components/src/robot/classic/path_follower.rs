@@ -19,12 +19,14 @@ use crate::robot::actions::Outcome;
     effects(
         "drive", "grip", "next", "untold", "busy", "reachingCharge", "readyToGoUnderCharge", "inCharge", "asleep",
         "relieved"
-    ),
-    publishes(POSITION, EVENT_LUGGAGE, CRITICAL_SITUATION)
+    )
 )]
 pub struct ClassicPathFollower {
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[publishes(POSITION)]
     positions: Publisher<Position>,
+    #[publishes(CRITICAL_SITUATION)]
     situations: Publisher<CriticalSituation>,
 }
 
@@ -114,15 +116,8 @@ impl Loop for ClassicPathFollower {
     type Symptom = ClassicPathSymptom;
     type Decision = ClassicPathDecision;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicPathFollower::default())
-    }
-
-    fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         (knowledge.polling.moves, knowledge.polling.handling) = (true, true);
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.positions = context.publish(&POSITION)?;
-        self.situations = context.publish(&CRITICAL_SITUATION)?;
         Ok(())
     }
 

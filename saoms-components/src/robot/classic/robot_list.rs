@@ -8,10 +8,10 @@ use crate::robot::RobotKnowledge;
 #[looping(
     name = "saoms.classic.RobotListMS",
     knowledge = RobotKnowledge,
-    senses("battery", "inCharge", "asleep", "robots"),
-    publishes(ROBOT_LIST)
+    senses("battery", "inCharge", "asleep", "robots")
 )]
 pub struct ClassicRobotList {
+    #[publishes(ROBOT_LIST)]
     robots: Publisher<RobotList>,
     known: usize,
 }
@@ -21,15 +21,6 @@ impl Loop for ClassicRobotList {
     type Knowledge = RobotKnowledge;
     type Symptom = Record;
     type Decision = Record;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicRobotList::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.robots = context.publish(&ROBOT_LIST)?;
-        Ok(())
-    }
 
     fn analyze(
         &mut self,

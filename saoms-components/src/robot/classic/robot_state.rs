@@ -9,10 +9,10 @@ use crate::robot::RobotKnowledge;
     name = "saoms.classic.RobotMS",
     knowledge = RobotKnowledge,
     senses("healer"),
-    effects("inCharge", "asleep", "busy", "readyToGoUnderCharge", "standsInFor", "relieved"),
-    subscribes(ROBOT_STATE)
+    effects("inCharge", "asleep", "busy", "readyToGoUnderCharge", "standsInFor", "relieved")
 )]
 pub struct ClassicRobotState {
+    #[subscribes(ROBOT_STATE)]
     states: Subscription<RobotState>,
     /// Commands that arrived for this execution. They are judged once the robot has heard which robots are active.
     arrived: Vec<(Header, RobotState)>,
@@ -62,15 +62,6 @@ impl Loop for ClassicRobotState {
     type Knowledge = RobotKnowledge;
     type Symptom = ClassicRobotSymptom;
     type Decision = ClassicRobotDecision;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(ClassicRobotState::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.states = context.subscribe(&ROBOT_STATE)?;
-        Ok(())
-    }
 
     fn monitor(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let arrived = context.receive(&self.states).with_headers();

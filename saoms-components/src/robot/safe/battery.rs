@@ -151,10 +151,6 @@ impl Loop for SafeBattery {
     type Symptom = SafeBatterySymptom;
     type Decision = SafeBatteryDecision;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafeBattery::default())
-    }
-
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         if knowledge.hardware.has_entered() {
             self.look_at_battery(knowledge, context);

@@ -67,10 +67,6 @@ impl Loop for SafeCollision {
     type Symptom = SafeCollisionSymptom;
     type Decision = SafeCollisionDecision;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafeCollision::default())
-    }
-
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,

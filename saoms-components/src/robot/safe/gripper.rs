@@ -10,10 +10,10 @@ use crate::robot::{Job, JobEnd, RobotKnowledge};
     name = "saoms.GripperMS",
     knowledge = RobotKnowledge,
     senses("block", "busy", "hasLuggage", "job", "moving", "handling", "lasts", "wayHome"),
-    effects("grip", "untold"),
-    publishes(EVENT_LUGGAGE)
+    effects("grip", "untold")
 )]
 pub struct SafeGripper {
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
 }
 
@@ -87,13 +87,8 @@ impl Loop for SafeGripper {
     type Symptom = SafeGripperSymptom;
     type Decision = SafeGripperDecision;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafeGripper::default())
-    }
-
-    fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+    fn initialize(&mut self, knowledge: &mut RobotKnowledge, _context: &mut Context<'_>) -> Result<(), Failure> {
         knowledge.polling.handling = true;
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
         Ok(())
     }
 

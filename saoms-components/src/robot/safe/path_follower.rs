@@ -19,12 +19,12 @@ use super::waiting::Waiting;
         "busy", "hasLuggage", "reachingCharge", "inCharge", "stopAPeriod", "critical", "job", "mustCharge", "relieved",
         "offersHelp", "handling", "lasts", "positions"
     ),
-    effects("drive", "next", "wanted", "readyToGoUnderCharge", "reachingCharge"),
-    publishes(POSITION)
+    effects("drive", "next", "wanted", "readyToGoUnderCharge", "reachingCharge")
 )]
 pub struct SafePathFollower {
     said: Option<Position>,
     waiting: Waiting,
+    #[publishes(POSITION)]
     positions: Publisher<Position>,
 }
 
@@ -92,13 +92,8 @@ impl Loop for SafePathFollower {
     type Symptom = SafePathSymptom;
     type Decision = SafePathDecision;
 
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafePathFollower::default())
-    }
-
     fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         knowledge.polling.moves = true;
-        self.positions = context.publish(&POSITION)?;
         // All robots have to know which blocks are held before the first one moves.
         self.say(context, knowledge.position())
     }

@@ -11,11 +11,11 @@ use crate::robot::RobotKnowledge;
 #[looping(
     name = "saoms.RobotListMS",
     knowledge = RobotKnowledge,
-    senses("battery", "inCharge", "asleep", "critical", "chargeBlock"),
-    publishes(ROBOT_LIST)
+    senses("battery", "inCharge", "asleep", "critical", "chargeBlock")
 )]
 pub struct SafeRobotList {
     said: Option<RobotList>,
+    #[publishes(ROBOT_LIST)]
     robots: Publisher<RobotList>,
 }
 
@@ -58,15 +58,6 @@ impl Loop for SafeRobotList {
     type Knowledge = RobotKnowledge;
     type Symptom = SafeRobotListSymptom;
     type Decision = SayRobot;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafeRobotList::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.robots = context.publish(&ROBOT_LIST)?;
-        Ok(())
-    }
 
     fn analyze(
         &mut self,

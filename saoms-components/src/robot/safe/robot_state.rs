@@ -19,10 +19,10 @@ const TURN: u32 = 5;
         "busy", "transporter", "critical", "block", "chargeBlock", "offersHelp", "relieved", "robots", "requests",
         "helpRequests"
     ),
-    effects("asleep", "relieved", "standsInFor"),
-    subscribes(ROBOT_STATE)
+    effects("asleep", "relieved", "standsInFor")
 )]
 pub struct SafeRobotState {
+    #[subscribes(ROBOT_STATE)]
     states: Subscription<RobotState>,
     /// Commands that arrived and are not judged yet. They are judged once the robot has heard which robots are active.
     arrived: Vec<(Header, RobotState)>,
@@ -115,15 +115,6 @@ impl Loop for SafeRobotState {
     type Knowledge = RobotKnowledge;
     type Symptom = SafeRobotSymptom;
     type Decision = SafeRobotDecision;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafeRobotState::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.states = context.subscribe(&ROBOT_STATE)?;
-        Ok(())
-    }
 
     fn monitor(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let arrived = context.receive(&self.states).with_headers();

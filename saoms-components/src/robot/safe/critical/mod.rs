@@ -41,15 +41,18 @@ use substitute::Substitution;
     effects(
         "job", "busy", "transporter", "hasLuggage", "healer", "critical", "asleep", "inCharge", "offersHelp",
         "standsInFor", "relieved", "trouble", "reserve"
-    ),
-    publishes(CRITICAL_SITUATION, ROBOT_STATE, EVENT_LUGGAGE),
-    subscribes(CRITICAL_SITUATION, FAULT)
+    )
 )]
 pub struct SafeCriticalSituation {
+    #[publishes(CRITICAL_SITUATION)]
     situations: Publisher<CriticalSituation>,
+    #[subscribes(CRITICAL_SITUATION)]
     situations_heard: Subscription<CriticalSituation>,
+    #[subscribes(FAULT)]
     faults: Subscription<Fault>,
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[publishes(ROBOT_STATE)]
     states: Publisher<RobotState>,
     /// Cause of the robot's breakdown.
     cause: Cause,
@@ -72,19 +75,6 @@ impl Loop for SafeCriticalSituation {
     type Knowledge = RobotKnowledge;
     type Symptom = SafeCriticalSymptom;
     type Decision = SafeCriticalDecision;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafeCriticalSituation::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.situations = context.publish(&CRITICAL_SITUATION)?;
-        self.situations_heard = context.subscribe(&CRITICAL_SITUATION)?;
-        self.faults = context.subscribe(&FAULT)?;
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        self.states = context.publish(&ROBOT_STATE)?;
-        Ok(())
-    }
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, fault) in context.receive(&self.faults).with_headers() {

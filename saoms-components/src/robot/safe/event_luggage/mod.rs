@@ -30,8 +30,7 @@ const PATIENCE: u64 = 4;
         "block", "battery", "asleep", "requests", "lasts", "mustCharge", "relieved", "offersHelp", "moving",
         "handling", "loaded"
     ),
-    effects("job", "busy", "transporter", "hasLuggage", "healer", "relieved", "loaded", "untold", "reserve"),
-    publishes(EVENT_LUGGAGE)
+    effects("job", "busy", "transporter", "hasLuggage", "healer", "relieved", "loaded", "untold", "reserve")
 )]
 pub struct SafeEventLuggage {
     /// Position of the robot when it announced its interest.
@@ -46,6 +45,7 @@ pub struct SafeEventLuggage {
     was_at_charger: bool,
     attempt: Attempt,
     idle: Idle,
+    #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
 }
 
@@ -54,15 +54,6 @@ impl Loop for SafeEventLuggage {
     type Knowledge = RobotKnowledge;
     type Symptom = SafeLuggageSymptom;
     type Decision = SafeLuggageDecision;
-
-    fn new((): ()) -> Result<Self, Failure> {
-        Ok(SafeEventLuggage::default())
-    }
-
-    fn initialize(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.luggage = context.publish(&EVENT_LUGGAGE)?;
-        Ok(())
-    }
 
     fn analyze(
         &mut self,
