@@ -19,6 +19,9 @@ use super::value;
 use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
 
+/// Greatest number of end tags that are proposed where a file ends too early.
+const MAX_MISSING_TAGS: usize = 8;
+
 /// Finds the ends and the parents of all elements.
 pub(super) fn nest(lexer: &mut Lexer<'_>) {
     let input = lexer.input;
@@ -262,13 +265,19 @@ impl<'a> Nest<'_, 'a> {
             let is_doubtful = self.token(node.token).is_damaged && top + 1 == self.count;
             if !is_doubtful && !self.lexer.is_cut_short && !self.has_second_root {
                 let open = self.named(&node);
+                let all: Vec<_> = self.open.iter().rev().map(|open| self.named(self.node(*open)).name).collect();
                 self.lexer.faults.add(|| {
                     let message = tags::without_end_tag(self.input, open);
                     let one = self.input.ended(&codes::XML_UNCLOSED, open.at.start, open.at.end, message);
-                    let (length, tag) = (self.input.len(), format!("</{}>", open.name));
+                    if all.len() > MAX_MISSING_TAGS {
+                        return one;
+                    }
+                    let length = self.input.len();
+                    let tags: Vec<String> = all.iter().map(|name| format!("</{name}>")).collect();
                     let end = self.input.at(length, length);
                     let break_before = if self.input.text.ends_with('\n') { "" } else { "\n" };
-                    one.suggest(format!("add {} at the end", quoted(&tag)), end, format!("{break_before}{tag}\n"))
+                    let message = format!("add {} at the end", quoted(&tags.concat()));
+                    one.suggest(message, end, format!("{break_before}{}\n", tags.join("\n")))
                 });
             }
         }

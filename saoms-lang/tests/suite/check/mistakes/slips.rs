@@ -476,3 +476,12 @@ fn a_property_of_the_composite_around_is_handed_in() {
     "#]]
     .assert_eq(&told);
 }
+
+#[test]
+fn a_file_that_ends_too_early_is_closed_with_all_end_tags() {
+    let whole = fleet(r#"<component name="A"><implementation.java class="example.Robot001"/>"#);
+    let cut = whole.split("</composite>").next().unwrap();
+    let found = faults_of(&[cut], &[]);
+    assert_eq!(found.matches("error").count(), 1, "{found}");
+    assert!(found.contains("add `</component></composite>` at the end"), "{found}");
+}
