@@ -12,9 +12,23 @@ use saoms_lang::source::identity;
 /// A name is a path relative to the folder of its composite, or to a place of the search; `lib` before the name and
 /// `.so` behind it may be left out.
 impl LibraryResolver for Search {
-    fn open(&self, folder: &Path, name: &str, registry: &mut Registry) -> LibraryLink {
-        match self.find(folder, name) {
-            Err(looked) => LibraryLink::Missing(looked),
+    fn open(
+        &self,
+        folder: &Path,
+        name: &str,
+        outside: &dyn Fn(&Path) -> Option<PathBuf>,
+        registry: &mut Registry,
+    ) -> LibraryLink {
+        let mut refused = None;
+        let mut is_allowed = |path: &Path| {
+            let outside = outside(path).filter(|_| !self.is_in_a_place(path));
+            let is_allowed = outside.is_none();
+            refused = refused.take().or(outside);
+            is_allowed
+        };
+        match self.find_allowed(folder, name, &mut is_allowed) {
+            // Whether there is one outside is not revealed.
+            Err(looked) => refused.map_or(LibraryLink::Missing(looked), LibraryLink::Outside),
             Ok(path) => match registered(&path, self, registry) {
                 Ok(path) => LibraryLink::To(path),
                 Err(message) => LibraryLink::Faulty(message),
@@ -40,6 +54,16 @@ impl Search {
     /// # Errors
     /// The files that it would have been, where none is there.
     pub fn find(&self, folder: &Path, name: &str) -> Result<PathBuf, Vec<PathBuf>> {
+        self.find_allowed(folder, name, &mut |_| true)
+    }
+
+    /// As [`find`](Self::find), without looking at files that must not be read.
+    fn find_allowed(
+        &self,
+        folder: &Path,
+        name: &str,
+        is_allowed: &mut dyn FnMut(&Path) -> bool,
+    ) -> Result<PathBuf, Vec<PathBuf>> {
         let names = files(name);
         let mut looked = Vec::new();
         let beside = names.iter().map(|name| folder.join(name));
@@ -55,7 +79,7 @@ impl Search {
         let folders =
             self.folders.iter().chain(&self.around).flat_map(|folder| names.iter().map(|name| folder.join(name)));
         for path in beside.chain(named).chain(folders) {
-            if fs::metadata(&path).is_ok_and(|found| found.is_file()) {
+            if is_allowed(&path) && fs::metadata(&path).is_ok_and(|found| found.is_file()) {
                 return Ok(path);
             }
             if !looked.contains(&path) {

@@ -45,14 +45,12 @@ impl Search {
 
     /// True if the user named a library, or the folder that it is in.
     fn is_named(&self, path: &Path) -> bool {
-        let folder =
-            path.parent().map(|folder| identity(if folder.as_os_str().is_empty() { ".".as_ref() } else { folder }));
-        let file = identity(path);
-        self.named
-            .iter()
-            .chain(&self.folders)
-            .map(|place| identity(place))
-            .any(|place| place == file || folder.as_ref() == Some(&place))
+        is_among(path, self.named.iter().chain(&self.folders))
+    }
+
+    /// True if a library is one that was named, or in one of the folders that are searched.
+    pub(super) fn is_in_a_place(&self, path: &Path) -> bool {
+        self.is_named(path) || is_among(path, self.around.iter())
     }
 
     /// The classes of a registry together with those of all libraries that are found, and what is wrong with these.
@@ -127,6 +125,16 @@ impl Search {
         }
         found
     }
+}
+
+/// True if a file is one of these places, or in one of them.
+fn is_among<'a>(path: &Path, mut places: impl Iterator<Item = &'a PathBuf>) -> bool {
+    let here = |folder: &Path| identity(if folder.as_os_str().is_empty() { ".".as_ref() } else { folder });
+    let (folder, file) = (path.parent().map(here), identity(path));
+    places.any(|place| {
+        let place = here(place);
+        place == file || folder.as_ref() == Some(&place)
+    })
 }
 
 /// The libraries of a folder, by name; none where it does not exist.

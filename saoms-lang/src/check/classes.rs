@@ -153,6 +153,13 @@ fn is_in_library(
             }
         }
         Some(LibraryLink::Faulty(message)) => wrong(message.clone()),
+        Some(LibraryLink::Outside(path)) => {
+            let message = "this library is outside the folder of the composite, and is not read";
+            Diagnostic::new(&codes::FILE_OUTSIDE, library.location, message).help(format!(
+                "name {} or its folder with `--plugin`, or allow it with `--allow-outside`",
+                quoted(&path.display().to_string())
+            ))
+        }
         Some(LibraryLink::Missing(looked)) => {
             let one = wrong(format!("there is no library {}", quoted(library)));
             let looked: Vec<String> = looked.iter().map(|path| path.display().to_string()).collect();

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use super::head::Head;
 use super::index::{self, Index};
-use crate::diagnostic::{Candidates, Diagnostics, quoted};
+use crate::diagnostic::{Candidates, Diagnostic, Diagnostics, codes, quoted};
 use crate::limits::FOLDERS_BESIDE;
 use crate::load::description::{self, Description, Entry, Kind};
 use crate::load::{MAX_SIZE, ReadContext};
-use crate::source::{OpenTexts, Sources, identity};
+use crate::source::{Location, OpenTexts, Sources, identity};
 use crate::syntax::escaped;
 
 /// The descriptions of contributions, each read once and when it is needed.
@@ -21,6 +21,8 @@ pub(super) struct Imports {
     /// Those that are in the folders around contributions.
     beside: HashMap<PathBuf, Vec<Neighbour>>,
     descriptions: HashMap<PathBuf, Option<Description>>,
+    /// The contributions that import something from a folder that must not be read, with what it is.
+    refused: HashSet<(PathBuf, String)>,
 }
 
 /// A contribution that others may import from.
@@ -32,6 +34,12 @@ struct Neighbour {
 impl Neighbour {
     fn of(folder: PathBuf) -> Self {
         Self { identity: identity(&folder), folder }
+    }
+
+    /// True if the contribution in a folder may read this one: it may be read anyway, or is beside it, and no link to
+    /// elsewhere.
+    fn is_open(&self, own: &Path, open: &OpenTexts) -> bool {
+        open.outside(&self.folder).is_none() || self.identity.parent() == own.parent()
     }
 }
 
@@ -54,7 +62,7 @@ impl Imports {
         if !self.imports(root, kind, what, context) {
             return Vec::new();
         }
-        let mut all = self.others(root, kind, what);
+        let mut all = self.others(root, kind, what, context);
         all.retain(|other| {
             let description = self.description(other, context);
             description.is_some_and(|one| one.exports.iter().any(|entry| entry.is(kind, what)))
@@ -82,10 +90,17 @@ impl Imports {
         })
     }
 
-    /// True if the description of the contribution in `root` could not be read, which is reported: what it imports is
-    /// not known.
-    pub(super) fn is_faulty(&mut self, root: &Path, context: &mut ReadContext<'_>) -> bool {
-        self.description(root, context).is_some_and(|one| one.is_faulty)
+    /// True if what the contribution in `root` imports of these namespaces is not known, which is reported: its
+    /// description could not be read, or names a folder that must not be.
+    pub(super) fn is_unknown(
+        &mut self,
+        root: &Path,
+        namespaces: Option<&[String]>,
+        context: &mut ReadContext<'_>,
+    ) -> bool {
+        let is_refused = |one: &String| self.refused.contains(&(root.to_owned(), one.clone()));
+        namespaces.unwrap_or_default().iter().any(is_refused)
+            || self.description(root, context).is_some_and(|one| one.is_faulty)
     }
 
     /// The reason why a composite of these namespaces cannot be found through the description of the contribution in
@@ -105,7 +120,7 @@ impl Imports {
             let is_imported = self.imports(root, Kind::Namespace, namespace, context);
             let shown = quoted(namespace);
             let from = self.exporters(root, Kind::Namespace, namespace, context);
-            let mut others = self.others(root, Kind::Namespace, namespace);
+            let mut others = self.others(root, Kind::Namespace, namespace, context);
             if !candidates.admit(others.len()) {
                 others.clear();
             }
@@ -147,7 +162,7 @@ impl Imports {
         let (sources, diagnostics) = (&mut Sources::new(), &mut Diagnostics::new());
         let context = &mut ReadContext { max_size, sources, diagnostics };
         _ = self.description(root, context);
-        let mut all = self.others(root, Kind::Namespace, namespace);
+        let mut all = self.others(root, Kind::Namespace, namespace, context);
         all.truncate(FOLDERS_BESIDE);
         let exports = |other: PathBuf| {
             let exports = namespaces(&self.description(&other, context)?.exports);
@@ -156,16 +171,27 @@ impl Imports {
         all.into_iter().filter_map(exports).collect()
     }
 
-    /// The contributions that that in `root` may import this from, the likeliest first.
-    fn others(&mut self, root: &Path, kind: Kind, what: &str) -> Vec<PathBuf> {
-        let own = self.descriptions.get(root).and_then(Option::as_ref);
-        let entries = own.iter().flat_map(|one| &one.imports).filter(|entry| entry.is(kind, what));
-        let located: Vec<Neighbour> =
-            entries.filter_map(|entry| Some(Neighbour::of(root.join(entry.location.as_ref()?)))).collect();
-        let beside = self.beside.entry(root.to_owned()).or_insert_with_key(|root| beside(root));
+    /// The contributions that that in `root` may import this from, the likeliest first. A folder that an import names
+    /// and that must not be read is reported.
+    fn others(&mut self, root: &Path, kind: Kind, what: &str, context: &mut ReadContext<'_>) -> Vec<PathBuf> {
         let own = identity(root);
+        let description = self.descriptions.get(root).and_then(Option::as_ref);
+        let entries = description.iter().flat_map(|one| &one.imports).filter(|entry| entry.is(kind, what));
+        let located = entries.filter_map(|entry| entry.location.as_ref());
+        let mut located: Vec<(Neighbour, Location)> =
+            located.map(|(folder, at)| (Neighbour::of(root.join(folder)), *at)).collect();
+        let open = context.sources.open().clone();
+        for (neighbour, at) in located.extract_if(.., |(neighbour, _)| !neighbour.is_open(&own, &open)) {
+            self.refused.insert((root.to_owned(), what.to_owned()));
+            let is_known = |one: &Diagnostic| one.code == &codes::FILE_OUTSIDE && one.location == at;
+            if !context.diagnostics.iter().any(is_known) {
+                context.diagnostics.push(outside(&neighbour, at));
+            }
+        }
+        let beside = self.beside.entry(root.to_owned()).or_insert_with_key(|root| beside(root));
+        let beside = beside.iter().filter(|one| one.is_open(&own, &open));
         let mut seen = HashSet::from([own.as_path()]);
-        let all = located.iter().chain(&self.given).chain(beside.iter());
+        let all = located.iter().map(|(neighbour, _)| neighbour).chain(&self.given).chain(beside);
         all.filter(|other| seen.insert(&other.identity)).map(|other| other.folder.clone()).collect()
     }
 
@@ -177,6 +203,14 @@ impl Imports {
         let known = self.descriptions.entry(root.to_owned());
         known.or_insert_with(|| Description::of(root, context)).as_ref()
     }
+}
+
+/// The error that an import names a folder that must not be read.
+fn outside(neighbour: &Neighbour, at: Location) -> Diagnostic {
+    let message = "this folder is outside the folder of the contribution and not beside it, and is not read";
+    let folder = quoted(&neighbour.identity.display().to_string());
+    Diagnostic::new(&codes::FILE_OUTSIDE, at, message)
+        .help(format!("move {folder} beside the contribution, or allow it with `--allow-outside`"))
 }
 
 /// The namespaces that are imported or exported.

@@ -84,7 +84,7 @@ impl Finder {
                 // Faults of a file with this name are reported there, and nowhere else.
                 let unread = || self.index.unread_named(folder, &wanted.local);
                 let link = match found.map(|found| found.path).or_else(unread) {
-                    None if self.imports.is_faulty(&root, context) => Link::Faulty,
+                    None if self.imports.is_unknown(&root, wanted.namespaces.as_deref(), context) => Link::Faulty,
                     None => Link::Missing(self.missing(folder, &root, &wanted, context)),
                     Some(found) => {
                         let place = known.entry(identity(&found)).or_insert_with(|| {

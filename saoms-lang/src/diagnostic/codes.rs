@@ -68,7 +68,7 @@ codes! {
     FILE_BINARY = "S0006" Error "file-binary": "The file is not text.";
     FILE_ENCODING = "S0007" Error "file-encoding": "The file is not in UTF-8.";
     TOO_MANY = "S0008" Warning "too-many": "Further diagnostics with this code in this file are counted, but not shown; the severity is that of those.";
-    FILE_OUTSIDE = "S0009" Error "file-outside": "A composite names a file outside its folder and its contribution.";
+    FILE_OUTSIDE = "S0009" Error "file-outside": "A composite or the description of a contribution names a file or folder outside its folder and its contribution.";
     // S01: XML 1.0 and its namespaces. The first of a file ends the reading of it.
     XML_SYNTAX = "S0101" Error "xml-syntax": "The file is not well-formed XML.";
     XML_TAG_MISMATCH = "S0102" Error "xml-tag-mismatch": "An end tag closes another element than the one that is open.";

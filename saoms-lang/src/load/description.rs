@@ -34,8 +34,8 @@ pub(crate) struct Entry {
     what: String,
     /// The place.
     pub(crate) at: Location,
-    /// The folder of the other contribution, where it is said.
-    pub(crate) location: Option<PathBuf>,
+    /// The folder of the other contribution as it is written, and the place of that, where it is given.
+    pub(crate) location: Option<(PathBuf, Location)>,
     /// True if nothing else is said of it.
     is_bare: bool,
 }
@@ -199,7 +199,7 @@ impl Description {
         let location = child.attribute("location").map(|one| one.trimmed());
         // The addresses of contributions elsewhere are no folders.
         let location = location.filter(|location| !location.contains(':'));
-        let location = location.map(|location| PathBuf::from(location.as_str()));
+        let location = location.map(|location| (PathBuf::from(location.as_str()), location.location));
         let is_import = child.local_name().starts_with("import");
         let list = if is_import { &mut self.imports } else { &mut self.exports };
         let is_bare = ["location", "version"].iter().all(|one| child.attribute(one).is_none());
@@ -213,14 +213,15 @@ impl Description {
         list.push(Entry { kind, what: what.to_owned(), at, location, is_bare });
     }
 
-    /// Warns of imports from folders that do not exist.
+    /// Warns of imports from folders that do not exist. Of those that must not be read this is not revealed.
     fn locations(&self, root: Element<'_>, file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) {
         let own = Path::new(sources.get(file).path()).parent().unwrap_or(Path::new(""));
         let folder = if own.ends_with("META-INF") { own.parent().unwrap_or(Path::new("")) } else { own };
         let imports = root.children().filter(|child| child.local_name().starts_with("import"));
         for location in imports.filter_map(|child| Some(child.attribute("location")?.trimmed())) {
             let path = folder.join(location.as_str());
-            if location.is_empty() || location.contains(':') || path.exists() {
+            let is_folder = || sources.open().outside(&path).is_some() || path.exists();
+            if location.is_empty() || location.contains(':') || is_folder() {
                 continue;
             }
             let message = format!("there is no folder {}", quoted(&location));

@@ -52,6 +52,8 @@ pub enum LibraryLink {
     To(PathBuf),
     /// To a file that is no plugin, or cannot be used: what is wrong with it.
     Faulty(String),
+    /// To a file that must not be read; its path without links.
+    Outside(PathBuf),
     /// Nowhere: the files that it would have been.
     Missing(Vec<PathBuf>),
 }

@@ -35,8 +35,14 @@ pub struct PluginFault {
 /// A resolver of the libraries that composites name with `library`.
 pub trait LibraryResolver {
     /// Looks for the library that a composite in a folder names, and adds what it offers to the registry. Nothing in it
-    /// runs.
-    fn open(&self, folder: &Path, name: &str, registry: &mut Registry) -> LibraryLink;
+    /// runs. `outside` is the path without links of a file that must not be read, unless the user named its folder.
+    fn open(
+        &self,
+        folder: &Path,
+        name: &str,
+        outside: &dyn Fn(&Path) -> Option<PathBuf>,
+        registry: &mut Registry,
+    ) -> LibraryLink;
 }
 
 impl ClassPath for Registry {

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::merge::Merged;
-use super::{ClassPath, Classes, Input, PluginFault, Project, load};
+use super::{ClassPath, Classes, Input, PluginFault, Project, folder, load};
 use crate::assembly::Assembly;
 use crate::check::{self, Options};
 use crate::contribution::{Finder, FolderFleet, SideFile};
@@ -118,10 +118,14 @@ impl Project {
         sources: &mut Sources,
         diagnostics: &mut Diagnostics,
     ) -> (Vec<Member>, Contribution) {
-        let is_folder = |input: &&Input| matches!(input, Input::Path(path) if path.is_dir());
-        let (folders, others): (Vec<&Input>, Vec<&Input>) = self.inputs.iter().partition(is_folder);
+        let mut folders: Vec<PathBuf> = Vec::new();
         let (mut inputs, mut beside) = (Vec::new(), Contribution::default());
-        for input in others {
+        for input in &self.inputs {
+            if let Some(folder) = folder::described_folder(input) {
+                // A folder may be given with its description.
+                folders.extend(Some(folder).filter(|folder| !folders.contains(folder)));
+                continue;
+            }
             let found = match input {
                 Input::Path(path) => finder.load_side_file(path, self.max_size, sources, diagnostics),
                 Input::Text { .. } => None,
@@ -135,8 +139,7 @@ impl Project {
         let together = Member { inputs, is_deployable: true, is_exported: false };
         let mut fleets: Vec<Member> = Some(together).filter(|one| !one.inputs.is_empty()).into_iter().collect();
         for folder in folders {
-            let Input::Path(path) = folder else { continue };
-            let found = finder.load_folder(path, self.max_size, sources, diagnostics);
+            let found = finder.load_folder(&folder, self.max_size, sources, diagnostics);
             fleets.extend(found.into_iter().map(Member::from));
         }
         (fleets, beside)

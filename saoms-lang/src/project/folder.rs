@@ -20,14 +20,10 @@ pub(super) fn one_fleet(
 ) -> Vec<Input> {
     let mut all = Vec::with_capacity(inputs.len());
     for input in inputs {
-        let Input::Path(path) = input else {
+        let Some(path) = &described_folder(input) else {
             all.push(input.clone());
             continue;
         };
-        if !path.is_dir() {
-            all.push(input.clone());
-            continue;
-        }
         let mut fleets = finder.load_folder(path, max_size, sources, diagnostics);
         if fleets.iter().any(|one| one.is_deployable) {
             fleets.retain(|one| one.is_deployable);
@@ -39,6 +35,23 @@ pub(super) fn one_fleet(
         }
     }
     all
+}
+
+/// The folder that an input means: itself, or the contribution that it describes.
+pub(super) fn described_folder(input: &Input) -> Option<PathBuf> {
+    let Input::Path(path) = input else { return None };
+    if path.is_dir() {
+        return Some(path.clone());
+    }
+    let folder = path.parent()?;
+    let name = path.file_name()?;
+    let (folder, is_inside) = match folder.ends_with("META-INF") {
+        true => (folder.parent()?, true),
+        false => (folder, false),
+    };
+    let is_description = name == "sca-contribution.xml" || is_inside && name == "sca-contribution-generated.xml";
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    (is_description && path.is_file()).then(|| here.to_owned())
 }
 
 fn unclear(folder: &Path, fleets: &[FolderFleet], sources: &mut Sources) -> Diagnostic {

@@ -24,7 +24,7 @@ pub(super) fn open_named(
         }
     }
     for (origin, folder, name) in named {
-        let link = libraries.open(&folder, &name, registry);
+        let link = libraries.open(&folder, &name, &|path| sources.open().outside(path), registry);
         contribution.set_library(origin, link);
     }
 }

@@ -29,7 +29,8 @@ const RUN: [&str; 5] = ["run", "fleet/t.composite", "--virtual", "--for", "450ms
 /// Runs a fleet with a library that was named, and does not without.
 fn runs(folder: &Path, library: &str) {
     let checked = saoms(folder, &["check", "fleet/t.composite"]);
-    assert!(checked.text.contains("error[S3015]") || checked.text.contains("note[S3016]"), "{}", checked.text);
+    let expected = ["error[S3015]", "note[S3016]", "error[S0009]"];
+    assert!(expected.iter().any(|one| checked.text.contains(one)), "{}", checked.text);
     let unnamed = saoms(folder, &RUN);
     assert_eq!(unnamed.code, Some(2), "{}", unnamed.text);
     let run = saoms(folder, &[&RUN[..], &["--plugin", library]].concat());
@@ -74,6 +75,24 @@ fn a_library_is_found_from_the_composite_and_by_the_search_path() {
 }
 
 #[test]
+fn a_library_outside_the_folder_is_not_read() {
+    let folder = folder(&of_library("A", "good.Sendr", "../built/good"), "built/libgood.so");
+    let check = |more: &[&str]| saoms(folder.path(), &[&["check", "fleet/t.composite"], more].concat()).text;
+    let told = check(&[]);
+    assert!(told.contains("error[S0009]: this library is outside") && !told.contains("good.Keeper"), "{told}");
+    fs::write(folder.path().join("fleet/t.composite"), composite(&of_library("A", "good.Sendr", "../built/none")))
+        .unwrap();
+    assert!(check(&[]).contains("error[S0009]: this library is outside"), "whether it is there is not revealed");
+    let absolute = folder.path().join("built/libgood.so").display().to_string();
+    fs::write(folder.path().join("fleet/t.composite"), composite(&of_library("A", "good.Sendr", &absolute))).unwrap();
+    assert!(check(&[]).contains("error[S0009]: this library is outside"));
+    for more in [&["--allow-outside"][..], &["--plugin", "built"], &["--plugin", &absolute]] {
+        let told = check(more);
+        assert!(told.contains("S3015") && told.contains("good.Keeper"), "{more:?}: {told}");
+    }
+}
+
+#[test]
 fn a_class_has_to_be_in_the_library_that_is_named() {
     let wrong = |class: &str, library: &str| folder(&of_library("A", class, library), "fleet/libgood.so");
     refused(
@@ -94,13 +113,13 @@ fn a_class_has_to_be_in_the_library_that_is_named() {
     let damaged = wrong("good.Sender", "text");
     fs::write(damaged.path().join("fleet/libtext.so"), "a text").unwrap();
     refused(damaged.path(), &["error[S3015]", "libtext.so` is not a shared library"]);
-    let twice = wrong("good.Sender", "../other/good");
-    fs::create_dir(twice.path().join("other")).unwrap();
-    fs::copy(library("good"), twice.path().join("other/libgood.so")).unwrap();
+    let twice = wrong("good.Sender", "other/good");
+    fs::create_dir(twice.path().join("fleet/other")).unwrap();
+    fs::copy(library("good"), twice.path().join("fleet/other/libgood.so")).unwrap();
     refused(
         twice.path(),
         &["class `good.Sender` is registered twice: in plugin `fleet/libgood.so` and in plugin \
-            `fleet/../other/libgood.so`"],
+            `fleet/other/libgood.so`"],
     );
 }
 

@@ -110,6 +110,60 @@ fn tables_and_includes_outside_the_folder_are_refused() {
     assert!(stderr.contains("S0009") && !(stdout + &stderr).contains(SECRET), "{stderr}");
 }
 
+#[test]
+fn an_import_leads_to_no_folder_elsewhere() {
+    let folder = site();
+    let site = folder.path().join("site");
+    let description = |inside: &str| {
+        format!("<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\">\n{inside}</contribution>")
+    };
+    write(
+        folder.path(),
+        "fleet.composite",
+        &composite("<component name=\"P\"><implementation.composite name=\"p:part\" xmlns:p=\"urn:p\"/></component>"),
+    );
+    let secret = composite(&format!("<{SECRET}/>")).replace("\"fleet\"", "\"part\"").replace("urn:a", "urn:p");
+    for part in ["far/part", "site/part"] {
+        let part = folder.path().join(part);
+        fs::create_dir_all(&part).unwrap();
+        fs::write(part.join("part.composite"), &secret).unwrap();
+        fs::write(part.join("sca-contribution.xml"), description("<export namespace=\"urn:p\"/>")).unwrap();
+    }
+    symlink("../far/part", site.join("linked")).unwrap();
+    let beside = site.join("part");
+    let absolute = folder.path().join("far/part").display().to_string();
+    let check = |location: &str, more: &[&str]| {
+        let import = format!("<import namespace=\"urn:p\" location=\"{location}\"/>");
+        write(folder.path(), "sca-contribution.xml", &description(&import));
+        let (code, stdout, stderr) = saoms(&site, &[&["check", "fleet/fleet.composite"], more].concat());
+        assert_eq!(code, 2, "{stdout}{stderr}");
+        stdout + &stderr
+    };
+    assert!(check("../part", &[]).contains(SECRET), "a contribution beside it may be read");
+    fs::remove_dir_all(beside).unwrap();
+    for location in ["../../far/part", &absolute, "../linked", "../../none", "/no/such"] {
+        let told = check(location, &[]);
+        assert!(told.contains("error[S0009]") && told.contains("sca-contribution.xml:2:"), "{location}: {told}");
+        assert!(!told.contains(SECRET) && told.contains("1 error"), "{location}: {told}");
+        assert!(check(location, &["--allow-outside"]).contains(SECRET), "{location}: the link leads there, too");
+    }
+}
+
+#[test]
+fn the_description_of_a_contribution_stands_for_its_folder() {
+    let folder = site();
+    let site = folder.path().join("site");
+    let description = "<contribution xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"/>";
+    write(folder.path(), "sca-contribution.xml", description);
+    write(folder.path(), "fleet.composite", &hostile("R1").replace("saoms.World", "saoms.Wrld"));
+    for file in ["fleet/sca-contribution.xml", "fleet"] {
+        for command in ["check", "expand"] {
+            let (code, _, stderr) = saoms(&site, &[command, file]);
+            assert!(code == 2 && stderr.contains("fleet/fleet.composite:2:"), "{file}: {stderr}");
+        }
+    }
+}
+
 /// A name that clears the screen, turns the direction, and adds a line.
 const HOSTILE: &str = "R\u{202e}\u{9b}2J&#10;error[S9999]: forged&#10;    1.000 s  forged 1";
 

@@ -81,8 +81,8 @@ impl ClassCache {
         }
         let folder = file.parent().unwrap_or(Path::new(""));
         for (name, _) in &found {
-            // What is wrong with it, and whether it is known already, the checker says.
-            let _ = resolver.as_ref().map(|resolver| resolver.open(folder, name, &mut registry));
+            // What is wrong with it, and whether it is known already or must not be read, the checker says.
+            let _ = resolver.as_ref().map(|resolver| resolver.open(folder, name, &|_| None, &mut registry));
         }
         let registry = Arc::new(registry);
         known.by_places.insert(key, (libraries, Arc::clone(&registry)));

@@ -41,7 +41,7 @@ impl PluginSearch for NoPlugins {
 }
 
 impl LibraryResolver for NoPlugins {
-    fn open(&self, _: &Path, _: &str, _: &mut Registry) -> LibraryLink {
+    fn open(&self, _: &Path, _: &str, _: &dyn Fn(&Path) -> Option<PathBuf>, _: &mut Registry) -> LibraryLink {
         LibraryLink::Missing(Vec::new())
     }
 }
