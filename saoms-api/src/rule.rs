@@ -125,6 +125,7 @@ macro_rules! fleet_rules {
 pub struct FleetView<'a> {
     components: &'a [ComponentView<'a>],
     missing: &'a [Option<Vec<&'a str>>],
+    is_site_of_several: bool,
     facts: RefCell<Vec<(TypeId, Rc<dyn Any>)>>,
 }
 
@@ -154,7 +155,7 @@ pub trait Fact: 'static {
 impl<'a> FleetView<'a> {
     /// For hosts: a view of these components.
     pub fn new(components: &'a [ComponentView<'a>]) -> FleetView<'a> {
-        FleetView { components, missing: &[], facts: RefCell::default() }
+        FleetView { components, missing: &[], is_site_of_several: false, facts: RefCell::default() }
     }
 
     /// For hosts: the same view, from which components with faults of their own are left out: the declarations of their
@@ -163,6 +164,17 @@ impl<'a> FleetView<'a> {
     #[must_use]
     pub fn without(self, missing: &'a [Option<Vec<&'a str>>]) -> FleetView<'a> {
         FleetView { missing, ..self }
+    }
+
+    /// For hosts: the same view, of one of several sites that have nothing to do with each other.
+    #[must_use]
+    pub fn of_several(self, is_site_of_several: bool) -> FleetView<'a> {
+        FleetView { is_site_of_several, ..self }
+    }
+
+    /// True if these are the components of a site, and other sites, which have nothing to do with it, have others.
+    pub fn is_site_of_several(&self) -> bool {
+        self.is_site_of_several
     }
 
     /// For hosts: the components that [`without`](FleetView::without) left out.

@@ -3,8 +3,7 @@
 use std::fmt::Write;
 
 use clap::Args;
-use saoms_api::rule::nearest;
-use saoms_lang::diagnostic::{Code, codes};
+use saoms_lang::diagnostic::{Code, codes, nearest_code};
 use saoms_lang::registry::Registry;
 
 use crate::Exit;
@@ -105,7 +104,8 @@ fn refusal(wanted: &str, all: &[&Code]) -> String {
         );
     }
     let mut text = format!("error: there is no code `{wanted}`\n");
-    if let Some(nearest) = nearest(wanted, all.iter().flat_map(|code| names(code))) {
+    let known: Vec<&str> = all.iter().flat_map(|code| names(code)).collect();
+    if let Some(nearest) = nearest_code(wanted, &known) {
         let _ = writeln!(text, "help: did you mean `{nearest}`?");
     }
     text + "help: `saoms explain` lists all codes; those of a plugin with `--plugin PATH`\n"

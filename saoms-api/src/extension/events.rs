@@ -10,6 +10,8 @@ use crate::host::TopicDeclaration;
 pub struct EventLanguage {
     /// The topic of the messages.
     pub topic: TopicDeclaration<'static>,
+    /// Codes of findings that do not hold for a run with such events: that nothing brings work.
+    pub settles: &'static [&'static str],
     /// Makes a reader for one run, with the seed of the run.
     pub new: fn(seed: u64) -> Box<dyn EventReader>,
 }

@@ -9,9 +9,16 @@ use super::scenario::Before;
 use super::scenario::line::{read_outside, split};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
+use crate::rules::no_work;
 use crate::text::{TextFault, bytes};
 
-submit! { EventLanguage { topic: ENVIRONMENT.declaration(), new: |seed| Box::new(Reader::new(seed)) } }
+submit! {
+    EventLanguage {
+        topic: ENVIRONMENT.declaration(),
+        settles: &[no_work::RULE.code.id],
+        new: |seed| Box::new(Reader::new(seed)),
+    }
+}
 
 /// The number of the first piece of luggage from outside: those of a scenario begin with 1.
 const FIRST_LUGGAGE: u32 = 1_000_001;

@@ -3,6 +3,8 @@ use saoms_api::{CallError, Context, Failure};
 use crate::grid::{Block, Map};
 use crate::hardware::{Action, ActionKind, HardwareReference, Progress};
 
+use super::patience::Patience;
+
 /// Client of a robot's hardware, called through its reference `world`. If that is not wired, every action succeeds at
 /// once.
 #[derive(Debug, Default)]
@@ -15,6 +17,7 @@ pub(crate) struct HardwareClient {
     /// True once it is out of service.
     retired: bool,
     running: Option<Action>,
+    patience: Patience,
 }
 
 /// Result of a call to the hardware.
@@ -29,7 +32,7 @@ impl HardwareClient {
     pub(crate) fn new(context: &mut Context<'_>) -> Result<HardwareClient, Failure> {
         let hardware: HardwareReference = context.reference("world")?;
         let wired = context.is_wired(&hardware);
-        Ok(HardwareClient { hardware, wired, entered: !wired, absent: false, retired: false, running: None })
+        Ok(HardwareClient { hardware, wired, entered: !wired, ..HardwareClient::default() })
     }
 
     /// True if there is hardware.
@@ -60,6 +63,8 @@ impl HardwareClient {
         }
         let answer = self.hardware.enter(context, robot, name.to_owned(), block);
         self.absent = matches!(answer, Err(CallError::NotRunning { .. }));
+        // That the hardware is not started is told by others.
+        self.patience.note(self.absent || answer.is_ok(), busy(&answer), context);
         let block = match reply(answer)? {
             Reply::Answer(block) => block,
             Reply::Later => return Ok(Reply::Later),
@@ -91,6 +96,11 @@ impl HardwareClient {
         self.running.is_some_and(|action| action.kind != ActionKind::Move)
     }
 
+    /// True if the hardware was busy at the last call.
+    pub(crate) fn keeps_waiting(&self) -> bool {
+        self.patience.waits() && self.running.is_none()
+    }
+
     /// True if the robot is moving.
     pub(crate) fn is_moving(&self) -> bool {
         self.running.is_some_and(|action| action.kind == ActionKind::Move)
@@ -106,7 +116,9 @@ impl HardwareClient {
         if !self.wired {
             return Ok(Reply::Answer(Progress::Done));
         }
-        let progress = reply(self.hardware.begin(context, robot, action))?;
+        let answer = self.hardware.begin(context, robot, action);
+        self.patience.note(is_over(&answer), busy(&answer), context);
+        let progress = reply(answer)?;
         if matches!(progress, Reply::Answer(Progress::Running)) {
             self.running = Some(action);
         }
@@ -118,7 +130,9 @@ impl HardwareClient {
         if self.running.is_none() {
             return Ok(Reply::Answer(Progress::Done));
         }
-        let progress = reply(self.hardware.poll(context, robot))?;
+        let answer = self.hardware.poll(context, robot);
+        self.patience.note(is_over(&answer), busy(&answer), context);
+        let progress = reply(answer)?;
         if matches!(progress, Reply::Answer(Progress::Done | Progress::Failed)) {
             self.running = None;
         }
@@ -140,9 +154,28 @@ impl HardwareClient {
     }
 
     fn call_retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Option<Block>, CallError> {
-        let block = if self.wired && self.entered { Some(self.hardware.retire(context, robot)?) } else { None };
+        let block = if self.wired && self.entered {
+            let answer = self.hardware.retire(context, robot);
+            self.patience.note(busy(&answer).is_none(), busy(&answer), context);
+            Some(answer?)
+        } else {
+            None
+        };
         (self.running, self.retired) = (None, true);
         Ok(block)
+    }
+}
+
+/// True if nothing is running after a call, whatever came of it.
+fn is_over(answer: &Result<Progress, CallError>) -> bool {
+    !matches!(answer, Ok(Progress::Running) | Err(CallError::Busy { .. }))
+}
+
+/// The name of a component that was busy.
+fn busy<T>(answer: &Result<T, CallError>) -> Option<&str> {
+    match answer {
+        Err(CallError::Busy { provider }) => Some(provider),
+        _ => None,
     }
 }
 

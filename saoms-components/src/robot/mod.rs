@@ -16,6 +16,7 @@ mod knowledge;
 mod lists;
 mod memory;
 mod orders;
+mod patience;
 mod properties;
 mod receive;
 mod routes;

@@ -33,6 +33,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     all.dedup_by_key(|line| line.index);
     for line in all {
         let events = events(fleet, line.index);
+        // Where nobody passes events on, no luggage is brought at all, which another rule reports.
+        if !hearing.passes_on(events) {
+            continue;
+        }
         let names = passed.entry(events).or_insert_with(|| {
             let masters = hearing.masters(events).iter();
             masters.map(|master| components[*master].topic(EVENT_LUGGAGE.name())).chain([events]).collect()

@@ -89,6 +89,11 @@ impl Hearing {
         self.masters.get(events).map_or(&[], Vec::as_slice)
     }
 
+    /// True if a component may pass on events of this name on the bus.
+    pub(super) fn passes_on(&self, events: &str) -> bool {
+        !self.masters(events).is_empty() || !self.others.is_empty()
+    }
+
     /// The worlds that hear events of this name on the bus.
     pub(super) fn worlds(&self, events: &str) -> &[usize] {
         self.worlds.get(events).map_or(&[], Vec::as_slice)

@@ -31,9 +31,16 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let (mut findings, mut budget) = (Vec::new(), Budget::default());
     for (events, luggage) in by_events(fleet) {
         let area = area(fleet, events);
-        // The same blocks at both ends are told once.
+        // The same blocks at both ends are told once, and two blocks outside of the map.
         let ends = luggage.iter().flat_map(|piece| {
-            let to = Some(&piece.to).filter(|to| to.value != piece.from.value);
+            let is_told = |to: &&Spanned<Spot>| {
+                let both = [piece.from.value.block(), to.value.block()];
+                let are_outside = area
+                    .as_ref()
+                    .is_some_and(|area| both.iter().all(|block| block.is_some_and(|block| !area.map.contains(block))));
+                to.value == piece.from.value || are_outside
+            };
+            let to = Some(&piece.to).filter(|to| !is_told(to));
             std::iter::once((piece, &piece.from)).chain(to.map(|to| (piece, to)))
         });
         for (piece, spot) in ends {
@@ -85,7 +92,15 @@ fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget
     let place = piece.place(spot);
     if let Some(block) = spot.value.block() {
         let problem = area.problem(block)?;
-        let finding = Finding::new(place, format!("luggage cannot be at {block}: this block is {problem}"));
+        let message = format!("luggage cannot be at {block}: this block is {problem}");
+        let to = piece.to.value.block().filter(|to| spot.value == piece.from.value && *to != block);
+        let finding = match to.filter(|to| !area.map.contains(block) && !area.map.contains(*to)) {
+            Some(to) => {
+                let message = format!("luggage cannot be at {block} and {to}: these blocks are {problem}");
+                Finding::new(piece.whole(), message)
+            }
+            None => Finding::new(place, message),
+        };
         return Some(
             area.explain(finding.help("choose a free block of the map: robots cannot enter other blocks"), block),
         );

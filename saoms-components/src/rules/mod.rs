@@ -14,6 +14,7 @@ mod luggage;
 mod map;
 mod masters;
 mod motionless;
+pub(crate) mod no_work;
 mod number;
 mod robots;
 mod shifts;
@@ -42,4 +43,5 @@ saoms_api::fleet_rules!(
     broken_twice::RULE,
     worlds::RULE,
     motionless::RULE,
+    no_work::RULE,
 );

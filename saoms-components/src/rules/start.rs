@@ -1,8 +1,11 @@
 //! Rule: two robots start on the same block.
 
+use std::collections::HashSet;
+
 use saoms_api::Finding;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 
+use super::map::areas;
 use super::robots::{FleetRobot, robots, sharing};
 use crate::messages::ROBOT_LIST;
 use crate::world::World;
@@ -32,10 +35,12 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         Some(world) => (Some(world), ""),
         None => (None, components[robot.index].topic(ROBOT_LIST.name())),
     };
+    // Robots that cannot be at their charger are reported by another rule.
+    let off = off_map(fleet, &robots);
     let mut findings = Vec::new();
     for (robot, other) in sharing(&robots, |robot| (ground(robot), robot.charger.y, robot.charger.x)) {
         // Robots with the same number are reported by another rule.
-        if other.number != robot.number {
+        if other.number != robot.number && !off.contains(&robot.index) {
             let message = format!(
                 "robots {} and {} both start at {}: their chargers are on the same block",
                 other.number, robot.number, robot.charger
@@ -48,4 +53,14 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// The robots that have the charger of another one, and no map has its block.
+fn off_map(fleet: &FleetView<'_>, robots: &[FleetRobot]) -> HashSet<usize> {
+    let mut off = HashSet::new();
+    for area in areas(fleet) {
+        let inside = robots.iter().filter(|robot| robot.ground == Some(area.index));
+        off.extend(inside.filter(|robot| area.problem(robot.charger).is_some()).map(|robot| robot.index));
+    }
+    off
 }

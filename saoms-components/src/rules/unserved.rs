@@ -63,7 +63,13 @@ fn without_effect(fleet: &FleetView<'_>) -> Vec<Finding> {
         let (first, mistake) = served.find_mistake(has)?;
         let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(*index);
         let Some(other) = &mistake.other else {
-            return Some(Finding::new(place, mistake.message).help(mistake.help.clone()));
+            // A composite that is used several times lacks the component once, whatever scenarios it is given.
+            let is_inside = fleet.components()[*index].path.contains('/');
+            let finding = match is_inside {
+                true => Finding::new(Place::component(*index), mistake.message).label(place, "the first such event"),
+                false => Finding::new(place, mistake.message),
+            };
+            return Some(finding.help(mistake.help.clone()));
         };
         let finding = other.finding(fleet, mistake, place);
         Some(match site_of(ENVIRONMENT.name(), events) {

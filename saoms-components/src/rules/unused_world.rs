@@ -5,10 +5,13 @@ use std::collections::{HashMap, HashSet};
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
+use super::hearing::site_of;
 use super::map::{WorldMap, areas};
 use super::robots::{FleetRobot, by_world, may_be_others, robots};
-use crate::messages::ROBOT_LIST;
+use crate::environment::Environment;
+use crate::messages::{AREA, ROBOT_LIST};
 use crate::robot::Robot;
+use crate::world::World;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
@@ -27,7 +30,13 @@ pub(super) static RULE: FleetRule = FleetRule {
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots = robots(fleet);
     // A wire with a fault may lead to a world.
-    if robots.is_empty() || may_be_others(fleet) || fleet.misses::<Robot>() {
+    if may_be_others(fleet) || fleet.misses::<Robot>() {
+        return Vec::new();
+    }
+    if fleet.indices::<Robot>().next().is_none() {
+        return alone(fleet).collect();
+    }
+    if robots.is_empty() {
         return Vec::new();
     }
     // The first robot of each world; below, other components that are wired to a world.
@@ -56,6 +65,27 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let lost = robots.iter().filter(|robot| robot.world.is_none());
     findings.extend(lost.filter_map(|robot| beside(fleet, robot, &around)));
     findings
+}
+
+/// The findings about worlds that no component is wired to and no environment has events for, in a fleet or a site
+/// without robots. That luggage has no robot is reported by another rule.
+fn alone<'f>(fleet: &'f FleetView<'_>) -> impl Iterator<Item = Finding> + use<'f> {
+    // Composites that others use may have a world alone.
+    let has_events = !fleet.is_site_of_several() || fleet.indices::<Environment>().next().is_some();
+    let is_used = |world: usize| {
+        let mut wires = fleet.components().iter().flat_map(|one| one.wires.iter());
+        wires.any(|(_, target)| *target == world)
+    };
+    let worlds = fleet.indices::<World>().filter(move |world| !has_events && !is_used(*world));
+    worlds.map(|world| {
+        let component = &fleet.components()[world];
+        let message = match site_of(AREA.name(), component.topic(AREA.name())).unwrap_or("") {
+            "" => "no robot is in this world: it is in no site, or the fleet has no robot there".to_owned(),
+            site => format!("no robot is in this world: the site `{site}` has none"),
+        };
+        Finding::new(Place::component(world), message)
+            .help("move it to its robots, add a `saoms.Robot` with a reference `world` to it, or remove it")
+    })
 }
 
 /// The worlds of robots, each with one of them, by composites and the names on the bus of the lists of robots.

@@ -1,6 +1,6 @@
 //! The finder: one for all contributions of a check, so that each file is read once.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::head;
@@ -28,6 +28,8 @@ pub struct Finder {
     pub(super) explained: usize,
     /// The files of folders that are called as composites and are none, with the reason.
     unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,
+    /// The files of composites that share a name, which is reported.
+    pub(super) repeated: HashSet<PathBuf>,
 }
 
 impl Finder {
@@ -40,6 +42,7 @@ impl Finder {
             candidates: Candidates::default(),
             explained: EXPLAINED_NAMES,
             unread: HashMap::new(),
+            repeated: HashSet::new(),
         }
     }
 

@@ -11,7 +11,7 @@ use crate::limits::ASKED_FOLDER_ENTRIES;
 use crate::load::description::{Deployable, Description};
 use crate::load::{ReadContext, definitions, load_file, read};
 use crate::model::{Composite, Contribution, Link};
-use crate::source::{Sources, Span};
+use crate::source::{Sources, Span, identity};
 use crate::syntax::escaped;
 
 /// Composites in a folder that form one fleet: no other composite there names them.
@@ -49,7 +49,8 @@ impl Finder {
             waiting.extend(contents.folders.into_iter().rev());
             let description = Description::of(&root, context);
             let contribution = Files::read(contents.composites, context);
-            contribution.repeated(describes(&root), context);
+            let repeated = contribution.repeated(describes(&root), context);
+            self.repeated.extend(repeated.iter().map(|path| identity(path)));
             for path in contents.definitions {
                 has_definitions |= definitions::check(&path, false, context);
             }
@@ -156,9 +157,10 @@ impl Files {
         Self { paths, read: Contribution::with(Vec::new(), composites), places }
     }
 
-    /// Reports composites of one namespace that have one name. A folder without a description need not be one
-    /// contribution.
-    fn repeated(&self, is_described: bool, context: &mut ReadContext<'_>) {
+    /// Reports composites of one namespace that have one name, and gives their files. A folder without a description
+    /// need not be one contribution.
+    fn repeated(&self, is_described: bool, context: &mut ReadContext<'_>) -> Vec<PathBuf> {
+        let mut repeated = Vec::new();
         let mut first: HashMap<(&str, &str), usize> = HashMap::new();
         for (place, composite) in self.read.composites().iter().enumerate() {
             let name = (composite.namespace(), composite.name.as_str());
@@ -169,6 +171,7 @@ impl Files {
                 first.insert(name, place);
                 continue;
             };
+            repeated.extend([*earlier, place].map(|place| self.paths[self.places[place]].clone()));
             let mut place_of = |place: usize| {
                 let path = &self.paths[self.places[place]];
                 let file = read(path, context.max_size, context.sources, &mut Diagnostics::new())?;
@@ -180,6 +183,7 @@ impl Files {
             let one = Diagnostic::new(&codes::COMPOSITE_REPEATED, at, message).severity(severity);
             context.diagnostics.push(one.label(other, "the first").help("give each its own name"));
         }
+        repeated
     }
 
     /// The file of a deployable; one that is not there is reported.

@@ -77,6 +77,7 @@ impl Finder {
                 let found = self.find(&wanted, folder, &root, context);
                 if let Some(found) = &found
                     && warned.insert(found.path.clone())
+                    && !self.repeated.contains(&identity(&found.path))
                 {
                     let warning = ambiguous(&wanted, &found.path, &self.index.twins(found));
                     warning.into_iter().for_each(|one| context.diagnostics.push(one));

@@ -25,6 +25,14 @@ use saoms_api::host::shorten;
 pub use saoms_api::host::{nearest_equal, nearest_few};
 pub use saoms_api::rule::{Severity, nearest};
 
+/// The code that is meant by a wrong one, among these: a zero too few is likelier than another digit.
+pub fn nearest_code<'c>(code: &str, all: &[&'c str]) -> Option<&'c str> {
+    let with_zero =
+        code.split_at_checked(2).filter(|(_, rest)| rest.len() == 2).map(|(first, rest)| format!("{first}0{rest}"));
+    let found = with_zero.and_then(|full| all.iter().copied().find(|one| *one == full));
+    found.or_else(|| nearest(code, all.iter().copied()))
+}
+
 use crate::source::Location;
 
 /// A further place that explains the diagnostic, with what is to be seen there.

@@ -201,7 +201,8 @@ impl Loader<'_> {
         let value = attribute.map(Attribute::trimmed).filter(|value| !value.is_empty());
         match attribute {
             None => self.missing(element, name),
-            Some(attribute) if value.is_none() => self.empty(attribute, name),
+            // Of a tag that ends in the middle nothing more is said.
+            Some(attribute) if value.is_none() && !element.has_damaged_tag() => self.empty(attribute, name),
             Some(_) => {}
         }
         value
@@ -296,13 +297,28 @@ impl Loader<'_> {
         }
         let meant = text.to_ascii_lowercase().replace(['*', 'm'], "n").replace("unbounded", "n");
         let names = Multiplicity::ALL.map(Multiplicity::name);
+        let is_of_class = element.parent().is_some_and(|parent| parent.local_name() == "component");
         let meant = match meant.as_str() {
             "1" => Some("1..1"),
             "n" => Some("0..n"),
             other => names.into_iter().find(|name| *name == other),
         };
         let message = format!("`multiplicity` is {}, expected `0..1`, `1..1`, `0..n` or `1..n`", quoted(&text));
-        self.value_fault(attribute, message, meant);
+        match meant.filter(|meant| is_of_class && meant.ends_with('n')) {
+            // How many targets the reference can have its class says.
+            Some(_) => {
+                let location = attribute.value_span().in_file(attribute.location().file);
+                let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, location, message);
+                let before = &element.document().text()[..attribute.span().start as usize];
+                let whole = Span { start: before.trim_end().len() as u32, end: attribute.span().end };
+                self.report(one.suggest(
+                    "remove `multiplicity`: the class says how many targets there can be",
+                    whole.in_file(location.file),
+                    "",
+                ));
+            }
+            None => self.value_fault(attribute, message, meant),
+        }
         None
     }
 

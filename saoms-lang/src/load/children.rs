@@ -6,7 +6,7 @@ use super::Loader;
 use super::attributes::{is_attribute_as_element, own_prefix};
 use super::vocabulary::{self, Kind, OPERATION, OWN_ELEMENTS, POLICIES, SEVERITY, SEVERITY_PARENTS};
 use super::wrong_place::{as_property, as_tag, belongs_outside};
-use crate::diagnostic::{Diagnostic, Edit, Severity, codes, list, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Edit, HiddenNames, Severity, codes, list, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
 use crate::syntax::Element;
@@ -125,6 +125,11 @@ impl Loader<'_> {
         };
         let message = format!("{} is ignored: its namespace {} is not that of SCA", quoted(name), quoted(namespace));
         self.report(Diagnostic::new(&codes::FOREIGN_ELEMENT, element.name_location(), message).help(help));
+        if ["component", "include"].contains(&local) {
+            // What the fleet lacks without it is no fault of its own.
+            let hidden = HiddenNames { composites: false, components: true, others: true };
+            self.diagnostics.add_damage(element.span().in_file(element.document().file()), hidden);
+        }
         if let Some(source) = element.attribute("source").filter(|_| local == "property") {
             let (value, file) = (source.value(), element.document().file());
             let name = value.trim().strip_prefix('$').and_then(|rest| rest.split(['/', '[', ' ']).next());
@@ -310,6 +315,8 @@ impl Loader<'_> {
         let is_of = |kind: &str| element.local_name().starts_with(kind);
         self.report(if is_of("implementation.") && element.attribute("class").is_none() {
             one.help("name the class with the attribute `class`")
+        } else if element.local_name() == "wire" && element.attributes().next().is_none() {
+            one.help("name the two ends with attributes: `<wire source=\"COMPONENT/REFERENCE\" target=\"COMPONENT\"/>`")
         } else if is_of("reference") && element.attribute("target").is_none() {
             one.help("name the component that it calls with the attribute `target`")
         } else if let Some(one) = as_tag(one.clone(), element, span, &KINDS_IN_TEXT) {

@@ -84,8 +84,13 @@ impl Loader<'_> {
     }
 
     fn wire(&mut self, element: Element<'_>) -> WireElement {
+        let mut ends = || (self.required(element, "source"), self.required(element, "target"));
+        let (source, target) = match element.has_text() && !has_attributes(element) {
+            // The text is in place of the attributes.
+            true => (None, None),
+            false => ends(),
+        };
         self.parts_of(element, &WIRE);
-        let (source, target) = (self.required(element, "source"), self.required(element, "target"));
         // What is wrong was meant to say something: the targets of the reference are not counted then.
         let meant = |attribute: Attribute<'_>| Located::new(true, attribute.location());
         let replace = self.boolean(element, "replace").or_else(|| element.attribute("replace").map(meant));

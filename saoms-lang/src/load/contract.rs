@@ -32,6 +32,7 @@ impl Loader<'_> {
             // Where it stands is reported, whatever it leads to.
             targets.clear();
         } else if targets.is_empty()
+            && !element.has_damaged_tag()
             && let Some(attribute) = element.attribute("target")
         {
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, attribute.location(), "`target` names nothing");

@@ -121,9 +121,8 @@ impl Project {
         let mut folders: Vec<PathBuf> = Vec::new();
         let (mut inputs, mut beside) = (Vec::new(), Contribution::default());
         for input in &self.inputs {
-            if let Some(folder) = folder::described_folder(input) {
-                // A folder may be given with its description.
-                folders.extend(Some(folder).filter(|folder| !folders.contains(folder)));
+            if let Some(folder) = folder::folder_of(input, &self.inputs) {
+                folders.push(folder);
                 continue;
             }
             let found = match input {

@@ -20,7 +20,7 @@ pub(super) fn one_fleet(
 ) -> Vec<Input> {
     let mut all = Vec::with_capacity(inputs.len());
     for input in inputs {
-        let Some(path) = &described_folder(input) else {
+        let Some(path) = &folder_of(input, inputs) else {
             all.push(input.clone());
             continue;
         };
@@ -37,11 +37,15 @@ pub(super) fn one_fleet(
     all
 }
 
-/// The folder that an input means: itself, or the contribution that it describes.
-pub(super) fn described_folder(input: &Input) -> Option<PathBuf> {
+/// The folder that an input means: itself, or the contribution that it describes. Beside other inputs a description is
+/// a file as these are.
+pub(super) fn folder_of(input: &Input, inputs: &[Input]) -> Option<PathBuf> {
     let Input::Path(path) = input else { return None };
     if path.is_dir() {
         return Some(path.clone());
+    }
+    if inputs.len() > 1 {
+        return None;
     }
     let folder = path.parent()?;
     let name = path.file_name()?;

@@ -20,6 +20,13 @@ impl Faults {
         self.0.is_empty()
     }
 
+    /// True if a fault says that the text ends, at `end`, inside a tag or a value: what is open around it is open for
+    /// that.
+    pub(super) fn says_cut(&self, end: u32) -> bool {
+        let is_end = |at: Location| at.span.start == end;
+        self.0.iter().any(|one| is_end(one.location) || one.labels.iter().any(|label| is_end(label.location)))
+    }
+
     /// The faults in the order of their places.
     pub(super) fn into_sorted(mut self) -> Vec<Diagnostic> {
         self.0.sort_by_key(|one| one.location.span.start);

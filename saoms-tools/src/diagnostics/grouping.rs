@@ -36,6 +36,20 @@ pub(super) fn grouped<'d>(
     shown.collect()
 }
 
+/// For each diagnostic the place of the first that it is like, where it is not shown itself.
+pub(super) fn like_earlier(diagnostics: &[Diagnostic]) -> Vec<Option<usize>> {
+    let kinds: Vec<Kind> = diagnostics.iter().map(kind).collect();
+    let mut known: HashMap<&Kind, (usize, usize)> = HashMap::new();
+    for (place, (kind, _)) in kinds.iter().zip(diagnostics).enumerate().filter(|(_, (_, one))| !one.is_allowed()) {
+        known.entry(kind).or_insert((place, 0)).1 += 1;
+    }
+    let like = |(place, kind): (usize, &Kind)| {
+        let (first, count) = *known.get(kind)?;
+        (count >= MANY && place > first && !diagnostics[place].is_allowed()).then_some(first)
+    };
+    kinds.iter().enumerate().map(like).collect()
+}
+
 /// The key of diagnostics that are alike: code, severity, file, and the message but for its numbers, as a hash, since
 /// there may be very many.
 type Kind = (&'static str, Severity, FileId, u64);

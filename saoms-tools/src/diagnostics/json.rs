@@ -1,5 +1,6 @@
 //! Diagnostics for machines.
 
+use super::grouping::like_earlier;
 use saoms_lang::diagnostic::Diagnostic;
 use saoms_lang::source::{Location, Sources};
 use serde_json::{Value, json};
@@ -9,9 +10,17 @@ use serde_json::{Value, json};
 /// `rule` is null when the diagnostic stems from no rule of the SCA specification. `help` holds what people are shown
 /// below the picture, the descriptions of suggestions included, a line each; it is null when there is nothing. Where
 /// the severity was set, `set` says to what, where and why; what is allowed is there with the severity that it would
-/// have.
+/// have. Of many that are alike, of which people see one, each but the first has `like`: the index of the first.
 pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Vec<Value> {
-    diagnostics.iter().map(|one| diagnostic(one, sources)).collect()
+    let all = diagnostics.iter().zip(like_earlier(diagnostics));
+    all.map(|(one, like)| {
+        let mut object = diagnostic(one, sources);
+        if let Some(like) = like {
+            object["like"] = like.into();
+        }
+        object
+    })
+    .collect()
 }
 
 fn diagnostic(one: &Diagnostic, sources: &Sources) -> Value {

@@ -59,10 +59,16 @@ impl Events {
             Box::new(BufReader::new(Pipe(pipe)))
         } else {
             let file = File::open(path)?;
+            let is_regular = file.metadata()?.is_file();
             if file.metadata()?.is_dir() {
                 return Err(io::Error::from(io::ErrorKind::IsADirectory));
             }
-            Box::new(BufReader::new(file))
+            let mut lines = BufReader::new(file);
+            // A device may have nothing to read yet.
+            if is_regular && lines.fill_buf()?.trim_ascii_start().starts_with(b"<") {
+                return Err(io::Error::other("it is XML, expected a line for each event"));
+            }
+            Box::new(lines)
         };
         let languages = EventLanguage::linked().map(|one| (one.topic.name, (one.new)(seed)));
         Ok(Events { lines, languages: languages.collect(), number: 0 })

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use saoms_api::extension::PictureRegistration;
+use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
 use saoms_core::observe::Observer;
 use saoms_core::report::RunStatus;
@@ -232,7 +232,10 @@ const PAGER_PATIENCE: Duration = Duration::from_secs(60);
 /// The fleet to run, and the files that were read; `None` after its errors have been shown. Texts and diagnostics are
 /// dropped here: a run may last for days.
 fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembly, Vec<PathBuf>)> {
-    let compilation = compiled(files, |project, classes| project.to_start().compile(classes)).ok()?;
+    let languages = EventLanguage::linked().filter(|_| arguments.events.is_some());
+    let settled: Vec<String> = languages.flat_map(|one| one.settles).map(|code| format!("{code}=allow")).collect();
+    let compilation =
+        compiled(files, |project, classes| project.severities(settled).to_start().compile(classes)).ok()?;
     let shown = DiagnosticReport::from(&compilation);
     // Standard output belongs to the run, unless there is none.
     match (arguments.format, &compilation.output) {

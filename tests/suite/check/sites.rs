@@ -68,6 +68,50 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
             &["S5001 luggage cannot be at (5,5)"],
         ),
         (
+            "S5001: both ends of a piece outside the map are one mistake",
+            "World:World: width=3
+             Environment:Environment: scenario=at 1s luggage (3,1) to (3,10)
+             Master:MasterEnvironment:
+             Robot1:Robot:@World",
+            &["S5001 luggage cannot be at (3,1) and (3,10): these blocks are outside the map"],
+        ),
+        (
+            "S5003: robots off the map are told of that alone",
+            "World:World: width=3
+             Robot1:Robot:@World chargeX=9
+             Robot2:Robot:@World chargeX=9|chargeY=1",
+            &["S5002 the charger of robot 1 is at (9,1)", "S5002 the charger of robot 2 is at (9,1)"],
+        ),
+        (
+            "S5009: a world outside of the sites of all robots",
+            "World:World:
+             NWorld:World:North
+             NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (5,5)
+             NMaster:MasterEnvironment:North
+             NRobot1:Robot:North@NWorld",
+            &["S5009 no robot is in this world: it is in no site, or the fleet has no robot there"],
+        ),
+        (
+            "S5018: a site without an environment, and one whose environment has no scenario",
+            "NWorld:World:North
+             NMaster:MasterEnvironment:North
+             NRobot1:Robot:North@NWorld
+             World:World:South
+             SEnvironment:Environment:South
+             SMaster:MasterEnvironment:South
+             SRobot1:Robot:South@World",
+            &[
+                "S5018 no component sends events to this master, so the robots never get work",
+                "S5018 this environment has no scenario, so the robots never get work",
+            ],
+        ),
+        (
+            "S5018: events may come from another program",
+            "Master:MasterEnvironment: url=localhost:61616
+             Robot1:Robot:",
+            &[],
+        ),
+        (
             "S5001: an area of another site is not heard",
             "World:World: topicRename=ETOPIC,North/ETOPIC::ELMSTOPIC,North/ELMSTOPIC
              NEnvironment:Environment:North scenario=at 1s luggage random to (2,2)

@@ -96,6 +96,25 @@ fn events_of_standard_input_and_of_a_file_give_the_same_run_in_virtual_time() {
 }
 
 #[test]
+fn events_bring_the_work_that_no_scenario_does() {
+    let yard = Yard::new();
+    let (output, _) = yard.run(&["--virtual", "--events", "-", "--for", "10min"], LINES);
+    assert!(!String::from_utf8_lossy(&output.stderr).contains("S5018"));
+    let (output, _) = yard.run(&["--virtual", "--for", "10s"], "");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(told.contains("warning[S5018]") && told.contains("--events"), "{told}");
+}
+
+#[test]
+fn a_composite_in_place_of_events_is_told_once() {
+    let yard = Yard::new();
+    let (output, text) = yard.run(&["--virtual", "--events", "yard.composite"], "");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), text.as_str()), (Some(2), ""), "{told}");
+    assert!(told.contains("`yard.composite`: it is XML, expected a line for each event"), "{told}");
+}
+
+#[test]
 fn an_event_says_its_site() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("inner.composite"), FLEET).unwrap();

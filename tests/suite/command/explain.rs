@@ -34,6 +34,7 @@ fn a_mistyped_code_is_refused_with_the_nearest_one_and_the_others_are_explained(
     assert!(stderr(&saoms(&["explain", "ASM60004"])).contains("help: explain the code that stands before it"));
     assert!(stderr(&output).starts_with("error: there is no code `S30O4`\nhelp: did you mean `S3004`?\n"));
     assert!(stdout(&output).starts_with("S3001 "));
+    assert!(stderr(&saoms(&["explain", "S509"])).contains("did you mean `S5009`?"), "not `S4509`");
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn severities_of_the_command_line_decide_the_exit_code() {
     let path = robots(folder.path());
     let check = |more: &[&str]| saoms(&[&["check", "--wiring", &path], more].concat());
     assert_eq!(check(&["--severity", "S4013=error"]).status.code(), Some(2));
-    let codes = ["S4010=allow", "S4011=allow", "S4013=allow", "S4014=allow"];
+    let codes = ["S4010=allow", "S4011=allow", "S4013=allow", "S4014=allow", "S5018=allow"];
     let options: Vec<&str> = codes.iter().flat_map(|code| ["--severity", code]).collect();
     let allowed = check(&options);
     assert_eq!((allowed.status.code(), stderr(&allowed)), (Some(0), String::new()));

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::fs;
 use std::time::Duration;
 
 use saoms_testkit::Fleet;
+
+use crate::support::root;
 
 /// Eight robots on both sides of a corridor as wide as one of them.
 fn corridor() -> Fleet {
@@ -103,4 +106,27 @@ fn luggage_behind_a_broken_robot_is_told_to_have_no_path() {
     let path = "cannot carry luggage 2 from (8,0) to (1,0): blocked blocks or broken robots leave no path there";
     assert!(told.iter().any(|line| line == path), "{told:?}");
     assert_eq!((run.count("luggage.delivered"), run.count("luggage.given_up")), (1, 1));
+}
+
+#[test]
+fn a_robot_whose_world_does_not_answer_says_so_after_a_minute() {
+    let hall = fs::read_to_string(root().join("composites/hall.composite")).unwrap();
+    let robot = "<property name=\"ID\" value=\"Robot7\"/>";
+    let hall = hall.replace(robot, &format!("{robot}<property name=\"discharge\" value=\"0.01\"/>"));
+    let seconds = Duration::from_secs;
+    let waits = |fleet: Fleet| {
+        let run = fleet.run(0, seconds(800));
+        assert!(run.log().contains("deposited luggage 1"), "{}", run.log());
+        run.log().lines().filter(|line| line.contains("waiting")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(waits(Fleet::of_text(&hall)), [""; 0]);
+    assert_eq!(
+        waits(Fleet::of_text(&hall).slow("World", Duration::from_millis(1250), seconds(100))),
+        [
+            "[61.300 s] Robot7: has been waiting for `World`, which is busy, since 1.300 s",
+            "[101.300 s] Robot7: goes on after waiting 100.000 s",
+        ]
+    );
+    let slow = hall.replace("value=\"World\"/>", "value=\"World\"/><property name=\"moveTime\" value=\"20s\"/>");
+    assert_eq!(waits(Fleet::of_text(slow)), [""; 0]);
 }

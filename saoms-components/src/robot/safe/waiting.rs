@@ -38,7 +38,9 @@ impl Waiting {
         match &mut self.way {
             Some(way) if way.goal == goal && distance >= way.closest => {
                 let executions = TELLING_WAIT.saturating_add(2 * knowledge.energy.executions_of_move());
-                if !way.is_told && now.since(way.since) >= context.period().saturating_mul(executions) {
+                // Of hardware that is busy the robot tells apart.
+                let is_due = !way.is_told && !knowledge.hardware.keeps_waiting();
+                if is_due && now.since(way.since) >= context.period().saturating_mul(executions) {
                     way.is_told = true;
                     let since = way.since;
                     match knowledge.traffic.blocker(at, goal, &knowledge.routes) {

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use crate::check::options::Options;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Label, SetBy, Severity, SeverityLevel, codes, nearest, quoted};
+use crate::diagnostic::{
+    Code, Diagnostic, Diagnostics, Label, SetBy, Severity, SeverityLevel, codes, nearest, nearest_code, quoted,
+};
 use crate::model::Contribution;
 use crate::registry::Registry;
 use crate::source::{FileId, Located, Location, Sources, Span, Text};
@@ -274,5 +276,5 @@ fn unknown(code: &Text, known: &[&'static Code]) -> Diagnostic {
 /// The code that is meant by one, or by what a code is called.
 fn meant(code: &Text, known: &[&'static Code]) -> Option<&'static str> {
     let by_name = known.iter().find(|known| known.name == code.as_str()).map(|known| known.id);
-    by_name.or_else(|| nearest(code, known.iter().map(|known| known.id)))
+    by_name.or_else(|| nearest_code(code, &known.iter().map(|known| known.id).collect::<Vec<_>>()))
 }

@@ -79,9 +79,11 @@ pub(crate) fn check<'s>(
     }
     let rules: Vec<&RegisteredRule> = rules.collect();
     let mut told = Told::default();
-    for Site { parts, missing, is_part } in connected(sites, (fleet, checks, wiring)) {
+    let sites = connected(sites, (fleet, checks, wiring));
+    let is_site_of_several = sites.len() > 1;
+    for Site { parts, missing, is_part } in sites {
         let missing = missing.into_values().map(|class| class.map(declarations)).collect();
-        let facts = Facts { fleet, checks, wiring, repeated, missing };
+        let facts = Facts { fleet, checks, wiring, repeated, missing, is_site_of_several };
         facts.check_sites(
             &parts,
             rules.iter().copied().filter(|rule| rule.judges_parts() || !is_part),
@@ -174,6 +176,7 @@ struct Facts<'s, 'f> {
     repeated: &'s RepeatedValues,
     /// The declarations of the classes of components that are not resolved, each once.
     missing: Vec<Option<Vec<&'s str>>>,
+    is_site_of_several: bool,
 }
 
 impl<'s, 'f> Facts<'s, 'f> {
@@ -185,7 +188,7 @@ impl<'s, 'f> Facts<'s, 'f> {
         told: &mut Told,
         report: &mut Report<'_>,
     ) {
-        let Self { fleet, checks, wiring, repeated, missing } = self;
+        let Self { fleet, checks, wiring, repeated, missing, .. } = self;
         let indices: HashMap<usize, usize> = parts.iter().copied().zip(0..).collect();
         let part = |place: &usize| Some((*place, &checks[*place], fleet.class_of(*place)?));
         let subject = |index: usize| {
@@ -223,7 +226,7 @@ impl<'s, 'f> Facts<'s, 'f> {
                 wires,
             });
         let views: Vec<_> = views.collect();
-        let view = FleetView::new(&views).without(missing);
+        let view = FleetView::new(&views).without(missing).of_several(self.is_site_of_several);
         for rule in rules {
             let findings = rule.check(&view).unwrap_or_else(|failure| {
                 let message = format!("the rule {} failed: {failure}", rule.code().name);

@@ -3,6 +3,9 @@
 use std::net::{IpAddr, Ipv6Addr};
 use std::ops::Range;
 
+/// The port of brokers where nothing else is known: that of ActiveMQ, which the original uses.
+const USUAL_PORT: u16 = 61616;
+
 /// The fault of an address.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct AddressFault {
@@ -19,7 +22,13 @@ pub(crate) fn fault(text: &str) -> Option<AddressFault> {
     let at = |at: Range<usize>, message: String| Some(AddressFault { at, message, instead: None });
     if let Some(scheme) = text.find("://") {
         let message = format!("found `{}` before host and port", &text[..scheme + 3]);
-        return Some(AddressFault { at: 0..scheme + 3, message, instead: Some(String::new()) });
+        let rest = &text[scheme + 3..];
+        let rest = &rest[..rest.find(['/', '?']).unwrap_or(rest.len())];
+        let instead = match fault(rest) {
+            None => Some(rest.to_owned()),
+            Some(fault) => fault.instead.filter(|_| fault.at == (0..rest.len())),
+        };
+        return Some(AddressFault { at: 0..text.len(), message, instead });
     }
     let bracket = text.starts_with('[').then(|| text.find(']')).flatten();
     let colon = match bracket {
@@ -27,7 +36,10 @@ pub(crate) fn fault(text: &str) -> Option<AddressFault> {
         None => text.rfind(':'),
     };
     let Some(colon) = colon else {
-        return at(0..text.len(), "there is no port".to_owned());
+        let is_host =
+            !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-._".contains(&byte));
+        let instead = is_host.then(|| format!("{text}:{USUAL_PORT}"));
+        return Some(AddressFault { at: 0..text.len(), message: "there is no port".to_owned(), instead });
     };
     let (host, port) = (&text[..colon], &text[colon + 1..]);
     if host.is_empty() {

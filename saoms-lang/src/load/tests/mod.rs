@@ -349,7 +349,7 @@ fn what_cannot_be_is_found_at_its_place() {
         &format!("<component name='a' autowire='yes'>{JAVA}<reference name='r' multiplicity='0..*'/></component>"),
         "
 2:31 [yes] error S1011 `autowire` is `yes`, expected `true` or `false` | replace it with `true`
-2:104 [0..*] error S1011 `multiplicity` is `0..*`, expected `0..1`, `1..1`, `0..n` or `1..n` | replace it with `0..n`",
+2:104 [0..*] error S1011 `multiplicity` is `0..*`, expected `0..1`, `1..1`, `0..n` or `1..n` | remove `multiplicity`: the class says how many targets there can be",
     );
     faults_1_0(
         "<service name='s'/><reference name='r' promote=''/>",

@@ -203,10 +203,16 @@ impl<'a> Nest<'_, 'a> {
                 });
                 self.lexer.tokens[at as usize].kind = TokenKind::Error;
             }
+            // The file ends inside the tag, which is reported.
+            Some(top) if self.is_cut(tag) && self.name(self.node(*top)).starts_with(found) => self.close(at, true),
             // `</>` ends whatever is open.
             Some(top) if found.is_empty() || self.name(self.node(*top)) == found => self.close(at, true),
             Some(&top) => self.mismatch(at, found, top),
         }
+    }
+
+    fn is_cut(&self, tag: Span) -> bool {
+        tag.end == self.input.len() && !self.input.piece(tag).ends_with('>')
     }
 
     fn ignore(&mut self, at: u32, top: u32) {
@@ -263,7 +269,8 @@ impl<'a> Nest<'_, 'a> {
             let node = *self.node(top);
             // A tag with an unknown end may have been meant as `/>`.
             let is_doubtful = self.token(node.token).is_damaged && top + 1 == self.count;
-            if !is_doubtful && !self.lexer.is_cut_short && !self.has_second_root {
+            let is_cut = self.lexer.is_cut_short || self.lexer.faults.says_cut(self.input.len());
+            if !is_doubtful && !is_cut && !self.has_second_root {
                 let open = self.named(&node);
                 let all: Vec<_> = self.open.iter().rev().map(|open| self.named(self.node(*open)).name).collect();
                 self.lexer.faults.add(|| {

@@ -102,6 +102,7 @@ fn addresses_of_message_brokers() {
         localhost
         3:22-31 error S4005: `localhost` is not an address of a message broker: there is no port
           help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
+          fix: replace it with `localhost:61616` [3:22-31 "localhost:61616"]
         localhost:
         3:31-32 error S4005: `localhost:` is not an address of a message broker: there is no port
           help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
@@ -118,9 +119,9 @@ fn addresses_of_message_brokers() {
         3:32-37 error S4005: `localhost:6161x` is not an address of a message broker: `6161x` is not a port
           help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
         tcp://localhost:61616
-        3:22-28 error S4005: `tcp://localhost:61616` is not an address of a message broker: found `tcp://` before host and port
+        3:22-43 error S4005: `tcp://localhost:61616` is not an address of a message broker: found `tcp://` before host and port
           help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
-          fix: remove it [3:22-28 ""]
+          fix: replace it with `localhost:61616` [3:22-43 "localhost:61616"]
         ::1:61616
         3:22-25 error S4005: `::1:61616` is not an address of a message broker: `::1` is not a host: an IPv6 address is written in brackets
           help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
@@ -144,6 +145,7 @@ fn faults_of_other_properties_hide_none_of_these() {
           help: `delay`: From the start to the first due execution; the default is `0ms`
         4:22-31 error S4005: `localhost` is not an address of a message broker: there is no port
           help: write the address as `host:port`, such as `localhost:61616`, with a port from 1 to 65535
+          fix: replace it with `localhost:61616` [4:22-31 "localhost:61616"]
         4:66-71 error S4004: `useJMS` is false, but component `R` publishes `POSTOPIC` and subscribes to `POSTOPIC` and `ORDERS`
           help: set `useJMS` to true: without it a component cannot publish or subscribe
         5:30-42 error S4002: property `topicRename`: found 3 names, expected a pair `OLD,new`
