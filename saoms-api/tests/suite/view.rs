@@ -4,12 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const NAMES: &[&str] = &[
-    "Adaptation", "Bounded", "CallError", "Cause", "Chance", "Class", "Component", "Context", "Effector", "Entries",
-    "Entry", "Extras", "Failure", "Field", "Finding", "Header", "Knowledge", "Level", "Loop", "LoopClass", "Loops",
-    "Message", "Messages", "Own", "Place", "Properties", "PropertyField", "Publisher", "Record", "Recordable",
-    "ReportValue", "Saved", "SimpleLoop", "StopFunction", "Subscription", "TaskInterface", "TaskInterfaceReference",
-    "Time", "Topic", "Value", "Work", "builtin_interfaces", "extension", "fleet_rules!", "host", "info!", "interface",
-    "plugin!", "record!", "rule", "warn!",
+    "Adaptation", "Bounded", "CallError", "Cause", "Chance", "Class", "Component", "Context", "Departed", "Effector",
+    "Entries", "Entry", "Extras", "Failure", "Field", "Finding", "Header", "Knowledge", "Level", "Loop", "LoopClass",
+    "Loops", "Message", "Messages", "Own", "Place", "Properties", "PropertyField", "Publisher", "Record", "Recordable",
+    "Region", "ReportValue", "Saved", "SimpleLoop", "StopFunction", "Subscription", "TaskInterface",
+    "TaskInterfaceReference", "Time", "Topic", "Value", "Work", "builtin_interfaces", "extension", "fleet_rules!",
+    "host", "info!", "interface", "plugin!", "record!", "rule", "warn!",
 ];
 
 /// The names that the text of `lib.rs` and the exported macros of the crate make public, without hidden ones.
