@@ -28,12 +28,25 @@ pub enum Level {
 pub struct Context<'a> {
     host: &'a mut dyn Host,
     inboxes: &'a [Vec<SharedMessage>],
+    /// True if messages left the region of a subscription.
+    has_departed: bool,
 }
 
 impl<'a> Context<'a> {
     /// For hosts: a context over the messages of this period, one list per subscription in the order of subscribing.
     pub fn new(host: &'a mut dyn Host, inboxes: &'a [Vec<SharedMessage>]) -> Context<'a> {
-        Context { host, inboxes }
+        Context { host, inboxes, has_departed: false }
+    }
+
+    /// For hosts: the same where messages left the [region](Context::set_region) of a subscription.
+    #[must_use]
+    pub fn with_departed(self) -> Context<'a> {
+        Context { has_departed: true, ..self }
+    }
+
+    /// True if messages left the region of a subscription.
+    pub(crate) fn has_departed(&self) -> bool {
+        self.has_departed
     }
 
     /// The parts that the boundary to plugins passes on.

@@ -229,7 +229,7 @@ impl Bench {
             }
         }
         self.step = self.stage.actions.len();
-        let (component, mut context) = (&mut self.component, Context::new(&mut self.stage, &inboxes));
+        let (component, mut context) = (&mut self.component, Context::new(&mut self.stage, &inboxes).with_departed());
         let result = contained(|| code(component.as_mut(), &mut context)).and_then(|result| result);
         self.stage.subscriptions.iter_mut().for_each(|subscription| subscription.departed.clear());
         if let Err(failure) = &result

@@ -343,10 +343,6 @@ impl Host for Stage {
         self.subscriptions.get(subscription as usize).map_or(&[], |topic| &topic.departed)
     }
 
-    fn has_departed(&self) -> bool {
-        self.subscriptions.iter().any(|topic| !topic.departed.is_empty())
-    }
-
     fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
         self.kept = (self.kept.0 + 1, bytes.to_vec());
         Ok(self.kept.0)

@@ -96,8 +96,9 @@ impl Lease {
         code: impl FnOnce(&mut Lease, *const HostHandle) -> Status,
     ) -> Status {
         let lease = self.0;
+        let has_departed = context.has_departed();
         let (host, inboxes) = context.parts();
-        let arrived = inboxes.iter().any(|inbox| !inbox.is_empty()) || host.has_departed();
+        let arrived = has_departed || inboxes.iter().any(|inbox| !inbox.is_empty());
         // SAFETY: this changes the lifetime alone; the pointer is taken out below, before the host's life can end.
         let host = unsafe { mem::transmute::<*mut (dyn Host + '_), *mut (dyn Host + 'static)>(host) };
         lease.host.set(Some(host));

@@ -110,10 +110,6 @@ pub trait Host {
     fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure>;
     /// See [`Context::departed`](crate::Context::departed).
     fn departed(&self, subscription: u32) -> &[Departed];
-    /// True if one of the subscriptions has such messages.
-    fn has_departed(&self) -> bool {
-        false
-    }
     /// See [`Context::keep`](crate::Context::keep).
     ///
     /// # Errors

@@ -310,8 +310,12 @@ fn call<T>(
     let Some(instance) = instance else {
         return Err(Failure::new("there is no component to run"));
     };
+    let has_departed = part.has_departed;
     let mut host = ComponentHost { shared, part };
     let mut context = Context::new(&mut host, inboxes);
+    if has_departed {
+        context = context.with_departed();
+    }
     contained(|| code(instance.as_mut(), &mut context)).map_err(|panic| part.of_loop(panic))
 }
 

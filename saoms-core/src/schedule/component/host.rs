@@ -292,10 +292,6 @@ impl Host for ComponentHost<'_> {
         self.part.departed.get(subscription as usize).map_or(&[], Vec::as_slice)
     }
 
-    fn has_departed(&self) -> bool {
-        self.part.has_departed
-    }
-
     fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure> {
         if bytes.len() > saoms_abi::MAX_BYTES {
             let most = saoms_abi::MAX_BYTES >> 20;
