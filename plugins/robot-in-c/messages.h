@@ -48,7 +48,8 @@
     BLOCK JSON(}, {"name": "luggage", "type": "uint32"}]}}], "reply":) PROGRESS                             \
     JSON(}, {"name": "poll", "arguments": [{"name": "robot", "type": "uint32"}], "reply":) PROGRESS         \
     JSON(}, {"name": "cancel", "arguments": [{"name": "robot", "type": "uint32"}], "reply": null},          \
-        {"name": "retire", "arguments": [{"name": "robot", "type": "uint32"}], "reply":) BLOCK JSON(}]})
+        {"name": "retire", "arguments": [{"name": "robot", "type": "uint32"}], "reply":) BLOCK JSON(},      \
+        {"name": "battery", "arguments": [{"name": "robot", "type": "uint32"}], "reply": {"optional": "float64"}}]})
 
 /* The operations of the hardware, by their places. */
 enum { ENTER = 0, BEGIN = 2, POLL = 3, RETIRE = 5 };

@@ -431,6 +431,9 @@ typedef struct SaomsHostFunctions {
     // The message at this place of those that left the region of a subscription since the execution before: 1 if there
     // is one, else 0.
     uint32_t (*departed)(void *state, uint32_t subscription, size_t place, struct SaomsDepartedView *departed);
+    // In `initialize` not 0 if the component takes the place of another one and goes on from what that saved:
+    // `restore` comes next, and nothing is to be begun or announced anew.
+    uint32_t (*goes_on)(void *state);
 } SaomsHostFunctions;
 
 // A message that arrived.

@@ -141,6 +141,9 @@ pub struct HostFunctions {
     /// is one, else 0.
     pub departed:
         unsafe extern "C" fn(state: *mut c_void, subscription: u32, place: usize, departed: *mut DepartedView) -> u32,
+    /// In `initialize` not 0 if the component takes the place of another one and goes on from what that saved:
+    /// `restore` comes next, and nothing is to be begun or announced anew.
+    pub goes_on: unsafe extern "C" fn(state: *mut c_void) -> u32,
 }
 
 /// The visitor of a component's loops, called with a name, a class, values and their number.

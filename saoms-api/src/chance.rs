@@ -1,5 +1,9 @@
 use std::ops::{Bound, RangeBounds};
 
+use crate::Field;
+use crate::host::cdr::{DecodeError, Reader, Writer};
+use crate::host::declaration::ConstText;
+
 /// A source of chance: small, fast, and the same on every machine for the same seed. Not for secrets.
 ///
 /// The generator is xoshiro256++ 1.0 (Blackman and Vigna, "Scrambled linear pseudorandom number generators", 2021), its
@@ -18,6 +22,27 @@ use std::ops::{Bound, RangeBounds};
 #[repr(transparent)]
 pub struct Chance {
     state: [u64; 4],
+}
+
+/// For state that a component [saves](crate::Component::save): the next one draws on from there.
+impl Field for Chance {
+    const TYPE: ConstText = <[u64; 4] as Field>::TYPE;
+    const LEAST_SIZE: usize = <[u64; 4] as Field>::LEAST_SIZE;
+
+    fn write(&self, writer: &mut Writer) {
+        self.state.write(writer);
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let at = reader.offset();
+        let state = <[u64; 4]>::read(reader)?;
+        // From zeros the generator draws zeros for ever.
+        if state == [0; 4] {
+            Err(DecodeError::new("no source of chance is all zeros", at))
+        } else {
+            Ok(Chance { state })
+        }
+    }
 }
 
 impl Chance {

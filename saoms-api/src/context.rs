@@ -278,6 +278,13 @@ impl<'a> Context<'a> {
         self.host.kept()
     }
 
+    /// True in the `initialize` of a component that takes the place of another one and goes on from what that
+    /// [saved](crate::Component::save): [`restore`](crate::Component::restore) comes next. What the earlier one had
+    /// begun goes on, so that nothing is to be begun or announced anew, as a first position would be.
+    pub fn goes_on(&self) -> bool {
+        self.host.goes_on()
+    }
+
     /// Registers a function that stops the component's hardware from any thread; the class says `stops`. Only in
     /// `initialize`; each call adds one.
     ///

@@ -1,6 +1,6 @@
-use crate::Value;
 use crate::host::cdr::{DecodeError, Reader, Writer};
 use crate::host::declaration::ConstText;
+use crate::{Cause, Time, Value};
 
 /// A type that a message, a service argument, a reply or an entry of a knowledge can hold. They are those of ROS 2
 /// interfaces, so that a message of ROS 2 can be declared field by field:
@@ -176,6 +176,31 @@ impl Field for bool {
             [other] => Err(DecodeError::new(format!("found {other}, expected 0 or 1 for a bool"), at)),
         }
     }
+}
+
+/// Numbers of their own kind, for state that a component [saves](crate::Component::save): nanoseconds since the start
+/// of the run, and the number of a record in its journal.
+macro_rules! numbers_of_a_run {
+    ($($type:ty: $number:expr, $made:expr);* $(;)?) => {
+        $(impl Field for $type {
+            const TYPE: ConstText = <u64 as Field>::TYPE;
+            const LEAST_SIZE: usize = <u64 as Field>::LEAST_SIZE;
+
+            fn write(&self, writer: &mut Writer) {
+                let number: fn(&$type) -> u64 = $number;
+                number(self).write(writer);
+            }
+
+            fn read(reader: &mut Reader<'_>) -> Result<Self, DecodeError> {
+                u64::read(reader).map($made)
+            }
+        })*
+    };
+}
+
+numbers_of_a_run! {
+    Time: |time| time.as_nanos(), Time::from_nanos;
+    Cause: |cause| cause.0, Cause;
 }
 
 impl Field for String {

@@ -75,7 +75,7 @@ mod topic;
 
 pub use adaptation::{
     Adaptation, Cause, Effector, Entries, Entry, Extras, Knowledge, Loop, LoopClass, Loops, Record, Recordable,
-    SimpleLoop, Value,
+    SavedLoops, SimpleLoop, Value,
 };
 pub use bounded::Bounded;
 pub use chance::Chance;

@@ -10,7 +10,7 @@ use crate::{CallError, Component, Context, Failure, Field};
 /// six arguments that are [`Field`]s, and returns a [`Field`] or a [`Failure`]. A component offers the interface by
 /// implementing the trait and saying `service("name": Trait)` in `#[class(...)]`; another one has a field `#[reference]
 /// name: TraitReference` and calls through it. Its methods return [`CallError`] instead of [`Failure`]. The composite
-/// wires the two.
+/// wires the two. An operation with a body is one that a component in Rust need not implement.
 ///
 /// ```
 /// use saoms_api::{Class, Component, Context, Failure, info, interface};

@@ -18,6 +18,7 @@ mod report;
 pub mod robot;
 mod rules;
 pub mod shift;
+mod state;
 pub mod text;
 mod validation;
 pub mod world;

@@ -163,9 +163,6 @@ impl<'a> Operation<'a> {
         let TraitItem::Fn(function) = item else {
             return Err(Error::new_spanned(item, "an interface has operations only: expected `fn`"));
         };
-        if let Some(default) = &function.default {
-            return Err(Error::new_spanned(default, "the component gives the body of an operation: expected `;`"));
-        }
         if !function.sig.generics.params.is_empty() {
             return Err(Error::new_spanned(&function.sig.generics, "an operation cannot be generic"));
         }

@@ -47,13 +47,14 @@ impl Driver {
         Ok(Driver { lines, newest })
     }
 
-    /// Gives an order, whether or not the earlier one is answered: so `stop` overtakes a move.
-    pub(crate) fn order(&self, what: &str) {
+    /// Gives an order, whether or not the earlier one is answered: so `stop` overtakes a move. Returns its number.
+    pub(crate) fn order(&self, what: &str) -> u64 {
         // Under the lock, so that numbers go out in their order.
         let mut newest = self.newest.lock();
         let number = newest.0 + 1;
         let sent = self.lines.send(Line::Order(number, format!("{number} {what}\n")));
         *newest = (number, if sent.is_ok() { OrderState::Running } else { OrderState::Failed });
+        number
     }
 
     /// Tells the controller that the robot is alive; the next time is within `period`. Where the line before has not
@@ -66,9 +67,10 @@ impl Driver {
         }
     }
 
-    /// State of the newest order.
-    pub(crate) fn state(&self) -> OrderState {
-        self.newest.lock().1
+    /// State of the order with this number. It has failed if another order came after it, such as a stop from outside.
+    pub(crate) fn state(&self, number: u64) -> OrderState {
+        let newest = self.newest.lock();
+        if newest.0 == number { newest.1 } else { OrderState::Failed }
     }
 
     /// Orders a stop and waits until it is confirmed; false if it is not. Without an order before there is nothing to

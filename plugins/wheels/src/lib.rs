@@ -25,7 +25,8 @@ pub struct Wheels {
     #[property(default = "30s", range = "10ms"..="10min")]
     patience: Duration,
     block: Block,
-    running: Option<(Action, Time)>,
+    /// The action, when it began, and the number of its order.
+    running: Option<(Action, Time, u64)>,
     driver: Option<Arc<Driver>>,
 }
 
@@ -82,14 +83,14 @@ impl Hardware for Wheels {
             ActionKind::Collect => "collect".to_owned(),
             ActionKind::Deposit => "deposit".to_owned(),
         };
-        self.driver()?.order(&order);
-        self.running = Some((action, context.now()));
+        let number = self.driver()?.order(&order);
+        self.running = Some((action, context.now(), number));
         Ok(Progress::Running)
     }
 
     fn poll(&mut self, context: &mut Context<'_>, _: u32) -> Result<Progress, Failure> {
-        let Some((action, begun)) = self.running else { return Ok(Progress::Done) };
-        match self.driver()?.state() {
+        let Some((action, begun, number)) = self.running else { return Ok(Progress::Done) };
+        match self.driver()?.state(number) {
             OrderState::Running if context.now() - begun < self.patience => Ok(Progress::Running),
             OrderState::Done => {
                 match action.kind {

@@ -1,5 +1,5 @@
 use crate::host::{DerivedLoop, DynEntries, Phase, Snapshot, Subject};
-use crate::{Context, Failure, Knowledge, LoopClass, Properties, Recordable};
+use crate::{Context, Failure, Knowledge, LoopClass, Properties, Recordable, Saved};
 
 /// A MAPE-K loop: one concern of a component that adapts itself.
 ///
@@ -94,6 +94,25 @@ pub trait Loop: DerivedLoop + Send + Sized + 'static {
         let _ = (knowledge, context);
         Ok(())
     }
+
+    /// Saves what the loop knows beside the knowledge, as [`Component::save`](crate::Component::save) does and with the
+    /// same rules: a component that saves asks its loops for it. By default nothing is saved. Only of loops that are
+    /// built together with their component; the others keep in entries what has to last.
+    ///
+    /// # Errors
+    /// The component has failed, or cannot be replaced now.
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::default())
+    }
+
+    /// Goes on from what [`save`](Loop::save) gave, after `initialize`. Not called where nothing was saved.
+    ///
+    /// # Errors
+    /// It cannot go on from that.
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        let _ = saved;
+        Err("the loop saved its state, and this one does not implement `restore`".into())
+    }
 }
 
 /// A loop of any type, as components hold it.
@@ -128,6 +147,21 @@ pub trait DynLoop: Send {
     /// # Errors
     /// As there.
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure>;
+    /// See [`Loop::save`].
+    ///
+    /// # Errors
+    /// As there.
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::default())
+    }
+    /// See [`Loop::restore`].
+    ///
+    /// # Errors
+    /// As there.
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        let _ = saved;
+        Ok(())
+    }
 }
 
 impl<L: LoopClass> DynLoop for L {
@@ -165,6 +199,14 @@ impl<L: LoopClass> DynLoop for L {
 
     fn shutdown(&mut self, knowledge: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         Loop::shutdown(self, subject::<L>(knowledge)?, context)
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Loop::save(self)
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        Loop::restore(self, saved)
     }
 }
 

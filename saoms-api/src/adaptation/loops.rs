@@ -108,6 +108,18 @@ impl Loops {
         result
     }
 
+    /// Calls this code with the name of each loop, and the loop.
+    pub(super) fn for_each(
+        &mut self,
+        mut code: impl FnMut(&str, &mut dyn DynLoop) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        for named in &mut self.loops {
+            let result = code(&named.name, &mut *named.instance);
+            named.of_loop(result)?;
+        }
+        Ok(())
+    }
+
     /// The loops with the numbers of their places.
     fn placed(&mut self) -> impl Iterator<Item = (u32, &mut Named)> {
         (0..).zip(&mut self.loops)

@@ -174,6 +174,11 @@ unsafe extern "C" fn departed(state: *mut c_void, subscription: u32, place: usiz
     }
 }
 
+unsafe extern "C" fn goes_on(state: *mut c_void) -> u32 {
+    // SAFETY: callers pass the state of their handle.
+    unsafe { with_host(state, 0, |host| u32::from(host.goes_on())) }
+}
+
 unsafe extern "C" fn is_wired(state: *mut c_void, reference: u32) -> u32 {
     // SAFETY: callers pass the state of their handle.
     unsafe { with_host(state, 0, |host| u32::from(host.is_wired(reference))) }
@@ -374,6 +379,7 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     kept,
     set_region,
     departed,
+    goes_on,
 };
 
 /// A time of the other side.

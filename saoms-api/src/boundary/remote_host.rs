@@ -256,6 +256,10 @@ impl Host for RemoteHost<'_> {
         (number, unsafe { bytes.get() }.unwrap_or_default())
     }
 
+    fn goes_on(&self) -> bool {
+        get!(self.goes_on) != 0
+    }
+
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
         let (view, mut error) = (stop::export(stop), Buffer::default());
         let status = get!(self.register_stop, &raw const view, sink(&mut error));

@@ -117,6 +117,10 @@ pub trait Host {
     fn keep(&mut self, bytes: &[u8]) -> Result<u64, Failure>;
     /// See [`Context::kept`](crate::Context::kept).
     fn kept(&self) -> (u64, &[u8]);
+    /// See [`Context::goes_on`](crate::Context::goes_on).
+    fn goes_on(&self) -> bool {
+        false
+    }
     /// See [`Context::register_stop`](crate::Context::register_stop).
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! Events outside the fleet, played from a scenario.
 
+mod memory;
 mod outside;
 mod player;
 mod scenario;
@@ -9,8 +10,8 @@ mod tests;
 use std::collections::BTreeMap;
 
 use saoms_api::{
-    Class, Component, Context, Failure, Level, Properties, Publisher, Record, Subscription, Time, Work, info, record,
-    warn,
+    Class, Component, Context, Failure, Level, Properties, Publisher, Record, Saved, Subscription, Time, Work, info,
+    record, warn,
 };
 
 use crate::console::Timestamp;
@@ -45,7 +46,7 @@ pub struct EnvironmentProperties {
 /// Votes that the run is done when the scenario is over and all its luggage is delivered or given up, and that work was
 /// given up if any of it was.
 #[derive(Debug, Class)]
-#[class(name = "saoms.Environment", periodic, also("launch.Environment"))]
+#[class(name = "saoms.Environment", periodic, saves, also("launch.Environment"))]
 pub struct Environment {
     scenario: Scenario,
     playing: Option<(Time, Player)>,
@@ -89,6 +90,10 @@ impl Component for Environment {
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if context.goes_on() {
+            // It has said all this, and voted.
+            return Ok(());
+        }
         let now = Timestamp::now(context);
         context.console(format_args!("Environment tests start at {now}"));
         if self.scenario.lines().is_empty() {
@@ -119,6 +124,14 @@ impl Component for Environment {
         }
         self.playing = Some((start, player));
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.save_state())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.restore_state(saved)
     }
 
     fn waits_for(&self) -> Option<String> {

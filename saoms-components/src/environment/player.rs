@@ -2,7 +2,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Duration;
 
-use saoms_api::Chance;
+use saoms_api::{Chance, Failure, Field, Time};
 
 use super::scenario::{EventSpec, Line, Scenario};
 use crate::grid::{Block, Map};
@@ -38,7 +38,50 @@ pub(super) struct Player {
     due: BinaryHeap<Reverse<(Duration, usize)>>,
 }
 
+/// State of a player, for an environment that goes on.
+#[derive(Clone, Debug, Field)]
+pub(super) struct PlayerMemory {
+    chances: Vec<Chance>,
+    played: Vec<u64>,
+    due: Vec<Due>,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct Due {
+    at: Time,
+    line: u32,
+}
+
 impl Player {
+    /// The state of the player.
+    pub(super) fn memory(&self) -> PlayerMemory {
+        // Like `Time`, no scenario lasts longer than 500 years.
+        let due =
+            |Reverse((at, place)): &Reverse<(Duration, usize)>| Due { at: Time::START + *at, line: *place as u32 };
+        let mut due: Vec<Due> = self.due.iter().map(due).collect();
+        due.sort_unstable_by_key(|due| (due.at, due.line));
+        PlayerMemory {
+            chances: self.lines.iter().map(|(_, chance)| chance.clone()).collect(),
+            played: self.played.clone(),
+            due,
+        }
+    }
+
+    /// A player that goes on with this scenario.
+    ///
+    /// # Errors
+    /// The scenario has other lines.
+    pub(super) fn of(scenario: &Scenario, memory: PlayerMemory) -> Result<Player, Failure> {
+        let PlayerMemory { chances, played, due } = memory;
+        let count = scenario.lines().len();
+        let is_of_scenario = chances.len() == count && played.len() == count;
+        if !is_of_scenario || due.iter().any(|due| due.line as usize >= count) {
+            return Err("its scenario has other lines now".into());
+        }
+        let due = due.iter().map(|due| Reverse((due.at.since(Time::START), due.line as usize)));
+        Ok(Player { lines: scenario.lines().iter().cloned().zip(chances).collect(), played, due: due.collect() })
+    }
+
     pub(super) fn new(scenario: &Scenario, chance: &mut Chance) -> Player {
         let lines = scenario.lines().iter().map(|line| (line.clone(), Chance::new(chance.next_u64())));
         let lines: Vec<(Line, Chance)> = lines.collect();

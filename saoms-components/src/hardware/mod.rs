@@ -35,4 +35,11 @@ pub trait Hardware {
     /// Takes the robot out of service: its action ends, it stays where it is, and adjacent robots may collect and
     /// deposit on its block in its place. Returns its position.
     fn retire(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Block, Failure>;
+
+    /// Level of the robot's battery in percent; `None`, as by itself, if the hardware does not measure it: then the
+    /// robot counts.
+    fn battery(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Option<f64>, Failure> {
+        let _ = (context, robot);
+        Ok(None)
+    }
 }

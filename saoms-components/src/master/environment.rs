@@ -1,7 +1,9 @@
-use saoms_api::{Cause, Class, Component, Context, Failure, Header, Level, Publisher, Subscription, Work};
+use saoms_api::{
+    Cause, Class, Component, Context, Failure, Header, Level, Message, Publisher, Saved, Subscription, Work,
+};
 
 use super::event_filter::EventFilter;
-use super::open_luggage::OpenLuggage;
+use super::open_luggage::{OpenLuggage, OpenMemory};
 use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
@@ -9,7 +11,8 @@ use crate::messages::{
     Fault, LuggageStage, ROBOT_LIST, RobotList,
 };
 use crate::report::pieces;
-use crate::validation::{MessageValidator, Problem, Validate};
+use crate::state::Numbers;
+use crate::validation::{MessageValidator, Problem, SpeakerMemory, Validate};
 
 /// Distributes the events of the environment to their topics: luggage and faults to the robots, exceptional events to
 /// the master of the robots.
@@ -18,7 +21,7 @@ use crate::validation::{MessageValidator, Problem, Validate};
 /// world, are reported with their sender, counted, and dropped. Luggage that all robots refuse, or for which no robot
 /// is left, is reported as given up.
 #[derive(Debug, Class)]
-#[class(name = "saoms.MasterEnvironment", periodic, also("unibg.saoms.MasterEnvironmentManagingSystem"))]
+#[class(name = "saoms.MasterEnvironment", periodic, saves, also("unibg.saoms.MasterEnvironmentManagingSystem"))]
 pub struct MasterEnvironment {
     validator: MessageValidator,
     filter: EventFilter,
@@ -37,6 +40,14 @@ pub struct MasterEnvironment {
     exceptional: Publisher<ExceptionalEvent>,
     #[publishes(FAULT)]
     faults: Publisher<Fault>,
+}
+
+/// State of a master, for the one that takes its place after a failure.
+#[derive(Clone, Debug, Message)]
+struct MasterMemory {
+    speakers: SpeakerMemory,
+    known: Numbers,
+    open: OpenMemory,
 }
 
 impl Component for MasterEnvironment {
@@ -79,6 +90,23 @@ impl Component for MasterEnvironment {
             context.vote(Work::GivenUp);
             context.send(&self.luggage, EventLuggage::given_up(luggage, from, to))?;
         }
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::of(&MasterMemory {
+            speakers: self.validator.memory(),
+            known: self.filter.known().clone(),
+            open: self.open.memory(),
+        }))
+    }
+
+    /// Goes on from a saved state; the area comes again from its topic.
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        let Some(memory) = saved.read::<MasterMemory>()? else { return Ok(()) };
+        self.validator.restore(memory.speakers);
+        self.filter = EventFilter::of(memory.known);
+        self.open = OpenLuggage::of(memory.open);
         Ok(())
     }
 

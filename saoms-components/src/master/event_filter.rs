@@ -1,7 +1,6 @@
-use std::collections::BTreeSet;
-
 use crate::grid::Map;
 use crate::messages::EventLuggage;
+use crate::state::Numbers;
 use crate::validation::Problem;
 
 /// Filter for events from the environment's topic, on which any component may publish.
@@ -10,7 +9,7 @@ pub(super) struct EventFilter {
     /// The area, once the world has published it.
     area: Option<Map>,
     /// Numbers of all luggage so far.
-    known: BTreeSet<u32>,
+    known: Numbers,
 }
 
 /// Refusal of luggage with its reason.
@@ -22,6 +21,16 @@ pub(super) struct Refusal {
 }
 
 impl EventFilter {
+    /// A filter that knows this luggage.
+    pub(super) fn of(known: Numbers) -> EventFilter {
+        EventFilter { area: None, known }
+    }
+
+    /// Numbers of all luggage so far.
+    pub(super) fn known(&self) -> &Numbers {
+        &self.known
+    }
+
     /// The area, if it is known.
     pub(super) fn area(&self) -> Option<&Map> {
         self.area.as_ref()
@@ -33,7 +42,7 @@ impl EventFilter {
 
     /// Admits luggage, once.
     pub(super) fn luggage(&mut self, request: &EventLuggage) -> Result<(), Refusal> {
-        if self.known.contains(&request.luggage) {
+        if self.known.contains(request.luggage) {
             return Err(Refusal { problem: Problem::KnownLuggage, is_lost: false });
         }
         let lost = |problem| Refusal { problem, is_lost: true };
@@ -49,7 +58,7 @@ impl EventFilter {
 
     /// True if luggage with this number was requested.
     pub(super) fn knows(&self, luggage: u32) -> bool {
-        self.known.contains(&luggage)
+        self.known.contains(luggage)
     }
 }
 

@@ -1,7 +1,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-use saoms_api::Time;
+use saoms_api::{Field, Time};
 
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage, RobotList};
@@ -30,7 +30,77 @@ struct Piece {
     refused: BTreeSet<u32>,
 }
 
+/// Open luggage, for a master that goes on.
+#[derive(Clone, Debug, Field)]
+pub(super) struct OpenMemory {
+    pieces: Vec<PieceMemory>,
+    active: Vec<ActiveMemory>,
+    breaking: Vec<BreakingMemory>,
+    broken: Vec<u32>,
+    seen: bool,
+    changed: bool,
+}
+
+#[derive(Clone, Debug, Field)]
+struct PieceMemory {
+    luggage: u32,
+    from: Block,
+    to: Block,
+    refused: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct ActiveMemory {
+    robot: u32,
+    period_us: u64,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct BreakingMemory {
+    robot: u32,
+    until: Time,
+}
+
 impl OpenLuggage {
+    /// The state for a master that goes on.
+    pub(super) fn memory(&self) -> OpenMemory {
+        let piece = |(luggage, piece): (&u32, &Piece)| {
+            let Piece { from, to, refused } = piece;
+            PieceMemory { luggage: *luggage, from: *from, to: *to, refused: refused.iter().copied().collect() }
+        };
+        // Periods came as whole microseconds.
+        let active = |(robot, period): (&u32, &Duration)| ActiveMemory {
+            robot: *robot,
+            period_us: u64::try_from(period.as_micros()).unwrap_or(u64::MAX),
+        };
+        let breaking = self.breaking.iter().map(|(&robot, &until)| BreakingMemory { robot, until });
+        OpenMemory {
+            pieces: self.pieces.iter().map(piece).collect(),
+            active: self.active.iter().map(active).collect(),
+            breaking: breaking.collect(),
+            broken: self.broken.iter().copied().collect(),
+            seen: self.seen,
+            changed: self.changed,
+        }
+    }
+
+    /// The state of a master that goes on.
+    pub(super) fn of(memory: OpenMemory) -> OpenLuggage {
+        let piece = |piece: PieceMemory| {
+            let PieceMemory { luggage, from, to, refused } = piece;
+            (luggage, Piece { from, to, refused: refused.into_iter().collect() })
+        };
+        let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
+        OpenLuggage {
+            pieces: memory.pieces.into_iter().map(piece).collect(),
+            active: active.collect(),
+            breaking: memory.breaking.iter().map(|breaking| (breaking.robot, breaking.until)).collect(),
+            broken: memory.broken.into_iter().collect(),
+            seen: memory.seen,
+            changed: memory.changed,
+        }
+    }
+
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
         self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new() });
         self.changed = true;

@@ -108,7 +108,12 @@ impl RobotKnowledge {
         Ok(())
     }
 
-    fn take_in(&mut self, context: &mut Context<'_>, action: Action, progress: Progress) -> Result<Outcome, Failure> {
+    pub(super) fn take_in(
+        &mut self,
+        context: &mut Context<'_>,
+        action: Action,
+        progress: Progress,
+    ) -> Result<Outcome, Failure> {
         match progress {
             Progress::Running => Ok(Outcome::Running),
             Progress::Done => {

@@ -1,8 +1,9 @@
-use saoms_api::{CallError, Context, Failure};
+use saoms_api::{CallError, Context, Failure, Field};
 
 use crate::grid::{Block, Map};
 use crate::hardware::{Action, ActionKind, HardwareReference, Progress};
 
+use super::gauge::Gauge;
 use super::patience::Patience;
 
 /// Client of a robot's hardware, called through its reference `world`. If that is not wired, every action succeeds at
@@ -16,8 +17,20 @@ pub(crate) struct HardwareClient {
     absent: bool,
     /// True once it is out of service.
     retired: bool,
+    /// True if the robot goes on after a failure, and does not know yet what the hardware did meanwhile.
+    catching_up: bool,
     running: Option<Action>,
     patience: Patience,
+    gauge: Gauge,
+}
+
+/// What outlives a failure of the robot.
+#[derive(Clone, Copy, Debug, Field)]
+pub(crate) struct HardwareMemory {
+    entered: bool,
+    retired: bool,
+    running: Option<Action>,
+    measures: bool,
 }
 
 /// Result of a call to the hardware.
@@ -35,6 +48,77 @@ impl HardwareClient {
         Ok(HardwareClient { hardware, wired, entered: !wired, ..HardwareClient::default() })
     }
 
+    pub(crate) fn memory(&self) -> HardwareMemory {
+        let HardwareClient { entered, retired, running, .. } = *self;
+        HardwareMemory { entered, retired, running, measures: self.gauge.measures() }
+    }
+
+    /// Goes on with hardware that did not stop meanwhile.
+    pub(crate) fn restore(&mut self, memory: HardwareMemory) {
+        (self.retired, self.running) = (memory.retired, memory.running);
+        self.gauge = Gauge::of(memory.measures);
+        self.entered = !self.wired || memory.entered;
+        self.catching_up = self.wired && memory.entered && !memory.retired;
+    }
+
+    /// True if the robot goes on after a failure, and does not know yet what the hardware did meanwhile.
+    pub(crate) fn is_catching_up(&self) -> bool {
+        self.catching_up
+    }
+
+    /// The robot knows what the hardware did meanwhile, and what it does now.
+    pub(crate) fn caught_up(&mut self, running: Option<Action>) {
+        (self.catching_up, self.running) = (false, running);
+    }
+
+    /// Asks about whatever it may do.
+    pub(crate) fn ask(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Reply<Progress>, Failure> {
+        let answer = self.hardware.poll(context, robot);
+        self.patience.note(is_over(&answer), busy(&answer), context);
+        reply(answer)
+    }
+
+    /// Asks where the robot is; nothing runs.
+    pub(crate) fn locate(
+        &mut self,
+        context: &mut Context<'_>,
+        robot: u32,
+        name: &str,
+        block: Block,
+    ) -> Result<Reply<Block>, Failure> {
+        reply(self.hardware.enter(context, robot, name.to_owned(), block))
+    }
+
+    /// Asks for the area.
+    pub(crate) fn area(&mut self, context: &mut Context<'_>) -> Result<Reply<Map>, Failure> {
+        let area = match reply(self.hardware.area(context))? {
+            Reply::Answer(area) => area,
+            Reply::Later => return Ok(Reply::Later),
+        };
+        let map: Option<Map> = area.into();
+        map.map(Reply::Answer).ok_or_else(|| Failure::new("the world's map does not match its width and height"))
+    }
+
+    /// The battery level that the hardware measures, in percent; `None` if it told none now.
+    pub(crate) fn battery(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Option<f64>, Failure> {
+        if !self.wired || !self.has_entered() || self.retired {
+            return Ok(None);
+        }
+        if !self.gauge.asks() {
+            return Ok(None);
+        }
+        Ok(match reply(self.hardware.battery(context, robot))? {
+            Reply::Answer(percent) => self.gauge.take_in(percent),
+            // The last level counts.
+            Reply::Later => None,
+        })
+    }
+
+    /// True if the hardware measures the battery, so that the robot does not count.
+    pub(crate) fn measures_battery(&self) -> bool {
+        self.gauge.measures()
+    }
+
     /// True if there is hardware.
     pub(crate) fn is_wired(&self) -> bool {
         self.wired
@@ -42,7 +126,7 @@ impl HardwareClient {
 
     /// True if the robot is registered with the hardware.
     pub(crate) fn has_entered(&self) -> bool {
-        self.entered
+        self.entered && !self.catching_up
     }
 
     /// True if the robot waits for the component behind its reference to be started.
@@ -69,16 +153,9 @@ impl HardwareClient {
             Reply::Answer(block) => block,
             Reply::Later => return Ok(Reply::Later),
         };
-        let area = match reply(self.hardware.area(context))? {
-            Reply::Answer(area) => area,
-            Reply::Later => return Ok(Reply::Later),
-        };
+        let Reply::Answer(map) = self.area(context)? else { return Ok(Reply::Later) };
         self.entered = true;
-        let map: Option<Map> = area.into();
-        if map.is_none() {
-            return Err(Failure::new("the world's map does not match its width and height"));
-        }
-        Ok(Reply::Answer((block, map)))
+        Ok(Reply::Answer((block, Some(map))))
     }
 
     /// The running action.
@@ -130,9 +207,10 @@ impl HardwareClient {
         if self.running.is_none() {
             return Ok(Reply::Answer(Progress::Done));
         }
-        let answer = self.hardware.poll(context, robot);
-        self.patience.note(is_over(&answer), busy(&answer), context);
-        let progress = reply(answer)?;
+        if self.catching_up {
+            return Ok(Reply::Later);
+        }
+        let progress = self.ask(context, robot)?;
         if matches!(progress, Reply::Answer(Progress::Done | Progress::Failed)) {
             self.running = None;
         }

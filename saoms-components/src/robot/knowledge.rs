@@ -265,7 +265,7 @@ pub enum Trouble {
 }
 
 /// State of a robot, in the terms of the manual's table 6.27.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Entries)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Entries, Field)]
 pub struct Variables {
     /// True if the robot has a job, or may not take one.
     #[entry]

@@ -1,79 +1,142 @@
-//! State that a robot keeps when it, or one of its loops, is replaced by a new build.
+//! State of a robot, for the one that takes its place: after a failure, or with a new build of it or of its loops.
 
 use std::time::Duration;
 
-use saoms_api::{Failure, Header, Message, Saved, Time};
+use saoms_api::{Cause, Failure, Field, Message, Saved, SavedLoops, Time};
 
-use super::RobotKnowledge;
+use super::Job;
+use super::hardware_client::HardwareMemory;
+use super::knowledge::{JobEnd, RobotKnowledge, Trouble, Variables};
+use super::lists::ListsMemory;
+use super::routes::RoutesMemory;
+use super::safe::{Energy, Leg, TrafficMemory};
 use super::tally::Tally;
 use crate::grid::Block;
-use crate::messages::{CriticalSituation, EventLuggage};
+use crate::validation::SpeakerMemory;
 
-/// Knowledge of a robot without a job that no message repeats.
+/// All that a robot knows, but what its properties say and what is measured anew in each execution.
 #[derive(Clone, Debug, Message)]
 struct Memory {
-    battery: f64,
-    asleep: bool,
-    relieved: bool,
-    loaded: bool,
+    executed_at: Option<Time>,
+    tally: TallyMemory,
+    block: Block,
+    next: Block,
+    wanted: Option<Block>,
     charge_block: Block,
-    luggage: Vec<EventLuggage>,
-    critical: Vec<CriticalSituation>,
+    battery: BatteryMemory,
+    reserve: u32,
+    must_charge: bool,
+    job: Option<Job>,
+    variables: Variables,
+    shut_down: bool,
+    stands_in_for: Option<u32>,
+    relieved: bool,
+    speakers: SpeakerMemory,
+    lists: ListsMemory,
+    routes: RoutesMemory,
+    hardware: HardwareMemory,
+    begun: Cause,
+    offers_help: bool,
+    trouble: Option<Trouble>,
+    failures: u32,
+    untold: Option<JobEnd>,
+    loaded: bool,
+    said_homeward: bool,
+    energy: Energy,
+    traffic: TrafficMemory,
+    leg: Leg,
+    loops: SavedLoops,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct TallyMemory {
     delivered: u64,
     blocks: u64,
     waited_ns: u64,
 }
 
+#[derive(Clone, Copy, Debug, Field)]
+struct BatteryMemory {
+    percent: f64,
+    shown: f64,
+    charging: bool,
+    lasts: u32,
+    way_home: u32,
+    charge_at: f64,
+    asked_to_charge: bool,
+}
+
 impl RobotKnowledge {
-    /// Saves the state. A robot in the middle of a job cannot be saved: its loops know more than this.
-    pub(super) fn save(&self) -> Result<Saved, Failure> {
-        if self.variables.critical {
-            return Err("it is out of order".into());
-        }
-        if let Some(job) = self.job {
-            return Err(Failure::new(format!("it brings luggage {}", job.luggage)));
-        }
-        let claims = self.variables.transporter || self.offers_help || self.untold.is_some();
-        if claims || self.hardware.running().is_some() {
-            return Err("it is not idle".into());
-        }
-        let requests = self.lists.requests.open().iter().map(|request| request.job);
-        let luggage = requests.map(|job| EventLuggage::request(job.luggage, job.from, job.to));
-        let critical = self.lists.helps.open().iter().map(|help| help.situation.clone());
-        Ok(Saved::of(&Memory {
-            battery: self.battery.percent(),
-            asleep: self.variables.asleep,
-            relieved: self.relieved,
-            loaded: self.loaded,
+    /// The state of the robot, with that of its loops.
+    pub(super) fn save(&self, loops: SavedLoops) -> Saved {
+        let Tally { delivered, blocks, waited } = self.tally;
+        let waited_ns = u64::try_from(waited.as_nanos()).unwrap_or(u64::MAX);
+        Saved::of(&Memory {
+            executed_at: self.executed_at,
+            tally: TallyMemory { delivered, blocks, waited_ns },
+            block: self.block,
+            next: self.next,
+            wanted: self.wanted,
             charge_block: self.charge_block,
-            luggage: luggage.collect(),
-            critical: critical.collect(),
-            delivered: self.tally.delivered,
-            blocks: self.tally.blocks,
-            waited_ns: u64::try_from(self.tally.waited.as_nanos()).unwrap_or(u64::MAX),
-        }))
+            battery: BatteryMemory {
+                percent: self.battery.percent(),
+                shown: self.charge,
+                charging: self.charging,
+                lasts: self.lasts,
+                way_home: self.way_home,
+                charge_at: self.charge_at,
+                asked_to_charge: self.asked_to_charge,
+            },
+            reserve: self.reserve,
+            must_charge: self.must_charge,
+            job: self.job,
+            variables: self.variables,
+            shut_down: self.shut_down,
+            stands_in_for: self.stands_in_for,
+            relieved: self.relieved,
+            speakers: self.validator.memory(),
+            lists: self.lists.memory(),
+            routes: self.routes.memory(),
+            hardware: self.hardware.memory(),
+            begun: self.begun,
+            offers_help: self.offers_help,
+            trouble: self.trouble,
+            failures: self.failures,
+            untold: self.untold,
+            loaded: self.loaded,
+            said_homeward: self.said_homeward,
+            energy: self.energy.clone(),
+            traffic: self.traffic.memory(),
+            leg: self.leg,
+            loops,
+        })
     }
 
-    /// Restores a saved state.
-    pub(super) fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
-        let Some(memory) = saved.read::<Memory>()? else { return Ok(()) };
-        self.battery.set_percent(memory.battery);
-        self.charge = self.battery.percent();
-        (self.variables.asleep, self.variables.in_charge) = (memory.asleep, memory.asleep);
-        let waited = Duration::from_nanos(memory.waited_ns);
-        self.tally = Tally { delivered: memory.delivered, blocks: memory.blocks, waited };
-        (self.relieved, self.loaded) = (memory.relieved, memory.loaded);
-        if memory.charge_block != self.charge_block {
-            self.use_charger(memory.charge_block);
-        }
-        // They have waited for an unknown time, which does not matter.
-        let header = Header { sender: u32::MAX, sent: Time::START, cause: saoms_api::Cause::default() };
-        for request in &memory.luggage {
-            self.lists.requests.hear(request, header);
-        }
-        for situation in &memory.critical {
-            self.lists.helps.hear(situation, header);
-        }
-        Ok(())
+    /// Restores a saved state, and gives back that of the loops.
+    pub(super) fn restore(&mut self, saved: &Saved) -> Result<SavedLoops, Failure> {
+        let Some(memory) = saved.read::<Memory>()? else { return Ok(SavedLoops::default()) };
+        self.executed_at = memory.executed_at;
+        let TallyMemory { delivered, blocks, waited_ns } = memory.tally;
+        self.tally = Tally { delivered, blocks, waited: Duration::from_nanos(waited_ns) };
+        (self.block, self.next, self.wanted) = (memory.block, memory.next, memory.wanted);
+        self.charge_block = memory.charge_block;
+        self.battery.set_percent(memory.battery.percent);
+        (self.charge, self.charging) = (memory.battery.shown, memory.battery.charging);
+        (self.lasts, self.way_home) = (memory.battery.lasts, memory.battery.way_home);
+        (self.charge_at, self.asked_to_charge) = (memory.battery.charge_at, memory.battery.asked_to_charge);
+        (self.reserve, self.must_charge) = (memory.reserve, memory.must_charge);
+        (self.job, self.variables, self.shut_down) = (memory.job, memory.variables, memory.shut_down);
+        (self.stands_in_for, self.relieved) = (memory.stands_in_for, memory.relieved);
+        self.validator.restore(memory.speakers);
+        self.lists.restore(memory.lists);
+        self.routes.restore(&memory.routes);
+        self.hardware.restore(memory.hardware);
+        self.note_running();
+        (self.begun, self.offers_help) = (memory.begun, memory.offers_help);
+        (self.trouble, self.failures) = (memory.trouble, memory.failures);
+        (self.untold, self.loaded, self.said_homeward) = (memory.untold, memory.loaded, memory.said_homeward);
+        (self.energy, self.leg) = (memory.energy, memory.leg);
+        self.traffic.restore(memory.traffic);
+        Ok(memory.loops)
     }
 }

@@ -8,11 +8,14 @@
 
 mod actions;
 mod battery;
+mod catch_up;
 pub mod classic;
 mod console;
+mod gauge;
 mod hardware_client;
 mod job;
 mod knowledge;
+mod lasting;
 mod lists;
 mod memory;
 mod orders;
@@ -49,6 +52,7 @@ use receive::Topics;
 #[class(
     name = "saoms.Robot",
     periodic,
+    saves,
     knowledge = RobotKnowledge,
     loops(
         property = "policy",
@@ -117,7 +121,9 @@ impl Component for Robot {
         self.topics = Topics::subscribe(context)?;
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
-        self.enter(context)?;
+        if !context.goes_on() {
+            self.enter(context)?;
+        }
         self.loops.initialize(&mut *self.knowledge, context)
     }
 
@@ -136,7 +142,7 @@ impl Component for Robot {
         }
         let was_critical = self.knowledge.variables.critical;
         self.knowledge.hear(&self.topics, context);
-        self.knowledge.begin_execution(context.now());
+        self.knowledge.begin_execution(context)?;
         self.loops.monitor(&mut *self.knowledge, context)?;
         if entered {
             self.knowledge.poll_unwatched(&self.loops, context)?;
@@ -163,11 +169,13 @@ impl Component for Robot {
     }
 
     fn save(&mut self) -> Result<Saved, Failure> {
-        self.knowledge.save()
+        let loops = self.loops.save(&*self.knowledge)?;
+        Ok(self.knowledge.save(loops))
     }
 
     fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
-        self.knowledge.restore(saved)
+        let loops = self.knowledge.restore(saved)?;
+        self.loops.restore(&mut *self.knowledge, &loops)
     }
 
     fn waits_for(&self) -> Option<String> {
@@ -181,11 +189,15 @@ impl Robot {
         &self.knowledge
     }
 
-    /// Registers the robot with the world and learns the map; `false` while the world cannot be reached.
+    /// Registers the robot with the world and learns the map, or learns what the world did while the robot was out;
+    /// `false` while the world cannot be reached.
     fn enter(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
         let knowledge = &mut self.knowledge;
         if knowledge.hardware.has_entered() {
             return Ok(true);
+        }
+        if knowledge.hardware.is_catching_up() {
+            return knowledge.catch_up(context);
         }
         match knowledge.hardware.enter(context, knowledge.number, &knowledge.name, knowledge.block)? {
             Reply::Later => Ok(false),

@@ -41,7 +41,7 @@ impl RobotKnowledge {
     }
 
     /// The next work of the gripper for the job.
-    fn gripping(&self) -> Option<Action> {
+    pub(super) fn gripping(&self) -> Option<Action> {
         let job = self.job.filter(|_| self.variables.busy)?;
         let carries = self.variables.has_luggage;
         Some(if carries { Action::deposit(job.luggage, job.to) } else { Action::collect(job.luggage, job.from) })

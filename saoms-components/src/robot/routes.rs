@@ -1,3 +1,5 @@
+use saoms_api::Field;
+
 use crate::grid::{Block, Distances, MOVE, Map, UNREACHABLE};
 
 /// A robot's view of the area, and the ways through it.
@@ -18,6 +20,20 @@ pub struct Routes {
     heading: usize,
     /// Number of changes of the map that make other ways possible or necessary.
     changes: u32,
+}
+
+/// What a robot that goes on knows of the area beside the map, which its hardware tells again.
+#[derive(Clone, Debug, Field)]
+pub(super) struct RoutesMemory {
+    obstacles: Vec<Obstacle>,
+    changes: u32,
+}
+
+/// A robot that does not move any more.
+#[derive(Clone, Copy, Debug, Field)]
+struct Obstacle {
+    robot: u32,
+    block: Block,
 }
 
 /// Number of cached searches: for the charger, the two ends of the job, and a goal under consideration.
@@ -51,7 +67,37 @@ impl Routes {
     pub fn learn(&mut self, map: Map, charge_block: Block) {
         let searched = !map.is_open() || map.size() <= SEARCHED;
         let chargers = Map::new(map.width(), map.height());
-        self.area = Some(Area { map, empty: None, chargers, charge_block, searched });
+        let mut area = Area { map, empty: None, chargers, charge_block, searched };
+        if !self.obstacles.is_empty() {
+            area.empty = Some(area.map.clone());
+            self.obstacles.iter().for_each(|(_, block)| _ = area.map.set_blocked(*block));
+        }
+        self.area = Some(area);
+    }
+
+    /// Learns the map for a robot that goes on, with the chargers that it knew.
+    pub(super) fn learn_again(&mut self, map: Map, charge_block: Block, chargers: &[Block]) {
+        let changes = self.changes;
+        self.learn(map, charge_block);
+        chargers.iter().for_each(|charger| self.learn_charger(*charger));
+        // Its loops have seen these changes.
+        self.changes = changes;
+    }
+
+    /// True if the map is known.
+    pub(super) fn knows_area(&self) -> bool {
+        self.area.is_some()
+    }
+
+    pub(super) fn memory(&self) -> RoutesMemory {
+        let obstacles = self.obstacles.iter().map(|&(robot, block)| Obstacle { robot, block });
+        RoutesMemory { obstacles: obstacles.collect(), changes: self.changes }
+    }
+
+    /// Restores what is known beside the map.
+    pub(super) fn restore(&mut self, memory: &RoutesMemory) {
+        self.obstacles = memory.obstacles.iter().map(|obstacle| (obstacle.robot, obstacle.block)).collect();
+        self.changes = memory.changes;
     }
 
     /// Adds the charger of another robot.

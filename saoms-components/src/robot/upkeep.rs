@@ -1,19 +1,24 @@
 //! What a robot does by itself in each execution, whichever loops it has: its battery drains and charges, it knows how
 //! far the battery lasts, and follows what its loops decided.
 
-use saoms_api::{Context, Failure, Time};
+use saoms_api::{Context, Failure};
 
 use super::{Policy, RobotKnowledge};
 
 impl RobotKnowledge {
     /// Begins an execution.
-    pub(super) fn begin_execution(&mut self, now: Time) {
+    pub(super) fn begin_execution(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let now = context.now();
         self.polled = None;
         self.elapsed = self.executed_at.map_or(std::time::Duration::ZERO, |last| now.since(last));
         self.executed_at = Some(now);
         self.take_measured();
         self.level_before = self.charge;
+        if let Some(percent) = self.hardware.battery(context, self.number)? {
+            self.battery.set_percent(percent);
+        }
         self.use_battery();
+        Ok(())
     }
 
     /// Takes over the battery level that a loop measured.
@@ -26,7 +31,7 @@ impl RobotKnowledge {
         }
     }
 
-    /// Drains or charges the battery by the time since the last execution.
+    /// Drains or charges the battery by the time since the last execution, unless the hardware measures it.
     fn use_battery(&mut self) {
         let (charges, drains) = match self.policy {
             Policy::Safe => {
@@ -41,7 +46,9 @@ impl RobotKnowledge {
             }
         };
         self.charging = charges;
-        if charges {
+        if self.hardware.measures_battery() {
+            // The level is known.
+        } else if charges {
             self.battery.charge(self.elapsed);
         } else if drains {
             self.battery.drain(self.elapsed);
@@ -51,7 +58,9 @@ impl RobotKnowledge {
 
     /// Discharges the battery by a move to the next block.
     pub(super) fn use_battery_to_drive(&mut self) {
-        self.battery.drive();
+        if !self.hardware.measures_battery() {
+            self.battery.drive();
+        }
         self.charge = self.battery.percent();
     }
 

@@ -10,7 +10,7 @@ mod validate;
 
 use std::mem::{Discriminant, discriminant};
 
-use saoms_api::{Context, Header, Level};
+use saoms_api::{Context, Field, Header, Level};
 
 use crate::grid::Map;
 
@@ -30,7 +30,32 @@ pub(crate) struct MessageValidator {
     logged: Vec<(u32, &'static str, Discriminant<Problem>)>,
 }
 
+/// The speakers of robots, for a component that goes on after a failure.
+#[derive(Clone, Debug, Default, Field)]
+pub(crate) struct SpeakerMemory {
+    speakers: Vec<SpeakerOfRobot>,
+    introduced: bool,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct SpeakerOfRobot {
+    robot: u32,
+    sender: u32,
+}
+
 impl MessageValidator {
+    /// The speakers, for a component that goes on. Mistakes that were logged are logged once more.
+    pub(crate) fn memory(&self) -> SpeakerMemory {
+        let speakers = self.speakers.iter().map(|&(robot, sender)| SpeakerOfRobot { robot, sender });
+        SpeakerMemory { speakers: speakers.collect(), introduced: self.introduced }
+    }
+
+    /// Takes over the speakers that another one knew.
+    pub(crate) fn restore(&mut self, memory: SpeakerMemory) {
+        self.speakers = memory.speakers.iter().map(|known| (known.robot, known.sender)).collect();
+        self.introduced = memory.introduced;
+    }
+
     /// True if the message is accepted. The area is checked if it is known.
     #[inline]
     pub(crate) fn accepts<M: Validate>(

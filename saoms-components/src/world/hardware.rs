@@ -45,13 +45,18 @@ impl World {
         let in_reach = here.distance(action.block) == 1 && self.referee.is_retired_at(action.block);
         let block = if in_reach { action.block } else { here };
         let referee = &self.referee;
-        let lies_on = |other: u32| referee.is_retired(other) && referee.block(other) == Ok(block);
+        let lies_on = |other: u32| {
+            (referee.is_retired(other) || referee.has_entered_again(other)) && referee.block(other) == Ok(block)
+        };
         let result = match action.kind {
             ActionKind::Collect => self.stock.collect(action.luggage, robot, block, lies_on),
             _ => self.stock.deposit(action.luggage, robot, block),
         };
         match result {
-            Ok(HandlingOutcome::Unknown) => return Ok(Progress::Running),
+            Ok(HandlingOutcome::Unknown) => {
+                self.memory.forget();
+                return Ok(Progress::Running);
+            }
             Ok(HandlingOutcome::Delivered { given_up }) => {
                 context.count("luggage.delivered", 1);
                 context.count("luggage.open", -1);
@@ -63,20 +68,32 @@ impl World {
             Ok(HandlingOutcome::Handled) => {}
             Err(reason) => {
                 warn!(context, "robot {robot} at {block}: {reason}");
-                self.referee.end_handling(robot);
+                self.referee.end_handling(robot, Progress::Failed);
                 return Ok(Progress::Failed);
             }
         }
-        self.referee.end_handling(robot);
+        self.referee.end_handling(robot, Progress::Done);
         Ok(Progress::Done)
+    }
+
+    /// The robot has begun anew: what it carries it does not know of.
+    fn unload_if_forgotten(&mut self, robot: u32) -> Result<(), Failure> {
+        if self.referee.has_forgotten(robot) {
+            self.stock.unload(robot, self.referee.block(robot)?);
+        }
+        Ok(())
     }
 }
 
 impl Hardware for World {
     fn enter(&mut self, _context: &mut Context<'_>, robot: u32, name: String, block: Block) -> Result<Block, Failure> {
+        self.memory.forget();
+        let was_retired = self.referee.is_retired(robot);
         let block = self.referee.enter(robot, name, block)?;
-        // A robot that starts again has forgotten its luggage, which therefore lies where other robots look for it.
-        self.stock.unload(robot, block);
+        if was_retired {
+            // Its luggage lies where other robots look for it.
+            self.unload_if_forgotten(robot)?;
+        }
         Ok(block)
     }
 
@@ -85,33 +102,50 @@ impl Hardware for World {
     }
 
     fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
+        self.memory.forget();
         if self.referee.is_running(robot)? {
             return Err(Failure::new(format!("robot {robot} begins an action before its last one is over")));
         }
+        self.unload_if_forgotten(robot)?;
         if self.referee.is_retired(robot) {
             return Ok(Progress::Failed);
         }
         if action.kind == ActionKind::Move {
             return self.begin_move(context, robot, action.block);
         }
+        if self.referee.has_done(robot, action) {
+            return Ok(Progress::Done);
+        }
         self.referee.begin_handling(robot, action, context.now() + self.properties.handling_time)?;
         self.poll(context, robot)
     }
 
     fn poll(&mut self, context: &mut Context<'_>, robot: u32) -> Result<Progress, Failure> {
-        match self.referee.handling(robot)? {
-            _ if self.referee.is_retired(robot) => Ok(Progress::Failed),
-            None => Ok(self.referee.progress(robot, context.now())),
-            Some((_, until)) if context.now() < until => Ok(Progress::Running),
-            Some((action, _)) => self.handle(context, robot, action),
+        // Only a robot that goes on asks before it begins something: it knows what it carries.
+        if self.referee.remembers(robot) {
+            self.memory.forget();
         }
+        let progress = match self.referee.handling(robot)? {
+            _ if self.referee.is_retired(robot) => Progress::Failed,
+            None => self.referee.progress(robot, context.now()),
+            Some((_, until)) if context.now() < until => Progress::Running,
+            Some((action, _)) => self.handle(context, robot, action)?,
+        };
+        if progress != Progress::Running {
+            self.memory.forget();
+        }
+        Ok(progress)
     }
 
     fn cancel(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<(), Failure> {
+        self.memory.forget();
+        self.unload_if_forgotten(robot)?;
         self.referee.cancel(robot)
     }
 
     fn retire(&mut self, _context: &mut Context<'_>, robot: u32) -> Result<Block, Failure> {
+        self.memory.forget();
+        self.unload_if_forgotten(robot)?;
         self.referee.retire(robot)
     }
 }

@@ -1,12 +1,19 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
+use saoms_api::Field;
+
+use super::memory::StockMemory;
 use crate::grid::Block;
+use crate::state::Numbers;
 
 /// Pieces of luggage and their real positions.
 #[derive(Debug, Default)]
 pub(super) struct Stock {
+    /// Those that are not delivered.
     pieces: HashMap<u32, Piece>,
+    /// Those that are.
+    delivered: Numbers,
     /// Number of pieces that are neither delivered nor given up.
     open: usize,
     /// Pieces that a robot asked for before their request arrived.
@@ -23,7 +30,7 @@ struct Piece {
 
 impl Piece {
     fn is_open(&self) -> bool {
-        !self.given_up && self.place != PiecePosition::Delivered
+        !self.given_up
     }
 }
 
@@ -32,7 +39,17 @@ impl Piece {
 enum PiecePosition {
     At(Block),
     On(u32),
-    Delivered,
+}
+
+/// A piece that is not delivered, for a world that goes on.
+#[derive(Clone, Copy, Debug, Field)]
+pub(super) struct PieceMemory {
+    luggage: u32,
+    to: Block,
+    /// Where it lies, unless it is on a robot.
+    at: Block,
+    on: Option<u32>,
+    given_up: bool,
 }
 
 /// Outcome of a robot's attempt to collect or deposit.
@@ -47,9 +64,41 @@ pub(super) enum HandlingOutcome {
 }
 
 impl Stock {
+    /// The stock of a world that goes on.
+    pub(super) fn of(memory: StockMemory) -> Stock {
+        let piece = |piece: PieceMemory| {
+            let place = piece.on.map_or(PiecePosition::At(piece.at), PiecePosition::On);
+            (piece.luggage, Piece { to: piece.to, place, given_up: piece.given_up })
+        };
+        let open = memory.pieces.iter().filter(|piece| !piece.given_up).count();
+        let pieces = memory.pieces.into_iter().map(piece).collect();
+        let settled = memory.settled.iter().map(|luggage| (*luggage, true));
+        let awaited = memory.awaited.iter().map(|luggage| (*luggage, false)).chain(settled).collect();
+        Stock { pieces, delivered: memory.delivered, open, awaited }
+    }
+
+    /// The stock for a world that goes on.
+    pub(super) fn memory(&self) -> StockMemory {
+        let piece = |(luggage, piece): (&u32, &Piece)| {
+            let (at, on) = match piece.place {
+                PiecePosition::At(block) => (block, None),
+                PiecePosition::On(robot) => (Block::default(), Some(robot)),
+            };
+            PieceMemory { luggage: *luggage, to: piece.to, at, on, given_up: piece.given_up }
+        };
+        let mut pieces: Vec<PieceMemory> = self.pieces.iter().map(piece).collect();
+        pieces.sort_unstable_by_key(|piece| piece.luggage);
+        let awaited =
+            |settled: bool| self.awaited.iter().filter(move |one| one.1 == settled).map(|one| one.0).collect();
+        StockMemory { pieces, delivered: self.delivered.clone(), awaited: awaited(false), settled: awaited(true) }
+    }
+
     /// Adds a request; `false` if its number is known already.
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) -> bool {
         let Entry::Vacant(free) = self.pieces.entry(luggage) else { return false };
+        if self.delivered.contains(luggage) {
+            return false;
+        }
         free.insert(Piece { to, place: PiecePosition::At(from), given_up: false });
         self.open += 1;
         true
@@ -71,7 +120,7 @@ impl Stock {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.pieces.is_empty()
+        self.pieces.is_empty() && self.delivered.is_empty()
     }
 
     /// True if no piece is left to bring.
@@ -81,9 +130,8 @@ impl Stock {
 
     /// The numbers of pieces that are delivered, open (those that were given up included), and given up.
     pub(super) fn counts(&self) -> (usize, usize, usize) {
-        let delivered = self.pieces.values().filter(|piece| piece.place == PiecePosition::Delivered).count();
-        let open = self.pieces.len() - delivered;
-        (delivered, open, open.saturating_sub(self.open))
+        let open = self.pieces.len();
+        (self.delivered.len(), open, open.saturating_sub(self.open))
     }
 
     /// The open piece with the lowest number, and how many others are open.
@@ -101,6 +149,9 @@ impl Stock {
         block: Block,
         lies_here: impl Fn(u32) -> bool,
     ) -> Result<HandlingOutcome, String> {
+        if self.delivered.contains(luggage) {
+            return Err(format!("luggage {luggage} is delivered already"));
+        }
         let Some(piece) = self.pieces.get_mut(&luggage) else { return self.unknown(luggage) };
         self.awaited.retain(|(awaited, _)| *awaited != luggage);
         match piece.place {
@@ -114,7 +165,6 @@ impl Stock {
             }
             PiecePosition::At(place) => Err(format!("luggage {luggage} is not here but at {place}")),
             PiecePosition::On(other) => Err(format!("luggage {luggage} is on robot {other}")),
-            PiecePosition::Delivered => Err(format!("luggage {luggage} is delivered already")),
         }
     }
 
@@ -128,8 +178,10 @@ impl Stock {
         if piece.is_open() {
             self.open -= 1;
         }
-        piece.place = PiecePosition::Delivered;
-        Ok(HandlingOutcome::Delivered { given_up: piece.given_up })
+        let given_up = piece.given_up;
+        self.pieces.remove(&luggage);
+        self.delivered.insert(luggage);
+        Ok(HandlingOutcome::Delivered { given_up })
     }
 
     /// Puts all pieces that a robot carries on a block.

@@ -3,6 +3,7 @@
 
 mod hardware;
 mod luggage;
+mod memory;
 mod properties;
 mod referee;
 #[cfg(test)]
@@ -10,7 +11,7 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue, Subscription, Work, warn};
+use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue, Saved, Subscription, Work, warn};
 
 use crate::hardware::Hardware;
 use crate::messages::{
@@ -23,6 +24,7 @@ use crate::validation::{MessageValidator, Problem};
 pub use properties::WorldProperties;
 
 use luggage::Stock;
+use memory::Memory;
 use referee::Referee;
 
 /// The physical world of a fleet.
@@ -35,6 +37,7 @@ use referee::Referee;
 #[class(
     name = "saoms.World",
     periodic,
+    saves,
     publishes(AREA),
     service("hardware": Hardware)
 )]
@@ -56,6 +59,8 @@ pub struct World {
     collided: usize,
     /// The robots that broke down.
     broken: BTreeSet<u32>,
+    /// Its newest saved state.
+    memory: Memory,
 }
 
 impl Component for World {
@@ -75,6 +80,7 @@ impl Component for World {
             vote: None,
             collided: 0,
             broken: BTreeSet::new(),
+            memory: Memory::default(),
         })
     }
 
@@ -90,6 +96,7 @@ impl Component for World {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.memory.forget();
         for event in context.receive(&self.events) {
             // Impossible luggage is reported by the master of the environment, which does not forward it.
             let map = self.referee.map();
@@ -125,6 +132,14 @@ impl Component for World {
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.report_row(context);
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.save_state())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.restore_state(saved)
     }
 
     fn waits_for(&self) -> Option<String> {

@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use saoms_api::{Failure, Time};
+use saoms_api::{Failure, Field, Time};
 
 use crate::grid::{Block, Map};
 use crate::hardware::{Action, Progress};
@@ -24,20 +24,24 @@ pub(super) struct Referee {
 }
 
 #[derive(Debug)]
-struct Body {
-    name: String,
-    block: Block,
+pub(super) struct Body {
+    pub(super) name: String,
+    pub(super) block: Block,
     /// Target of its move, and the time at which it arrives.
-    moving: Option<(Block, Time)>,
+    pub(super) moving: Option<(Block, Time)>,
     /// Action of its gripper, and the time at which it ends.
-    handling: Option<(Action, Time)>,
+    pub(super) handling: Option<(Action, Time)>,
     /// True if it is out of service.
-    retired: bool,
+    pub(super) retired: bool,
+    /// The last action of its gripper that ended, and how.
+    pub(super) handled: Option<(Action, Progress)>,
+    /// True if it registered again, and has not shown yet whether it knows what it carries.
+    pub(super) entered_again: bool,
 }
 
 /// A robot that entered a block where another one was.
-#[derive(Clone, Copy, Debug)]
-struct Meeting {
+#[derive(Clone, Copy, Debug, PartialEq, Field)]
+pub(super) struct Meeting {
     entered: u32,
     from: Block,
     other: u32,
@@ -47,6 +51,26 @@ struct Meeting {
 impl Referee {
     pub(super) fn new(map: Map) -> Referee {
         Referee { map, bodies: BTreeMap::new(), holders: Vec::new(), meetings: Vec::new(), moving: 0 }
+    }
+
+    /// The same positions as those of an earlier referee.
+    pub(super) fn with(map: Map, bodies: impl Iterator<Item = (u32, Body)>, meetings: Vec<Meeting>) -> Referee {
+        let mut referee = Referee { bodies: bodies.collect(), meetings, ..Referee::new(map) };
+        let blocks = referee.bodies.values().flat_map(|body| [Some(body.block), body.moving.map(|(to, _)| to)]);
+        let held: Vec<Block> = blocks.flatten().collect();
+        held.into_iter().for_each(|block| referee.hold(block));
+        referee.moving = referee.bodies.values().filter(|body| body.moving.is_some()).count();
+        referee
+    }
+
+    /// The robots, by number.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = (&u32, &Body)> {
+        self.bodies.iter()
+    }
+
+    /// Robots that meet in a block.
+    pub(super) fn meetings(&self) -> &[Meeting] {
+        &self.meetings
     }
 
     pub(super) fn map(&self) -> &Map {
@@ -64,7 +88,7 @@ impl Referee {
             }
             self.cancel(robot)?;
             if let Some(body) = self.bodies.get_mut(&robot) {
-                body.retired = false;
+                (body.retired, body.entered_again) = (false, true);
             }
             return self.block(robot);
         }
@@ -85,7 +109,10 @@ impl Referee {
             )));
         }
         self.hold(block);
-        self.bodies.insert(robot, Body { name, block, moving: None, handling: None, retired: false });
+        self.bodies.insert(
+            robot,
+            Body { name, block, moving: None, handling: None, retired: false, handled: None, entered_again: false },
+        );
         Ok(block)
     }
 
@@ -121,10 +148,34 @@ impl Referee {
         Ok(())
     }
 
-    pub(super) fn end_handling(&mut self, robot: u32) {
-        if let Some(body) = self.bodies.get_mut(&robot) {
-            body.handling = None;
+    pub(super) fn end_handling(&mut self, robot: u32, progress: Progress) {
+        if let Some(body) = self.bodies.get_mut(&robot)
+            && let Some((action, _)) = body.handling.take()
+        {
+            body.handled = Some((action, progress));
         }
+    }
+
+    /// True if this was the robot's last action, and it is done: the robot that begins it again did not hear of that.
+    pub(super) fn has_done(&self, robot: u32, action: Action) -> bool {
+        self.bodies.get(&robot).is_some_and(|body| body.handled == Some((action, Progress::Done)))
+    }
+
+    /// True if the robot registered again, and has not shown yet whether it knows what it carries.
+    pub(super) fn has_entered_again(&self, robot: u32) -> bool {
+        self.bodies.get(&robot).is_some_and(|body| body.entered_again)
+    }
+
+    /// The robot has shown that it knows what it carries; true if that was open.
+    pub(super) fn remembers(&mut self, robot: u32) -> bool {
+        self.bodies.get_mut(&robot).is_some_and(|body| std::mem::take(&mut body.entered_again))
+    }
+
+    /// The robot has shown that it begins anew; true if that was open.
+    pub(super) fn has_forgotten(&mut self, robot: u32) -> bool {
+        let Some(body) = self.bodies.get_mut(&robot).filter(|body| body.entered_again) else { return false };
+        (body.entered_again, body.handled) = (false, None);
+        true
     }
 
     /// Starts a move that lasts until `until`. The inner error is the reason why the move is impossible.
@@ -144,6 +195,7 @@ impl Referee {
         let collision = self.collide(robot, from, to);
         self.hold(to);
         if let Some(body) = self.bodies.get_mut(&robot) {
+            body.handled = None;
             body.moving = Some((to, until));
             self.moving += 1;
         }
@@ -162,7 +214,7 @@ impl Referee {
                 self.leave(robot, from);
                 Progress::Done
             }
-            None => Progress::Done,
+            None => body.handled.map_or(Progress::Done, |(_, progress)| progress),
         }
     }
 

@@ -11,6 +11,7 @@ mod endings;
 mod failures;
 mod fault;
 mod fleet;
+mod goes_on;
 mod inject;
 mod journal;
 mod kept;

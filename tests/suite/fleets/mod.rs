@@ -4,6 +4,7 @@ mod composites;
 mod endings;
 mod environment;
 mod expand;
+mod goes_on;
 mod invariants;
 mod messages;
 mod pause;

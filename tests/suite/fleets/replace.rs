@@ -19,7 +19,7 @@ fn assembly(composite: &str) -> Assembly {
 }
 
 #[test]
-fn robots_without_a_job_go_on_in_their_successors_and_no_luggage_is_lost() {
+fn robots_go_on_in_their_successors_in_the_middle_of_their_jobs_and_no_luggage_is_lost() {
     let assembly = assembly("scenario4.composite");
     let robots: Vec<_> =
         assembly.components.iter().filter(|one| one.class.name().contains("Robot0")).cloned().collect();
@@ -27,7 +27,7 @@ fn robots_without_a_job_go_on_in_their_successors_and_no_luggage_is_lost() {
     for seed in 0..3 {
         let settings = Settings { limit: Some(Duration::from_secs(3600)), ..Settings::simulated(seed) };
         let fleet = RunningFleet::start(assembly.clone(), settings, Vec::new()).unwrap();
-        let (mut replaced, mut busy) = (0, 0);
+        let mut replaced = 0;
         for step in 1..40_u64 {
             fleet.run_until(Time::from_nanos(step * 7_300_000_000));
             for robot in &robots {
@@ -35,10 +35,6 @@ fn robots_without_a_job_go_on_in_their_successors_and_no_luggage_is_lost() {
                     Ok(done) => {
                         assert_eq!(done, Takeover::Continued);
                         replaced += 1;
-                    }
-                    Err(ChangeError::NotNow { why, .. }) => {
-                        assert!(why.starts_with("it "), "{why}");
-                        busy += 1;
                     }
                     // The last steps are after the end of the run.
                     Err(error) => assert_eq!(error, ChangeError::Ending),
@@ -49,7 +45,7 @@ fn robots_without_a_job_go_on_in_their_successors_and_no_luggage_is_lost() {
         assert_eq!(report.sections["luggage"]["delivered"], 100, "seed {seed}: {:?}", report.sections);
         assert_eq!(report.sections["luggage"]["open"], 0, "seed {seed}");
         assert_eq!(report.sections["collisions"]["vertex"], 0, "seed {seed}");
-        assert!(replaced > 20 && busy > 20, "seed {seed}: {replaced} replaced, {busy} busy");
+        assert!(replaced > 40, "seed {seed}: {replaced} replaced");
         let counted: u32 = report.components.iter().map(|one| one.replaced).sum();
         assert_eq!(counted, replaced, "seed {seed}");
     }

@@ -29,19 +29,19 @@ pub struct MasterRobotKnowledge {
     pub on_shift: u32,
     /// The active robots, by number, as they announced themselves.
     #[entry]
-    active: ActiveRobots,
+    pub(super) active: ActiveRobots,
     /// Robots that were woken (`true`) or sent to charge and have not reacted yet.
-    called: BTreeMap<u32, bool>,
+    pub(super) called: BTreeMap<u32, bool>,
     /// The shifts, in the order in which they were woken.
     pub shifts: Vec<Shift>,
     /// Checks what robots say.
-    validator: MessageValidator,
+    pub(super) validator: MessageValidator,
     #[extras]
     extras: Extras,
 }
 
 /// Robots that were woken for the same luggage: the manual's `MRcounter`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
 pub struct Shift {
     /// Number of robots.
     pub robots: u32,
@@ -53,7 +53,7 @@ pub struct Shift {
 
 /// The active robots, by number. As an entry it is a list of their messages.
 #[derive(Debug, Default)]
-struct ActiveRobots(BTreeMap<u32, RobotList>);
+pub(super) struct ActiveRobots(pub(super) BTreeMap<u32, RobotList>);
 
 impl Field for ActiveRobots {
     const TYPE: ConstText = <Vec<RobotList> as Field>::TYPE;

@@ -2,14 +2,17 @@
 
 mod awake_asleep;
 mod knowledge;
+mod memory;
 mod robot_list;
 
-use saoms_api::{Class, Component, Context, Failure, Loops, Properties, Subscription};
+use saoms_api::{Class, Component, Context, Failure, Loops, Properties, Saved, Subscription};
 
 use crate::console::Timestamp;
 use crate::messages::{ROBOT_LIST, RobotList};
 
 pub use awake_asleep::MasterAwakeAsleep;
+use memory::MasterRobotMemory;
+
 pub use knowledge::{MasterRobotKnowledge, Shift};
 pub use robot_list::MasterRobotList;
 
@@ -32,6 +35,7 @@ pub struct MasterRobotProperties {
 #[class(
     name = "saoms.MasterRobot",
     periodic,
+    saves,
     knowledge = MasterRobotKnowledge,
     loops(MasterRobotList, MasterAwakeAsleep),
     also("unibg.saoms.MasterRobotManagingSystem")
@@ -66,6 +70,17 @@ impl Component for MasterRobot {
 
     fn shutdown(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.loops.shutdown(&mut self.knowledge, context)
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        let loops = self.loops.save(&self.knowledge)?;
+        Ok(Saved::of(&self.knowledge.memory(loops)))
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        let Some(memory) = saved.read::<MasterRobotMemory>()? else { return Ok(()) };
+        let loops = self.knowledge.restore(memory);
+        self.loops.restore(&mut self.knowledge, &loops)
     }
 
     fn waits_for(&self) -> Option<String> {

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Message, Record, Saved, record};
 
 use super::MasterRobotKnowledge;
 
@@ -11,6 +11,12 @@ use super::MasterRobotKnowledge;
 )]
 pub struct MasterRobotList {
     known: u32,
+}
+
+/// State of the loop.
+#[derive(Clone, Copy, Debug, Message)]
+struct Known {
+    robots: u32,
 }
 
 impl Loop for MasterRobotList {
@@ -51,6 +57,15 @@ impl Loop for MasterRobotList {
         _knowledge: &mut MasterRobotKnowledge,
         _context: &mut Context<'_>,
     ) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(Saved::of(&Known { robots: self.known }))
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.known = saved.read::<Known>()?.map_or(0, |known| known.robots);
         Ok(())
     }
 }

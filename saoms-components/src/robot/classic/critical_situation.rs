@@ -1,13 +1,14 @@
 use std::cmp::Reverse;
 
 use saoms_api::{
-    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Subscription, info, record, warn,
+    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Saved, Subscription, info, record, warn,
 };
 
 use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
     LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList, RobotState,
 };
+use crate::robot::lasting::lasting;
 use crate::robot::{Help, RobotKnowledge};
 
 /// Asks for help when the robot cannot go on, and heals other robots (listings 6.7 to 6.10).
@@ -104,6 +105,10 @@ impl Recordable for ClassicCriticalDecision {
     }
 }
 
+lasting! {
+    ClassicCriticalSituation as CriticalMemory { cause: Cause, said: Cause }
+}
+
 impl Loop for ClassicCriticalSituation {
     type Properties = ();
     type Knowledge = RobotKnowledge;
@@ -185,6 +190,14 @@ impl Loop for ClassicCriticalSituation {
                 Ok(())
             }
         }
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }
 

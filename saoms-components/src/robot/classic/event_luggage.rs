@@ -1,8 +1,9 @@
 use std::cmp::Reverse;
 
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, info, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Saved, info, record};
 
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
+use crate::robot::lasting::lasting;
 use crate::robot::{Job, Request, RobotKnowledge};
 
 /// Decides which robot brings which luggage (listings 6.5 and 6.9).
@@ -71,6 +72,10 @@ impl Recordable for ClassicLuggageDecision {
             ClassicLuggageDecision::Forget => record!(is_free: "is free again"),
         }
     }
+}
+
+lasting! {
+    ClassicEventLuggage as LuggageMemory { said: Cause }
 }
 
 impl Loop for ClassicEventLuggage {
@@ -154,6 +159,14 @@ impl Loop for ClassicEventLuggage {
             }
         };
         context.send(&self.luggage, job.response(knowledge.number, knowledge.block, stage))
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }
 

@@ -1,7 +1,8 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Saved, record};
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
+use crate::robot::lasting::lasting;
 
 /// Announces in each execution that this robot is active.
 #[derive(Debug, Default, LoopClass)]
@@ -13,7 +14,11 @@ use crate::robot::RobotKnowledge;
 pub struct ClassicRobotList {
     #[publishes(ROBOT_LIST)]
     robots: Publisher<RobotList>,
-    known: usize,
+    known: u32,
+}
+
+lasting! {
+    ClassicRobotList as RobotListMemory { known: u32 }
 }
 
 impl Loop for ClassicRobotList {
@@ -30,12 +35,12 @@ impl Loop for ClassicRobotList {
         if !knowledge.variables.critical {
             context.send(&self.robots, knowledge.robot(true))?;
         }
-        let robots = knowledge.lists.active.len();
+        let robots = u32::try_from(knowledge.lists.active.len()).unwrap_or(u32::MAX);
         let changed = std::mem::replace(&mut self.known, robots) != robots;
         Ok(changed.then(|| {
             record!(
                 other_robots_known: "knows {count} other {count:robot|robots}",
-                count = u32::try_from(robots).unwrap_or(u32::MAX)
+                count = robots
             )
         }))
     }
@@ -60,5 +65,13 @@ impl Loop for ClassicRobotList {
 
     fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         context.send(&self.robots, knowledge.robot(false))
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }

@@ -1,13 +1,13 @@
 use std::fmt;
 
-use saoms_api::{Cause, Header, Time};
+use saoms_api::{Cause, Field, Header, Time};
 
 use crate::messages::{CriticalKind, CriticalSituation, CriticalStage, RobotList};
 
 use super::Rival;
 
 /// A robot that waits for a healer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Field)]
 pub struct Help {
     /// The request.
     pub situation: CriticalSituation,
@@ -41,7 +41,7 @@ pub struct Helps {
 }
 
 /// An answered request.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Field)]
 struct Settled {
     critical: u32,
     /// True if a robot only substitutes the broken one, which leaves its job open.
@@ -57,7 +57,23 @@ impl Settled {
     }
 }
 
+/// The list, for a robot that goes on.
+#[derive(Clone, Debug, Field)]
+pub(in crate::robot) struct HelpsMemory {
+    open: Vec<Help>,
+    claimed: Option<Help>,
+    settled: Vec<Settled>,
+}
+
 impl Helps {
+    pub(super) fn memory(&self) -> HelpsMemory {
+        HelpsMemory { open: self.open.clone(), claimed: self.claimed.clone(), settled: self.settled.clone() }
+    }
+
+    pub(super) fn restore(&mut self, memory: HelpsMemory) {
+        (self.open, self.claimed, self.settled) = (memory.open, memory.claimed, memory.settled);
+    }
+
     /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Helps {
         Helps { number, open: Vec::new(), claimed: None, settled: Vec::new() }

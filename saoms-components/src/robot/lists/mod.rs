@@ -1,6 +1,7 @@
 //! State of the other robots and of open work, as messages reported it.
 
 mod helps;
+mod memory;
 mod peers;
 mod requests;
 mod shown;
@@ -11,6 +12,8 @@ use saoms_api::Entries;
 
 use crate::grid::Block;
 use crate::messages::RobotList;
+
+pub(super) use memory::ListsMemory;
 
 pub use helps::{Help, Helps};
 pub use peers::Peers;

@@ -17,7 +17,7 @@ pub struct Rival {
 }
 
 /// Luggage that waits for a robot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Field)]
 pub struct Request {
     /// The job.
     pub job: Job,
@@ -71,7 +71,36 @@ pub struct Requests {
     refusals: BTreeSet<(u32, u32)>,
 }
 
+/// The list, for a robot that goes on.
+#[derive(Clone, Debug, Field)]
+pub(in crate::robot) struct RequestsMemory {
+    open: Vec<Request>,
+    claimed: Option<Request>,
+    refused: Vec<u32>,
+    refusals: Vec<Refusal>,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct Refusal {
+    luggage: u32,
+    robot: u32,
+}
+
 impl Requests {
+    pub(super) fn memory(&self) -> RequestsMemory {
+        RequestsMemory {
+            open: self.open.clone(),
+            claimed: self.claimed.clone(),
+            refused: self.refused.clone(),
+            refusals: self.refusals.iter().map(|&(luggage, robot)| Refusal { luggage, robot }).collect(),
+        }
+    }
+
+    pub(super) fn restore(&mut self, memory: RequestsMemory) {
+        (self.open, self.claimed, self.refused) = (memory.open, memory.claimed, memory.refused);
+        self.refusals = memory.refusals.iter().map(|refusal| (refusal.luggage, refusal.robot)).collect();
+    }
+
     /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Requests {
         Requests { number, open: Vec::new(), claimed: None, refused: Vec::new(), refusals: BTreeSet::new() }

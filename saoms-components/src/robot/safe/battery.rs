@@ -1,6 +1,7 @@
-use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, info, record};
+use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, Saved, info, record};
 
 use crate::grid::{Block, UNREACHABLE};
+use crate::robot::lasting::lasting;
 use crate::robot::{RobotKnowledge, Trouble};
 
 /// Returns to the charger in time, and leaves it when the battery lasts for the robot's work.
@@ -145,6 +146,10 @@ impl Recordable for SafeBatteryDecision {
     }
 }
 
+lasting! {
+    SafeBattery as BatteryMemory { charging: bool, in_charge: bool, changes: u32, own: Option<Block>, noted: Option<f64> }
+}
+
 impl Loop for SafeBattery {
     type Properties = ();
     type Knowledge = RobotKnowledge;
@@ -258,6 +263,14 @@ impl Loop for SafeBattery {
             }
         }
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }
 

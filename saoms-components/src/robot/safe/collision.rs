@@ -1,7 +1,8 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, record};
+use saoms_api::{Context, Failure, Field, Loop, LoopClass, Record, Recordable, Saved, record};
 
 use crate::grid::Block;
 use crate::robot::RobotKnowledge;
+use crate::robot::lasting::lasting;
 
 /// Lets the robot enter the block that it wants only once no other robot holds or wants it.
 ///
@@ -14,8 +15,15 @@ use crate::robot::RobotKnowledge;
     effects("stopAPeriod")
 )]
 pub struct SafeCollision {
-    /// Block and robot that the robot waits for.
-    waits: Option<(Block, u32)>,
+    /// What the robot waits for.
+    waits: Option<Wait>,
+}
+
+/// A block, and the robot that holds or wants it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Field)]
+struct Wait {
+    block: Block,
+    robot: u32,
 }
 
 /// State of the block that the robot wants.
@@ -61,6 +69,10 @@ impl Recordable for SafeCollisionDecision {
     }
 }
 
+lasting! {
+    SafeCollision as CollisionMemory { waits: Option<Wait> }
+}
+
 impl Loop for SafeCollision {
     type Properties = ();
     type Knowledge = RobotKnowledge;
@@ -73,12 +85,12 @@ impl Loop for SafeCollision {
         _context: &mut Context<'_>,
     ) -> Result<Option<SafeCollisionSymptom>, Failure> {
         let RobotKnowledge { traffic, next, .. } = knowledge;
-        let taken = traffic.wanted(*next).and_then(|block| Some((block, traffic.in_the_way(block)?)));
+        let taken = traffic.wanted(*next).and_then(|block| Some(Wait { block, robot: traffic.in_the_way(block)? }));
         if taken == self.waits {
             return Ok(None);
         }
         Ok(Some(match taken {
-            Some((block, robot)) => SafeCollisionSymptom::Taken { block, robot },
+            Some(Wait { block, robot }) => SafeCollisionSymptom::Taken { block, robot },
             None => SafeCollisionSymptom::Clear,
         }))
     }
@@ -107,10 +119,18 @@ impl Loop for SafeCollision {
             context.console(format_args!("{name}: RISK OF COLLISION DETECTED AND AVOIDED!"));
         }
         self.waits = match decision {
-            SafeCollisionDecision::Wait(block, robot) => Some((block, robot)),
+            SafeCollisionDecision::Wait(block, robot) => Some(Wait { block, robot }),
             SafeCollisionDecision::GoOn => None,
         };
         knowledge.variables.stop_a_period = self.waits.is_some();
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }

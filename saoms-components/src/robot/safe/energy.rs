@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use saoms_api::Cause;
+use saoms_api::{Cause, Field};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::{Job, RobotKnowledge, Variables};
@@ -24,7 +24,7 @@ const IN_VAIN: u32 = 3;
 const YIELD_FROM: u32 = 3;
 
 /// State of a robot's energy management.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone, Field)]
 pub(crate) struct Energy {
     /// Cause of the return to the charger; what happens on the way follows from it.
     pub(super) turned: Cause,

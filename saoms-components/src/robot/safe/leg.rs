@@ -1,11 +1,11 @@
-use saoms_api::Time;
+use saoms_api::{Field, Time};
 
 use crate::grid::Block;
 use crate::messages::Priority;
 use crate::robot::RobotKnowledge;
 
 /// Way to one goal.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
 pub(crate) struct Leg {
     pub(super) goal: Option<Block>,
     pub(super) urgency: Urgency,
@@ -13,7 +13,7 @@ pub(crate) struct Leg {
 }
 
 /// Purposes of a way, the most urgent last.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Field)]
 pub(super) enum Urgency {
     /// No way: the robot is where it wants to be.
     #[default]

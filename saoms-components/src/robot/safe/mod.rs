@@ -36,4 +36,4 @@ pub use robot_state::SafeRobotState;
 pub(crate) use energy::is_within;
 pub(super) use energy::{Energy, RESERVE};
 pub(super) use leg::Leg;
-pub(super) use traffic::Traffic;
+pub(super) use traffic::{Traffic, TrafficMemory};

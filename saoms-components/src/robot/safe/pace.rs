@@ -1,5 +1,7 @@
 //! Measured speed of a robot.
 
+use saoms_api::Field;
+
 use crate::hardware::{Action, ActionKind};
 use crate::robot::actions::Outcome;
 
@@ -10,7 +12,7 @@ const PARTS: u32 = 16;
 const MEMORY: u32 = 8;
 
 /// Number of executions that a robot's actions take, as measured so far.
-#[derive(Debug)]
+#[derive(Debug, Clone, Field)]
 pub(in crate::robot) struct Pace {
     /// Maximum number of executions of a move so far.
     pub(super) moving: u32,

@@ -1,9 +1,10 @@
-use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Saved, record};
 
 use crate::grid::Block;
 use crate::hardware::Action;
 use crate::messages::{IMMOVABLE, POSITION, Position};
 use crate::robot::actions::Outcome;
+use crate::robot::lasting::lasting;
 use crate::robot::{RobotKnowledge, Variables};
 
 use super::leg::Urgency;
@@ -86,6 +87,10 @@ impl Recordable for SafePathDecision {
     }
 }
 
+lasting! {
+    SafePathFollower as PathMemory { said: Option<Position>, waiting: Waiting }
+}
+
 impl Loop for SafePathFollower {
     type Properties = ();
     type Knowledge = RobotKnowledge;
@@ -94,6 +99,10 @@ impl Loop for SafePathFollower {
 
     fn initialize(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         knowledge.polling.moves = true;
+        if context.goes_on() {
+            // They know more than this loop yet does.
+            return Ok(());
+        }
         // All robots have to know which blocks are held before the first one moves.
         self.say(context, knowledge.position())
     }
@@ -192,6 +201,14 @@ impl Loop for SafePathFollower {
         // The robot stays where it is, and no other robot gets past it.
         knowledge.next = knowledge.block;
         self.say_if_news(context, Position { priority: IMMOVABLE, ..knowledge.position() })
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }
 

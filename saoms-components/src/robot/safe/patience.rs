@@ -1,7 +1,7 @@
 //! Limits after which a robot without progress gives up. Other robots wait for that: a request that every robot refuses
 //! is given up in the end.
 
-use saoms_api::{Context, Time};
+use saoms_api::{Context, Field, Time};
 
 /// Maximum duration of a job, as a multiple of its duration without other robots and without charging.
 const TRY: u32 = 50;
@@ -13,7 +13,7 @@ const LEAST_TRY: u32 = 500;
 const LONGEST_IDLE: u32 = 1000;
 
 /// Number of executions that a robot has been on its job.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone, Field)]
 pub(super) struct Attempt {
     luggage: Option<u32>,
     executions: u32,
@@ -35,7 +35,7 @@ impl Attempt {
 }
 
 /// Number of executions for which a robot was idle while there was work.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone, Field)]
 pub(super) struct Idle {
     executions: u32,
 }

@@ -1,7 +1,8 @@
-use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Saved, record};
 
 use crate::messages::{ROBOT_LIST, RobotList};
 use crate::robot::RobotKnowledge;
+use crate::robot::lasting::lasting;
 
 /// Announces that this robot is active.
 ///
@@ -53,6 +54,10 @@ impl Recordable for SayRobot {
     }
 }
 
+lasting! {
+    SafeRobotList as RobotListMemory { said: Option<RobotList> }
+}
+
 impl Loop for SafeRobotList {
     type Properties = ();
     type Knowledge = RobotKnowledge;
@@ -98,5 +103,13 @@ impl Loop for SafeRobotList {
 
     fn shutdown(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         context.send(&self.robots, knowledge.robot(false))
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }

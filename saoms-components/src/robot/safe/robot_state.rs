@@ -1,6 +1,10 @@
-use saoms_api::{Cause, Context, Failure, Header, Loop, LoopClass, Record, Recordable, Subscription, info, record};
+use saoms_api::{
+    Cause, Context, Failure, Field, Header, Loop, LoopClass, Record, Recordable, Saved, Subscription, Time, info,
+    record,
+};
 
 use crate::messages::{ROBOT_STATE, RobotList, RobotState};
+use crate::robot::lasting::lasting;
 use crate::robot::{Help, Request, RobotKnowledge};
 
 /// Number of executions for which a sleeping robot leaves luggage to each robot that is asked before it.
@@ -25,10 +29,26 @@ pub struct SafeRobotState {
     #[subscribes(ROBOT_STATE)]
     states: Subscription<RobotState>,
     /// Commands that arrived and are not judged yet. They are judged once the robot has heard which robots are active.
-    arrived: Vec<(Header, RobotState)>,
-    called: Option<(RobotState, Cause)>,
+    arrived: Vec<Arrived>,
+    called: Option<Called>,
     /// Cause of sleeping once it is at its charger.
     sent: Cause,
+}
+
+/// A command and its header.
+#[derive(Clone, Debug, Field)]
+struct Arrived {
+    sender: u32,
+    sent: Time,
+    cause: Cause,
+    state: RobotState,
+}
+
+/// A command to this robot, and its cause.
+#[derive(Clone, Debug, Field)]
+struct Called {
+    state: RobotState,
+    cause: Cause,
 }
 
 /// Reasons to be awake, or asleep.
@@ -110,6 +130,10 @@ impl Recordable for SafeRobotDecision {
     }
 }
 
+lasting! {
+    SafeRobotState as RobotStateMemory { arrived: Vec<Arrived>, called: Option<Called>, sent: Cause }
+}
+
 impl Loop for SafeRobotState {
     type Properties = ();
     type Knowledge = RobotKnowledge;
@@ -118,7 +142,12 @@ impl Loop for SafeRobotState {
 
     fn monitor(&mut self, _knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let arrived = context.receive(&self.states).with_headers();
-        self.arrived.extend(arrived.map(|(header, state)| (header, state.clone())));
+        self.arrived.extend(arrived.map(|(Header { sender, sent, cause }, state)| Arrived {
+            sender,
+            sent,
+            cause,
+            state: state.clone(),
+        }));
         Ok(())
     }
 
@@ -127,15 +156,16 @@ impl Loop for SafeRobotState {
         knowledge: &mut RobotKnowledge,
         context: &mut Context<'_>,
     ) -> Result<Option<SafeRobotSymptom>, Failure> {
-        for (header, state) in self.arrived.drain(..) {
+        for Arrived { sender, sent, cause, state } in self.arrived.drain(..) {
+            let header = Header { sender, sent, cause };
             if knowledge.accepts(&state, header, context) && state.robot == knowledge.number {
-                self.called = Some((state, header.cause));
+                self.called = Some(Called { state, cause });
             }
         }
         if knowledge.variables.critical {
             return Ok(None);
         }
-        if let Some((state, cause)) = self.called.take() {
+        if let Some(Called { state, cause }) = self.called.take() {
             context.because(cause);
             let symptom = SafeRobotSymptom::Woken { emulate: state.emulate };
             return Ok(Some(if state.awake { symptom } else { SafeRobotSymptom::SentToSleep }));
@@ -199,6 +229,14 @@ impl Loop for SafeRobotState {
             }
         }
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }
 

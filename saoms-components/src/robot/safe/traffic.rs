@@ -12,7 +12,7 @@
 
 use std::cmp::Reverse;
 
-use saoms_api::Chance;
+use saoms_api::{Chance, Field};
 
 use crate::grid::{Block, MOVE, UNREACHABLE};
 use crate::messages::{IMMOVABLE, Position, Priority};
@@ -36,6 +36,22 @@ pub(crate) struct Traffic {
     waited: u32,
     /// Block that it does not try again while the same robot holds it.
     avoided: Option<(Block, u32)>,
+}
+
+/// What outlives a failure of the robot; the robots around it are heard again.
+#[derive(Clone, Copy, Debug, Field)]
+pub(crate) struct TrafficMemory {
+    wanted: Option<Block>,
+    shown: Option<Block>,
+    previous: Option<Block>,
+    waited: u32,
+    avoided: Option<Avoided>,
+}
+
+#[derive(Clone, Copy, Debug, Field)]
+struct Avoided {
+    block: Block,
+    holder: u32,
 }
 
 /// Input of a robot to the choice of its next block.
@@ -82,8 +98,20 @@ impl Traffic {
         self.near.extend(peers.all().filter(|peer| peer.block.distance(at) <= 3).cloned());
     }
 
+    pub(in crate::robot) fn memory(&self) -> TrafficMemory {
+        let Traffic { wanted, shown, previous, waited, avoided, .. } = *self;
+        let avoided = avoided.map(|(block, holder)| Avoided { block, holder });
+        TrafficMemory { wanted, shown, previous, waited, avoided }
+    }
+
+    pub(in crate::robot) fn restore(&mut self, memory: TrafficMemory) {
+        let TrafficMemory { wanted, shown, previous, waited, avoided } = memory;
+        (self.wanted, self.shown, self.previous, self.waited) = (wanted, shown, previous, waited);
+        self.avoided = avoided.map(|avoided| (avoided.block, avoided.holder));
+    }
+
     /// The block that the robot announced to want, unless it wants to stay.
-    pub(super) fn wanted(&self, at: Block) -> Option<Block> {
+    pub(in crate::robot) fn wanted(&self, at: Block) -> Option<Block> {
         self.wanted.filter(|wanted| *wanted != at)
     }
 
@@ -119,7 +147,7 @@ impl Traffic {
     }
 
     /// Records that the robot enters the block that it wanted.
-    pub(super) fn went(&mut self, from: Block) {
+    pub(in crate::robot) fn went(&mut self, from: Block) {
         self.previous = Some(from);
         self.waited = 0;
     }

@@ -1,7 +1,7 @@
 //! Reports of a robot that gets nowhere because others are in its way: once when it has waited for a while, and once
 //! when that ends.
 
-use saoms_api::{Context, Time, info};
+use saoms_api::{Context, Field, Time, info};
 
 use crate::grid::Block;
 use crate::robot::RobotKnowledge;
@@ -14,12 +14,12 @@ const TELLING_WAIT: u32 = 8;
 /// The wait of a robot on its way to a goal.
 ///
 /// It ends when the robot is closer to its goal than ever before, so that stepping aside and back is no end.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone, Field)]
 pub(super) struct Waiting {
     way: Option<Progress>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone, Field)]
 struct Progress {
     goal: Block,
     /// The shortest distance to the goal so far, and its time.

@@ -229,7 +229,8 @@ impl Slot {
         (self.react_due, self.last_react) = (NEVER, None);
         if let Some(body) = &mut self.body {
             (body.part.spec, body.part.period, body.part.held) = (spec, self.policy.period, true);
-            (body.part.saved, body.part.kept_bytes) = (None, KeptBytes::default());
+            body.part.lasting.forget();
+            body.part.kept_bytes = KeptBytes::default();
         }
     }
 }

@@ -2,13 +2,14 @@ use std::sync::{Arc, mpsc};
 use std::thread;
 
 use saoms_api::host::contain::contained;
-use saoms_api::host::{DynComponent, format_duration};
+use saoms_api::host::{DynComponent, SharedMessage, format_duration};
 use saoms_api::{Failure, Saved};
 use saoms_lang::assembly::ComponentSpec;
 
 use crate::bus::{Bus, TopicId, TopicReader};
 use crate::journal::Recorder;
 use crate::schedule::component::body::{Body, Part};
+use crate::schedule::component::lasting::Lasting;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::RegisteredStop;
 
@@ -38,6 +39,8 @@ pub(crate) struct Predecessor {
     instance: Box<dyn DynComponent>,
     endpoints: Endpoints,
     stops: Vec<Arc<RegisteredStop>>,
+    /// Events of executions that were skipped, by subscription; and those of reactions.
+    inboxes: [Vec<Vec<SharedMessage>>; 2],
 }
 
 /// Topics and subscriptions of an instance.
@@ -90,11 +93,11 @@ impl Body {
             return Err(Refusal::NotNow("it has just ended".to_owned()));
         };
         self.instance = new;
-        self.clear_inboxes();
+        let inboxes = [std::mem::take(&mut self.inboxes), std::mem::take(&mut self.reactions)];
         self.fit_inboxes();
         let takeover = if is_nothing { Takeover::Began } else { Takeover::Continued };
         let stops = std::mem::replace(&mut self.part.stops, std::mem::take(&mut successor.part.stops));
-        Ok((Predecessor { instance, endpoints, stops }, takeover))
+        Ok((Predecessor { instance, endpoints, stops, inboxes }, takeover))
     }
 
     /// The body of a new instance, apart from that of the present one, which goes on if the new one never returns.
@@ -140,6 +143,7 @@ impl Body {
 
     fn begin_instead(&mut self, shared: &Arc<Shared>, saved: &Saved) -> Result<(), Failure> {
         self.part.initializing = true;
+        self.part.lasting = Lasting::of_takeover(saved);
         let result = self.call(shared, |instance, context| {
             instance.initialize(context)?;
             if saved.is_nothing() { Ok(()) } else { instance.restore(saved) }
@@ -165,8 +169,9 @@ impl Body {
     /// released. The earlier one is given back, to be dropped where nobody waits for it.
     pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
         // The hardware goes on: it is the new instance that stops it from now on.
-        let Predecessor { instance, endpoints, stops: _ } = predecessor;
+        let Predecessor { instance, endpoints, stops: _, inboxes } = predecessor;
         let Endpoints { publishers, mut subscriptions, .. } = endpoints;
+        self.part.lasting.take_unread(inboxes, subscriptions.iter().map(|reader| bus.topic_of(reader)));
         let queue = self.part.spec.task.as_ref().map(|task| task.queue);
         for fresh in &mut self.part.subscriptions {
             let topic = bus.topic_of(fresh);
@@ -184,6 +189,7 @@ impl Body {
         for topic in publishers {
             bus.unpublish(topic);
         }
+        self.give_unread(bus);
         self.part.held = false;
         Outgoing(Some(instance))
     }
@@ -203,7 +209,7 @@ impl Body {
         let Endpoints { spec, publishers, subscriptions, recorder } = predecessor.endpoints;
         (part.spec, part.publishers) = (spec, publishers);
         (part.subscriptions, part.recorder) = (subscriptions, recorder);
-        self.clear_inboxes();
+        [self.inboxes, self.reactions] = predecessor.inboxes;
         self.fit_inboxes();
         outgoing
     }
@@ -216,7 +222,7 @@ impl Endpoints {
         part.outbox.append(&mut successor.outbox);
         part.vote = successor.vote.take();
         part.bytes_to_keep = successor.bytes_to_keep.take();
-        part.saved = None;
+        part.lasting.forget_state();
         part.chance = successor.chance.clone();
         part.held = true;
         Endpoints {

@@ -3,9 +3,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use saoms_api::host::{DynComponent, Invocation, SharedMessage};
-use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Saved};
+use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure};
 
 use super::host::ComponentHost;
+use super::lasting::Lasting;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
@@ -49,12 +50,8 @@ pub(crate) struct Part {
     /// Bytes that the present code keeps once it has finished, and the newest ones that are kept.
     pub(crate) bytes_to_keep: Option<KeptBytes>,
     pub(crate) kept_bytes: KeptBytes,
-    /// State of the last execution that did not fail, where a restart continues from it.
-    pub(crate) saved: Option<Saved>,
-    /// True if that state is saved after each execution.
-    pub(crate) saves: bool,
-    /// True if the present instance has continued from it.
-    pub(crate) continued: bool,
+    /// What a restart goes on from.
+    pub(crate) lasting: Lasting,
     /// Bytes in the outbox from code of libraries.
     pub(crate) sent_bytes: usize,
     /// Number of calls within which its code runs.
@@ -126,9 +123,7 @@ impl Body {
             outbox: Vec::new(),
             bytes_to_keep: None,
             kept_bytes: KeptBytes::default(),
-            saved: None,
-            saves: false,
-            continued: false,
+            lasting: Lasting::default(),
             sent_bytes: 0,
             call_depth: 0,
             chance: Chance::new(0),
@@ -157,7 +152,9 @@ impl Body {
             // Before its code runs, which may hang.
             shared.stops.request(&self.part.stops);
         }
+        let before = if matches!(job, Job::Execute | Job::React) { self.save_touched() } else { Ok(()) };
         let mut result = match job {
+            _ if before.is_err() => before,
             Job::Execute => {
                 let fault = self.part.fault.take();
                 let execute = |instance: &mut dyn DynComponent, context: &mut Context<'_>| {
@@ -181,20 +178,26 @@ impl Body {
         {
             self.part.departed.iter_mut().for_each(Vec::clear);
             self.part.has_departed = false;
+            self.part.lasting.touch();
             return result;
         }
-        if result.is_ok() && self.part.saves && matches!(job, Job::Execute | Job::React) {
-            result = self.save();
+        if result.is_ok() && self.part.lasting.saves && matches!(job, Job::Execute | Job::React) {
+            result = self.save_execution();
         }
-        for inbox in if job == Job::React { &mut self.reactions } else { &mut self.inboxes } {
-            inbox.clear();
+        if result.is_ok() || !self.part.lasting.hears_again() {
+            for inbox in if job == Job::React { &mut self.reactions } else { &mut self.inboxes } {
+                inbox.clear();
+            }
         }
         match &result {
             Ok(()) if job == Job::Execute && !self.part.heartbeats.is_empty() => {
                 shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
             }
             Ok(()) => {}
-            Err(_) => shared.stops.request(&self.part.stops),
+            Err(_) => {
+                shared.stops.request(&self.part.stops);
+                self.part.lasting.take_back(&mut shared.sections());
+            }
         }
         if self.part.has_departed {
             self.part.departed.iter_mut().for_each(Vec::clear);
@@ -217,36 +220,12 @@ impl Body {
         self.construct()?;
         self.part.initializing = true;
         self.part.recorder.reset();
+        self.part.lasting.begin();
         let result = self.call(shared, |instance, context| instance.initialize(context));
         self.part.initializing = false;
         result??;
         self.part.has_registered_stop()?;
-        let continued = self.go_on();
-        self.part.continued = matches!(continued, Ok(true));
-        continued.map(drop)
-    }
-
-    /// Saves the state after an execution, for the instance that a restart puts in its place.
-    #[cold]
-    fn save(&mut self) -> Result<(), Failure> {
-        let Some(instance) = &mut self.instance else { return Ok(()) };
-        let saved = contained(|| instance.save()).and_then(|saved| saved);
-        let saved = saved.map_err(|failure| Failure::new(format!("could not save its state: {failure}")))?;
-        if self.part.saved.as_ref() != Some(&saved) {
-            self.part.saved = Some(saved);
-        }
-        Ok(())
-    }
-
-    /// Continues from what the instance before had saved; true if there was something. A state that cannot be restored
-    /// is forgotten.
-    fn go_on(&mut self) -> Result<bool, Failure> {
-        let Some(saved) = self.part.saved.take().filter(|saved| !saved.is_nothing()) else { return Ok(false) };
-        let Some(instance) = &mut self.instance else { return Ok(false) };
-        let restored = contained(|| instance.restore(&saved)).and_then(|restored| restored);
-        restored.map_err(|failure| Failure::new(format!("could not go on from its saved state: {failure}")))?;
-        self.part.saved = Some(saved);
-        Ok(true)
+        self.go_on()
     }
 
     /// Serves a call to one of the component's services, for a caller with this cause. The outer error is a panic,
@@ -258,9 +237,12 @@ impl Body {
         cause: Cause,
     ) -> Result<Result<(), CallError>, Failure> {
         self.part.recorder.begin(cause);
-        let result = self.call(shared, |instance, context| instance.serve(invocation, context));
+        let before = self.save_touched();
+        let result = before.and_then(|()| self.call(shared, |instance, context| instance.serve(invocation, context)));
+        self.part.lasting.touch();
         if result.is_err() {
             shared.stops.request(&self.part.stops);
+            self.part.lasting.take_back(&mut shared.sections());
             self.discard();
         }
         result

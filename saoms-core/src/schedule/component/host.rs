@@ -306,6 +306,10 @@ impl Host for ComponentHost<'_> {
         (self.part.kept_bytes.number, &self.part.kept_bytes.bytes)
     }
 
+    fn goes_on(&self) -> bool {
+        self.part.lasting.goes_on()
+    }
+
     fn register_stop(&mut self, stop: StopFunction) -> Result<(), Failure> {
         if !self.part.initializing {
             return Err(Failure::new(
@@ -416,6 +420,7 @@ impl Host for ComponentHost<'_> {
     fn count(&mut self, path: &str, more: i64) {
         if self.may_report(path) {
             self.shared.sections().add(path, more);
+            self.part.lasting.note_count(path, more);
         }
     }
 

@@ -3,3 +3,4 @@
 pub(super) mod body;
 mod call;
 mod host;
+pub(super) mod lasting;

@@ -75,7 +75,7 @@ impl Engine {
                 body.part.chance = Chance::for_component(seed, &slot.name);
                 body.part.due = now;
                 body.part.execution = 0;
-                body.part.saves = slot.policy.restarts > 0 && slot.spec.class.declaration().saves;
+                body.part.lasting.saves = slot.policy.restarts > 0 && slot.spec.class.declaration().saves;
                 body.part.heartbeats = self.heartbeats_of(index);
                 if !body.part.heartbeats.is_empty() && !self.with_hardware.contains(&index) {
                     self.with_hardware.push(index);
@@ -198,7 +198,10 @@ impl Engine {
                 match job {
                     Job::Execute | Job::React | Job::Shutdown => {}
                     Job::Ask => slot.waits_for = body.part.waits_for.take(),
-                    Job::Start => body.fit_inboxes(),
+                    Job::Start => {
+                        body.fit_inboxes();
+                        body.give_unread(&self.bus);
+                    }
                 }
                 slot.body = Some(body);
                 if let Some(vote) = vote {

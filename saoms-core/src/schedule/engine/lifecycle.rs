@@ -114,7 +114,7 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         slot.state = SlotState::Active;
         let (number, again) = (slot.restarts, std::mem::take(&mut slot.restarting));
-        let continued = slot.body.as_ref().is_some_and(|body| body.part.continued);
+        let continued = slot.body.as_ref().is_some_and(|body| body.part.lasting.has_continued());
         if slot.held {
             return;
         }
@@ -137,8 +137,6 @@ impl Engine {
 
     /// Handles the end of a component's shutdown.
     pub(crate) fn left(&mut self, index: u32, now: u64) {
-        // Whoever schedules it again wants a new one.
-        self.slots[index as usize].body.iter_mut().for_each(|body| body.part.saved = None);
         self.leave_topics(index, now);
         self.step(now, index, TraceStep::Left);
         self.stop_its_hardware(index);
@@ -197,6 +195,11 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         let longer = 1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX);
         let pause = (stays && slot.restarts < policy.restarts).then(|| policy.backoff.saturating_mul(longer));
+        if pause.is_some() {
+            body.keep_unread(&mut self.bus);
+        } else {
+            body.part.lasting.forget();
+        }
         self.keep_subscriptions(body);
         let slot = &mut self.slots[index as usize];
         let pending = std::mem::replace(&mut slot.pending, PendingRequest::None);
@@ -248,9 +251,10 @@ impl Engine {
         body.clear_inboxes();
     }
 
-    /// Removes a component from all topics.
+    /// Removes a component from all topics. Whoever schedules it again wants a new one.
     pub(crate) fn leave_topics(&mut self, index: u32, now: u64) {
         if let Some(mut body) = self.slots[index as usize].body.take() {
+            body.part.lasting.forget();
             self.keep_subscriptions(&mut body);
             self.release(index, &mut body, now);
             self.slots[index as usize].body = Some(body);

@@ -32,7 +32,9 @@ impl Engine {
 
     /// Triggers a component that starts or goes on, if messages wait for it.
     pub(crate) fn react_to_news(&mut self, index: u32, now: u64) {
-        if self.has_news(index) {
+        let body = self.slots[index as usize].body.as_ref();
+        let hears_again = body.is_some_and(|body| body.reactions.iter().any(|inbox| !inbox.is_empty()));
+        if hears_again || self.has_news(index) {
             self.trigger(index, now);
         }
     }

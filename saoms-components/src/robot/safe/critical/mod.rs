@@ -3,13 +3,14 @@
 mod records;
 mod substitute;
 
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Subscription, info};
+use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Saved, Subscription, info};
 
 use crate::grid::Block;
 use crate::messages::{
     CRITICAL_SITUATION, CriticalKind, CriticalSituation, CriticalStage, EVENT_LUGGAGE, EventLuggage, FAULT, Fault,
     LuggageStage, ROBOT_STATE, RobotState,
 };
+use crate::robot::lasting::lasting;
 use crate::robot::{Help, Rival, RobotKnowledge, Trouble};
 
 use super::energy::Feasibility;
@@ -68,6 +69,10 @@ pub struct SafeCriticalSituation {
     /// True if it was charging in the last execution.
     was_in_charge: bool,
     idle: Idle,
+}
+
+lasting! {
+    SafeCriticalSituation as CriticalMemory { cause: Cause, said_at: Block, said: Cause, was_healer: bool, substitution: Option<Substitution>, missing: Cause, was_in_charge: bool, idle: Idle }
 }
 
 impl Loop for SafeCriticalSituation {
@@ -260,6 +265,14 @@ impl Loop for SafeCriticalSituation {
             context.send(&self.situations, knowledge.situation(knowledge.critical_kind()))?;
         }
         Ok(())
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
     }
 }
 

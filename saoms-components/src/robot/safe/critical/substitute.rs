@@ -1,3 +1,5 @@
+use saoms_api::Field;
+
 use crate::messages::RobotList;
 use crate::robot::RobotKnowledge;
 
@@ -7,16 +9,23 @@ use super::SafeCriticalSymptom;
 const PATIENCE: u32 = 8;
 
 /// Search for a substitute of a robot.
-#[derive(Debug)]
+#[derive(Debug, Clone, Field)]
 pub(super) struct Substitution {
     /// Number of the missing robot.
     robot: u32,
-    /// Number of the robot that was woken, and number of executions that are left for its answer.
-    asked: Option<(u32, u32)>,
+    /// The robot that was woken.
+    asked: Option<Asked>,
     /// Numbers of robots that did not answer.
     silent: Vec<u32>,
     /// Number of the substitute.
     by: Option<u32>,
+}
+
+/// A robot that was woken, and number of executions that it has had for its answer.
+#[derive(Clone, Copy, Debug, Field)]
+struct Asked {
+    sleeper: u32,
+    waited: u32,
 }
 
 impl Substitution {
@@ -26,13 +35,13 @@ impl Substitution {
 
     /// Handles the report that a robot substitutes another one.
     pub(super) fn hear(&mut self, critical: u32, healer: u32) {
-        if critical == self.robot && self.asked.is_some_and(|(asked, _)| asked == healer) {
+        if critical == self.robot && self.asked.is_some_and(|asked| asked.sleeper == healer) {
             self.by = Some(healer);
         }
     }
 
     pub(super) fn ask(&mut self, sleeper: u32) {
-        self.asked = Some((sleeper, 0));
+        self.asked = Some(Asked { sleeper, waited: 0 });
     }
 
     /// The next step of the search; `None` while it waits for an answer or is over.
@@ -41,7 +50,7 @@ impl Substitution {
         if let Some(by) = self.by {
             return Some(SafeCriticalSymptom::Substituted { robot, by });
         }
-        if let Some((sleeper, waited)) = &mut self.asked {
+        if let Some(Asked { sleeper, waited }) = &mut self.asked {
             *waited += 1;
             if *waited <= PATIENCE.saturating_mul(knowledge.tempo()) {
                 return None;

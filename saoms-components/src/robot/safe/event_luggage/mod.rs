@@ -2,10 +2,11 @@
 
 mod records;
 
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Work, info};
+use saoms_api::{Cause, Context, Failure, Field, Level, Loop, LoopClass, Publisher, Saved, Work, info};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
+use crate::robot::lasting::lasting;
 use crate::robot::{Job, JobEnd, Request, RobotKnowledge};
 
 use super::energy::Feasibility;
@@ -39,14 +40,25 @@ pub struct SafeEventLuggage {
     said: Cause,
     /// True if it has warned that some luggage is out of its reach.
     warned: bool,
-    /// Number of changes of the ways at the last check of its way, and the goal of that way.
-    seen: (u32, Option<Block>),
+    /// The last check of its way.
+    seen: SeenWay,
     /// True if the robot was at its charger in the last execution.
     was_at_charger: bool,
     attempt: Attempt,
     idle: Idle,
     #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+}
+
+/// Number of changes of the ways at a check, and the goal of the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
+struct SeenWay {
+    changes: u32,
+    goal: Option<Block>,
+}
+
+lasting! {
+    SafeEventLuggage as LuggageMemory { said_at: Block, said: Cause, warned: bool, seen: SeenWay, was_at_charger: bool, attempt: Attempt, idle: Idle }
 }
 
 impl Loop for SafeEventLuggage {
@@ -191,20 +203,28 @@ impl Loop for SafeEventLuggage {
         let (job, stage) = stage;
         context.send(&self.luggage, job.response(knowledge.number, knowledge.block, stage))
     }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        Ok(self.saved())
+    }
+
+    fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
+        self.go_on(saved)
+    }
 }
 
 impl SafeEventLuggage {
     /// Checks that a way still leads to the robot's goal, when the goal or the ways changed.
     fn look_at_way(&mut self, knowledge: &mut RobotKnowledge) -> Option<SafeLuggageSymptom> {
-        let seen = (knowledge.routes.changes(), knowledge.job.and(knowledge.destination()));
+        let seen = SeenWay { changes: knowledge.routes.changes(), goal: knowledge.job.and(knowledge.destination()) };
         let before = std::mem::replace(&mut self.seen, seen);
         if before == seen {
             return None;
         }
-        if before.0 != seen.0 {
+        if before.changes != seen.changes {
             knowledge.lists.requests.judge_again();
         }
-        let (job, to) = (knowledge.job?, seen.1?);
+        let (job, to) = (knowledge.job?, seen.goal?);
         let reached = knowledge.routes.between(knowledge.next, to) != UNREACHABLE;
         let carries = knowledge.variables.has_luggage;
         (!reached).then_some(SafeLuggageSymptom::CutOff { job, to, carries })

@@ -1,0 +1,103 @@
+//! A robot that goes on after a failure: it finds out what its hardware did meanwhile.
+//!
+//! What the execution that failed told the hardware is not in the state that the robot goes on from: an action may be
+//! over, and another one begun. Of the latter it is known which it can be: a move to the block that the robot had
+//! announced, or the work of the gripper where it is. Until it knows, the robot is silent, so that what it had
+//! announced counts for the others.
+
+use saoms_api::{Cause, Context, Failure};
+
+use super::actions::Outcome;
+use super::hardware_client::Reply;
+use super::{Policy, RobotKnowledge};
+use crate::grid::Block;
+use crate::hardware::{Action, ActionKind, Progress};
+
+impl RobotKnowledge {
+    /// Finds out what the hardware did and does; `false` as long as it does not know.
+    pub(super) fn catch_up(&mut self, context: &mut Context<'_>) -> Result<bool, Failure> {
+        if !self.routes.knows_area() {
+            let Reply::Answer(map) = self.hardware.area(context)? else { return Ok(false) };
+            self.routes.learn_again(map, self.charge_block, &self.lists.charging_places);
+        }
+        let Reply::Answer(progress) = self.hardware.ask(context, self.number)? else { return Ok(false) };
+        let running = self.hardware.running();
+        if progress == Progress::Running {
+            let known = running.filter(|action| !self.may_have_begun_after(*action));
+            let Some(action) = known.or_else(|| self.only_action().filter(|_| running.is_none())) else {
+                return Ok(false);
+            };
+            if running.is_none() {
+                self.begun = Cause::default();
+                self.next = if action.kind == ActionKind::Move { action.block } else { self.block };
+            }
+            self.hardware.caught_up(Some(action));
+            self.note_running();
+            return Ok(true);
+        }
+        let arrived = running.filter(|action| action.kind == ActionKind::Move && progress == Progress::Done);
+        let expected = arrived.map_or(self.block, |action| action.block);
+        let Reply::Answer(block) = self.hardware.locate(context, self.number, &self.name, expected)? else {
+            return Ok(false);
+        };
+        // That tells the hardware that the robot has not begun anew.
+        let Reply::Answer(_) = self.hardware.ask(context, self.number)? else { return Ok(false) };
+        self.hardware.caught_up(None);
+        self.note_running();
+        if let Some(action) = running {
+            let arrived = action.kind == ActionKind::Move && block == action.block;
+            self.take_in_late(context, action, if arrived { Progress::Done } else { progress })?;
+        }
+        if block != self.block {
+            self.moved_to(block);
+        }
+        Ok(true)
+    }
+
+    fn take_in_late(
+        &mut self,
+        context: &mut Context<'_>,
+        action: Action,
+        progress: Progress,
+    ) -> Result<Outcome, Failure> {
+        let before = self.noted();
+        context.because(self.begun);
+        let outcome = self.take_in(context, action, progress)?;
+        self.note_changes(context, before);
+        context.because(Cause::default());
+        Ok(outcome)
+    }
+
+    /// True if an execution that found this action done may have begun another one.
+    fn may_have_begun_after(&self, action: Action) -> bool {
+        let is_move = action.kind == ActionKind::Move && self.policy == Policy::Safe;
+        is_move && (self.traffic.wanted(action.block).is_some() || self.uses_gripper_at(action.block))
+    }
+
+    /// The only action that an execution can have begun; `None` if there are several.
+    fn only_action(&self) -> Option<Action> {
+        let announced = match self.policy {
+            Policy::Safe => self.traffic.wanted(self.next),
+            Policy::Classic => Some(self.next).filter(|next| *next != self.block),
+        };
+        match announced {
+            Some(_) if self.uses_gripper_at(self.block) => None,
+            Some(block) => Some(Action::move_to(block)),
+            None => self.gripping().filter(|_| self.uses_gripper_at(self.block)),
+        }
+    }
+
+    fn uses_gripper_at(&self, block: Block) -> bool {
+        self.destination().is_some_and(|destination| destination == block || destination.distance(block) == 1)
+    }
+
+    /// Takes in a move of which it did not hear.
+    fn moved_to(&mut self, block: Block) {
+        if self.block.distance(block) == 1 {
+            self.tally.blocks += 1;
+            self.use_battery_to_drive();
+            self.traffic.went(self.block);
+        }
+        (self.block, self.next) = (block, block);
+    }
+}

@@ -1,0 +1,185 @@
+//! What a component goes on from after a failure: the state that it saved, and the messages that it heard in vain.
+
+use saoms_api::host::SharedMessage;
+use saoms_api::host::contain::contained;
+use saoms_api::{Failure, Saved};
+
+use super::body::{Body, Part};
+use crate::bus::{Bus, TopicId};
+use crate::report::Sections;
+
+/// What outlives an instance that fails.
+#[derive(Debug, Default)]
+pub(crate) struct Lasting {
+    /// True if the state is saved after each execution.
+    pub(crate) saves: bool,
+    /// State of the last execution that did not fail.
+    saved: Option<Saved>,
+    /// True while an instance initializes that goes on from it.
+    goes_on: bool,
+    /// True if the present instance has gone on from it.
+    continued: bool,
+    /// True if the state may have changed since, by a call or an execution that was skipped.
+    touched: bool,
+    /// What was counted since, which a failure takes back: the next instance counts it again.
+    counted: Vec<(String, i64)>,
+    /// Events of the execution that failed, by topic: the next instance hears them again.
+    unread: Vec<(TopicId, Vec<SharedMessage>)>,
+    /// The same of the reaction that failed.
+    unread_reactions: Vec<(TopicId, Vec<SharedMessage>)>,
+    /// True if the present instance hears such events, and has not finished an execution yet. If it fails, too, they
+    /// may be why: they are not heard a third time.
+    hears_unread: bool,
+}
+
+impl Lasting {
+    /// Begins an instance.
+    pub(super) fn begin(&mut self) {
+        self.goes_on = self.saved.as_ref().is_some_and(|saved| !saved.is_nothing());
+        (self.continued, self.touched) = (false, false);
+        self.counted.clear();
+    }
+
+    /// True while an instance initializes that goes on from a saved state.
+    pub(super) fn goes_on(&self) -> bool {
+        self.goes_on
+    }
+
+    /// An instance of a takeover, which restores this state.
+    pub(crate) fn of_takeover(saved: &Saved) -> Lasting {
+        Lasting { goes_on: !saved.is_nothing(), ..Lasting::default() }
+    }
+
+    /// True if the present instance has gone on from a saved state.
+    pub(crate) fn has_continued(&self) -> bool {
+        self.continued
+    }
+
+    /// Forgets all: whoever is scheduled anew begins anew.
+    pub(crate) fn forget(&mut self) {
+        *self = Lasting { saves: self.saves, ..Lasting::default() };
+    }
+
+    /// Forgets the state of an instance that was replaced by one of another build.
+    pub(crate) fn forget_state(&mut self) {
+        (self.saved, self.touched) = (None, false);
+        self.counted.clear();
+    }
+
+    /// True if the events of an execution that failed are heard again.
+    pub(super) fn hears_again(&self) -> bool {
+        self.saves && self.saved.is_some() && !self.hears_unread
+    }
+
+    /// Notes that the state may have changed other than by an execution.
+    pub(super) fn touch(&mut self) {
+        self.touched = self.saves;
+    }
+
+    /// Takes over the events that the instance before a takeover had not handled.
+    pub(crate) fn take_unread(
+        &mut self,
+        [inboxes, reactions]: [Vec<Vec<SharedMessage>>; 2],
+        topics: impl Iterator<Item = TopicId> + Clone,
+    ) {
+        let unread = |inboxes: Vec<Vec<SharedMessage>>| {
+            topics.clone().zip(inboxes).filter(|(_, inbox)| !inbox.is_empty()).collect()
+        };
+        (self.unread, self.unread_reactions) = (unread(inboxes), unread(reactions));
+    }
+
+    /// Notes a count, which a failure takes back.
+    pub(super) fn note_count(&mut self, path: &str, more: i64) {
+        if self.saves {
+            self.counted.push((path.to_owned(), more));
+        }
+    }
+
+    /// Takes back what was counted since the last save.
+    pub(crate) fn take_back(&mut self, sections: &mut Sections) {
+        if self.saved.is_some() {
+            self.counted.drain(..).for_each(|(path, more)| sections.add(&path, -more));
+        }
+    }
+}
+
+impl Body {
+    /// Saves the state after an execution, for the instance that a restart puts in its place.
+    #[cold]
+    pub(super) fn save(&mut self) -> Result<(), Failure> {
+        let Some(instance) = &mut self.instance else { return Ok(()) };
+        let saved = contained(|| instance.save()).and_then(|saved| saved);
+        let saved = saved.map_err(|failure| Failure::new(format!("could not save its state: {failure}")))?;
+        let lasting = &mut self.part.lasting;
+        lasting.touched = false;
+        lasting.counted.clear();
+        if lasting.saved.as_ref() != Some(&saved) {
+            lasting.saved = Some(saved);
+        }
+        Ok(())
+    }
+
+    /// Saves what changed since the last execution, before code runs that may fail.
+    #[inline]
+    pub(super) fn save_touched(&mut self) -> Result<(), Failure> {
+        if self.part.lasting.touched { self.save() } else { Ok(()) }
+    }
+
+    /// Saves the state after an execution, in which all that it heard was heard.
+    pub(super) fn save_execution(&mut self) -> Result<(), Failure> {
+        self.part.lasting.hears_unread = false;
+        self.save()
+    }
+
+    /// Goes on from what the instance before had saved. A state that cannot be restored is forgotten. An instance that
+    /// begins saves what it begins with.
+    pub(super) fn go_on(&mut self) -> Result<(), Failure> {
+        let lasting = &mut self.part.lasting;
+        lasting.goes_on = false;
+        let Some(instance) = &mut self.instance else { return Ok(()) };
+        let Some(saved) = lasting.saved.take().filter(|saved| !saved.is_nothing()) else {
+            if lasting.saves && self.save().is_err() {
+                // It has nothing to save before its first execution.
+                self.part.lasting.saved = None;
+            }
+            return Ok(());
+        };
+        let restored = contained(|| instance.restore(&saved)).and_then(|restored| restored);
+        restored.map_err(|failure| Failure::new(format!("could not go on from its saved state: {failure}")))?;
+        (lasting.saved, lasting.continued) = (Some(saved), true);
+        lasting.counted.clear();
+        Ok(())
+    }
+
+    /// Keeps the events that an instance heard in vain. The next one gets the states of topics anyway.
+    pub(crate) fn keep_unread(&mut self, bus: &mut Bus) {
+        let Body { inboxes, reactions, part: Part { subscriptions, lasting, .. }, .. } = self;
+        for (inboxes, unread) in [(inboxes, &mut lasting.unread), (reactions, &mut lasting.unread_reactions)] {
+            for (subscription, inbox) in subscriptions.iter_mut().zip(inboxes) {
+                bus.put_back(subscription, inbox);
+                if !inbox.is_empty() {
+                    unread.push((bus.topic_of(subscription), std::mem::take(inbox)));
+                }
+            }
+        }
+    }
+
+    /// Gives these events to the present instance, before those that came since.
+    pub(crate) fn give_unread(&mut self, bus: &Bus) {
+        let Body { inboxes, reactions, part: Part { subscriptions, lasting, .. }, .. } = self;
+        if lasting.unread.is_empty() && lasting.unread_reactions.is_empty() {
+            return;
+        }
+        lasting.hears_unread = true;
+        for (inboxes, unread) in [(inboxes, &mut lasting.unread), (reactions, &mut lasting.unread_reactions)] {
+            for (topic, messages) in unread.drain(..) {
+                let mut places = subscriptions.iter().zip(&mut *inboxes);
+                let place =
+                    places.find(|(subscription, inbox)| bus.topic_of(subscription) == topic && inbox.is_empty());
+                if let Some((_, inbox)) = place {
+                    *inbox = messages;
+                }
+            }
+        }
+    }
+}
