@@ -33,7 +33,7 @@ impl Bytes {
     /// The bytes.
     ///
     /// # Errors
-    /// There are more than [`MAX_BYTES`].
+    /// There are more than [`MAX_BYTES`], or they are null.
     ///
     /// # Safety
     /// They are readable for as long as the result is used.
@@ -41,8 +41,11 @@ impl Bytes {
         if self.length > MAX_BYTES {
             return Err(ReadError::TooManyBytes(self.length));
         }
-        if self.data.is_null() || self.length == 0 {
+        if self.length == 0 {
             return Ok(&[]);
+        }
+        if self.data.is_null() {
+            return Err(ReadError::Null(self.length));
         }
         // SAFETY: the caller promises that they are readable; the length was checked.
         Ok(unsafe { slice::from_raw_parts(self.data, self.length) })
@@ -51,7 +54,7 @@ impl Bytes {
     /// The bytes as text.
     ///
     /// # Errors
-    /// There are too many, or they are not UTF-8.
+    /// There are too many, they are null, or they are not UTF-8.
     ///
     /// # Safety
     /// As [`get`](Bytes::get).
@@ -64,7 +67,7 @@ impl Bytes {
 /// A list that is lent for the time of a call.
 ///
 /// # Errors
-/// It is longer than [`MAX_BYTES`].
+/// It is longer than [`MAX_BYTES`], or null.
 ///
 /// # Safety
 /// It is readable for as long as the result is used.
@@ -72,8 +75,11 @@ pub unsafe fn list<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Read
     if count.saturating_mul(size_of::<T>()) > MAX_BYTES {
         return Err(ReadError::TooLongList(count));
     }
-    if first.is_null() || count == 0 {
+    if count == 0 {
         return Ok(&[]);
+    }
+    if first.is_null() {
+        return Err(ReadError::Null(count));
     }
     // SAFETY: the caller promises that it is readable; the length was checked.
     Ok(unsafe { slice::from_raw_parts(first, count) })

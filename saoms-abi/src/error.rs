@@ -11,6 +11,8 @@ pub enum ReadError {
     TooManyBytes(usize),
     /// A list of so many elements, which is more than [`MAX_BYTES`].
     TooLongList(usize),
+    /// Null for so many bytes or elements.
+    Null(usize),
     /// A text that is not UTF-8.
     NotUtf8(Utf8Error),
 }
@@ -24,6 +26,7 @@ impl fmt::Display for ReadError {
             ReadError::TooLongList(count) => {
                 write!(out, "found a list of {count}, which is more than {MAX_BYTES} bytes")
             }
+            ReadError::Null(count) => write!(out, "found null for {count} bytes or elements"),
             ReadError::NotUtf8(error) => write!(out, "found text that is not UTF-8: {error}"),
         }
     }

@@ -104,6 +104,10 @@ fn failure(status: Status, error: &[u8]) -> Failure {
     let message = String::from_utf8_lossy(error);
     match (status, message.is_empty()) {
         (Status::BUSY, _) => CallError::Busy { provider: message.into_owned() }.into(),
+        // What a call of its own answered, which it passes on as it is.
+        (Status::NOT_WIRED | Status::NOT_RUNNING | Status::MISMATCH | Status::PROVIDER_FAILED, false) => {
+            call_outcome(status, error).map_or_else(Failure::from, |()| Failure::new(message))
+        }
         (_, false) => Failure::new(message),
         (Status::FAILED, true) => Failure::new("failed without a message"),
         (Status::PANICKED, true) => Failure::new("panicked without a message"),

@@ -113,12 +113,7 @@ unsafe extern "C" fn reference(
 
 unsafe extern "C" fn register_stop(state: *mut c_void, view: *const StopView, error: Sink) -> Status {
     // SAFETY: callers pass the state of their handle, and lend the view to this call.
-    unsafe {
-        guarded(error, || {
-            let view = given(view, "the function that stops the hardware")?;
-            host(state)?.register_stop(stop::import(view)?)
-        })
-    }
+    unsafe { guarded(error, || host(state)?.register_stop(stop::import(view)?)) }
 }
 
 unsafe extern "C" fn keep(state: *mut c_void, bytes: Bytes, number: *mut u64, error: Sink) -> Status {

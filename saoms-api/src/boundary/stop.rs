@@ -12,6 +12,7 @@ use crate::{Failure, StopFunction};
 
 use super::guard::guarded;
 use super::lease::call;
+use super::null::given;
 
 /// Lends a function of this side to the other, which gives it back with `release`.
 pub(super) fn export(stop: StopFunction) -> StopView {
@@ -67,11 +68,22 @@ impl Drop for Imported {
 /// too.
 ///
 /// # Errors
-/// It has no function to stop.
+/// It is null or too short, or has no function to stop.
 ///
 /// # Safety
-/// The view is readable, and its functions keep the rules of the boundary.
-pub(super) unsafe fn import(view: &StopView) -> Result<StopFunction, Failure> {
+/// The view is null or readable, and its functions keep the rules of the boundary.
+pub(super) unsafe fn import(view: *const StopView) -> Result<StopFunction, Failure> {
+    // SAFETY: as the caller promises; it begins with its size.
+    let size = unsafe { *given(view.cast::<usize>(), "the function that stops the hardware")? };
+    if size < size_of::<StopView>() {
+        let least = size_of::<StopView>();
+        return Err(Failure::new(format!(
+            "the `SaomsStopView` has {size} bytes, expected at least {least}: set its member `size` to \
+             `sizeof(SaomsStopView)`"
+        )));
+    }
+    // SAFETY: the size says that all members are there.
+    let view = unsafe { &*view };
     let imported = Arc::new(Imported { view: *view, owner: here().map(|(owner, _)| owner) });
     let Some(stop) = view.stop else {
         return Err(Failure::new("found null for the function that stops the hardware, expected a function"));

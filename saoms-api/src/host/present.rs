@@ -5,6 +5,7 @@
 
 use std::cell::Cell;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::ptr;
 use std::sync::atomic::{AtomicPtr, AtomicU8, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -203,6 +204,46 @@ pub fn here() -> Option<(&'static Owner, Function)> {
 pub fn everywhere() -> Vec<(u64, Option<(&'static Owner, Function)>)> {
     let all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
     all.iter().map(|call| (call.changes.load(Ordering::Relaxed), call.read())).collect()
+}
+
+/// True if this thread ever ran code of a library that it called: then it is a thread of the program.
+pub fn is_of_program() -> bool {
+    HERE.get().is_some()
+}
+
+/// A range of addresses with code of a library, in a list that only grows: a signal handler reads it.
+struct Code {
+    addresses: Range<usize>,
+    library: &'static str,
+    next: *const Code,
+}
+
+static CODE: AtomicPtr<Code> = AtomicPtr::new(ptr::null_mut());
+
+/// Notes where the code of a library lies, which stays there.
+pub fn note_code(library: &'static str, addresses: Range<usize>) {
+    let node = Box::leak(Box::new(Code { addresses, library, next: ptr::null() }));
+    let mut first = CODE.load(Ordering::Acquire);
+    loop {
+        node.next = first;
+        match CODE.compare_exchange_weak(first, node, Ordering::AcqRel, Ordering::Acquire) {
+            Ok(_) => return,
+            Err(other) => first = other,
+        }
+    }
+}
+
+/// The library whose code is at an address. A signal handler may ask.
+pub fn library_at(address: usize) -> Option<&'static str> {
+    let mut code: *const Code = CODE.load(Ordering::Acquire);
+    // SAFETY: nodes are never freed, nor changed once they are in the list.
+    while let Some(node) = unsafe { code.as_ref() } {
+        if node.addresses.contains(&address) {
+            return Some(node.library);
+        }
+        code = node.next;
+    }
+    None
 }
 
 /// Runs code that constructs something for a subject, as ``component `Arm` ``, of whatever library it is.

@@ -13,6 +13,9 @@ const CELL: u32 = 4;
 /// Greatest number of cells in which a region is noted; a larger one is looked at for each message.
 const CELLS: i64 = 1024;
 
+/// Least number of changes at which a reader makes those of one entry one.
+const TIDY: usize = 64;
+
 type Cell = (i32, i32);
 type Block = (i32, i32);
 
@@ -37,6 +40,9 @@ struct RegionReader {
     lost: u64,
     /// Entries of a state topic that changed or came into the region, and those that the reader knows.
     changed: Vec<u32>,
+    /// Number of changes at which those of one entry become one, so that they take no memory without end while nobody
+    /// collects.
+    tidy_at: usize,
     known: HashMap<u32, Departed>,
     /// Entries that the reader knew and that left its region.
     departed: Vec<(u32, Departed)>,
@@ -82,6 +88,7 @@ impl RegionReaders {
             queue: queue.max(1),
             lost: 0,
             changed: Vec::new(),
+            tidy_at: TIDY,
             known: HashMap::new(),
             departed: Vec::new(),
             collected: Vec::new(),
@@ -156,11 +163,12 @@ impl RegionReaders {
     fn look_around(&mut self, place: u32, table: Option<&StateTable>) {
         let Some(table) = table else { return };
         let reader = &mut self.readers[place as usize];
+        let mut changed = std::mem::take(&mut reader.changed);
         let mut look = |entries: &[u32]| {
             let new = entries
                 .iter()
                 .filter(|entry| !reader.known.contains_key(entry) && is_in(&reader.region, table.message(**entry)));
-            reader.changed.extend(new);
+            changed.extend(new);
         };
         match cells(&reader.region) {
             Some(all) if all.size_hint().0 <= self.entries.len() => {
@@ -170,6 +178,8 @@ impl RegionReaders {
             }
             _ => self.entries.values().for_each(|entries| look(entries)),
         }
+        reader.changed = changed;
+        reader.tidy();
     }
 
     /// Notes a change of an entry of a state topic, whose block was another one before.
@@ -188,6 +198,7 @@ impl RegionReaders {
             let concerns = now.is_some_and(|now| reader.region.contains(now)) || reader.known.contains_key(&entry);
             if concerns {
                 reader.changed.push(entry);
+                reader.tidy();
             }
         }
     }
@@ -260,12 +271,26 @@ impl RegionReaders {
         self.look_around(place, table);
     }
 
+    #[cfg(test)]
+    pub(super) fn waiting_changes(&self, place: u32) -> usize {
+        self.readers[place as usize].changed.len()
+    }
+
     pub(super) fn resize(&mut self, place: u32, queue: usize) {
         self.readers[place as usize].queue = queue.max(1);
     }
 }
 
 impl RegionReader {
+    /// Makes the changes of one entry one, once there are many.
+    fn tidy(&mut self) {
+        if self.changed.len() >= self.tidy_at {
+            self.changed.sort_unstable();
+            self.changed.dedup();
+            self.tidy_at = TIDY.max(2 * self.changed.len());
+        }
+    }
+
     fn collect_changes(&mut self, table: &StateTable, inbox: &mut Vec<SharedMessage>) {
         let mut changed = std::mem::take(&mut self.changed);
         changed.sort_unstable_by_key(|entry| (table.change(*entry), *entry));

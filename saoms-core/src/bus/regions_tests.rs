@@ -7,6 +7,8 @@ use std::sync::Arc;
 use saoms_api::host::SharedMessage;
 use saoms_api::{Cause, Chance, Departed, Field, Header, Message, Region, Time, Topic};
 
+use super::regions::RegionReaders;
+use super::state::StateTable;
 use super::{Bus, TopicReader};
 
 #[derive(Clone, Copy, Debug, PartialEq, Field)]
@@ -173,4 +175,21 @@ fn a_reader_gets_the_events_of_its_region_in_their_order() {
     (0..5).for_each(|value| bus.publish(topic, message(1, 0, (0, 0), value)));
     assert_eq!(bus.unsubscribe(near), 2);
     bus.publish(topic, message(1, 0, (0, 0), 0));
+}
+
+#[test]
+fn changes_that_nobody_collects_take_no_memory_without_end() {
+    let mut table = StateTable::default();
+    let mut readers = RegionReaders::default();
+    let place = readers.join(Region::around((0, 0), 1), 1, Some(&table));
+    for value in 0..100_000 {
+        let (entry, before) = table.publish(message(0, (value % 3) as u32, (0, 0), value));
+        readers.changed(entry, before.and_then(|before| before.place()), Some((0, 0)));
+        readers.move_to(place, Region::around((0, 0), 1 + (value % 2) as u32), Some(&table));
+    }
+    let waiting = readers.waiting_changes(place);
+    assert!(waiting < 1000, "{waiting} changes of 3 messages wait");
+    let (mut inbox, mut departed) = (Vec::new(), Vec::new());
+    readers.collect(place, Some(&table), &mut inbox, &mut departed);
+    assert_eq!((values(&inbox), departed), (vec![99_997, 99_998, 99_999], Vec::new()));
 }

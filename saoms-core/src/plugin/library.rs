@@ -1,13 +1,14 @@
 //! The code of a library.
 
+use std::ffi::{c_int, c_void};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-use std::{error, fmt, fs};
+use std::{error, fmt, fs, slice};
 
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW, Symbol};
 use saoms_abi::{EntryPoint, PluginTable, VERSION};
-use saoms_api::host::present::{Function, Owner, enter};
+use saoms_api::host::present::{self, Function, Owner, enter};
 
 use super::copy::PrivateCopy;
 use super::tables::{all, whole};
@@ -24,6 +25,7 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
         let entry: Symbol<EntryPoint> = unsafe { library.get(metadata.entry.as_bytes()) }
             .map_err(|error| unloadable(format!("it has no function `{}`: {}", metadata.entry, with_causes(&error))))?;
+        note_code(name, *entry as usize);
         // SAFETY: the same.
         unsafe { entry(VERSION) }
     };
@@ -55,14 +57,14 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     let code = || unsafe {
         let mut code = Code { classes: Vec::new(), loops: Vec::new(), rules: Vec::new() };
         let names = metadata.class_names();
-        for ((class, of), reacts) in
-            all(table.classes, "class", &names)?.into_iter().zip(&names).zip(metadata.reacting())
+        for ((class, of), asked) in
+            all(table.classes, "class", &names)?.into_iter().zip(&names).zip(metadata.asked_functions())
         {
             whole((*class).component, &format!("class `{of}`"))?;
             let class = ImportedClass::new(&*class, name);
-            if reacts && !class.has_react() {
+            if let Some((function, why)) = asked.into_iter().find(|(function, _)| !class.has(function)) {
                 return Err(format!(
-                    "`react` in its `SaomsComponentTable` of class `{of}` is null, but its metadata say `\"reacts\": true`: \
+                    "`{function}` in its `SaomsComponentTable` of class `{of}` is null, but its metadata say `{why}`: \
                      set one or leave out the other"
                 ));
             }
@@ -80,6 +82,34 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
         Ok(code)
     };
     code().map_err(unloadable)
+}
+
+/// Notes the addresses of a library's code, of which this is one, so that a crash on a thread of its own is told.
+fn note_code(library: &'static str, address: usize) {
+    struct Asked(&'static str, usize);
+
+    /// Called for each library of the process until it answers with something else than 0.
+    unsafe extern "C" fn look(about: *mut libc::dl_phdr_info, _: usize, asked: *mut c_void) -> c_int {
+        // SAFETY: the system lends what it knows of a library, and gives back what `dl_iterate_phdr` was given.
+        let (about, Asked(library, address)) = unsafe { (&*about, &*asked.cast::<Asked>()) };
+        // SAFETY: so many headers are there.
+        let headers = unsafe { slice::from_raw_parts(about.dlpi_phdr, usize::from(about.dlpi_phnum)) };
+        let is_code = |header: &&libc::Elf64_Phdr| header.p_type == libc::PT_LOAD && header.p_flags & libc::PF_X != 0;
+        let range = |header: &libc::Elf64_Phdr| {
+            let start = (about.dlpi_addr + header.p_vaddr) as usize;
+            start..start + header.p_memsz as usize
+        };
+        let mut code = headers.iter().filter(is_code).map(range);
+        if !code.clone().any(|range| range.contains(address)) {
+            return 0;
+        }
+        code.by_ref().for_each(|range| present::note_code(library, range));
+        1
+    }
+
+    let mut asked = Asked(library, address);
+    // SAFETY: the function gets the value that lives until the call returns.
+    unsafe { libc::dl_iterate_phdr(Some(look), (&raw mut asked).cast()) };
 }
 
 /// The code of a file: that which is loaded already, if it is the same file.

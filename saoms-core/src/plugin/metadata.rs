@@ -43,15 +43,33 @@ impl Metadata {
         names(&self.classes)
     }
 
-    /// Of each of its classes, in the order of its tables, whether it reacts to messages.
-    pub(super) fn reacting(&self) -> Vec<bool> {
-        #[derive(Deserialize)]
-        struct Reacting {
-            #[serde(default)]
+    /// Of each of its classes, in the order of its tables, the functions that its declaration asks for, with what asks.
+    pub(super) fn asked_functions(&self) -> Vec<Vec<(&'static str, &'static str)>> {
+        #[derive(Default, Deserialize)]
+        #[serde(default)]
+        struct Asking {
             reacts: bool,
+            saves: bool,
+            properties: Vec<Property>,
         }
-        let reacts = |one: &RawValue| serde_json::from_str(one.get()).map(|Reacting { reacts }| reacts);
-        self.classes.iter().map(|one| reacts(one).unwrap_or_default()).collect()
+        #[derive(Deserialize)]
+        struct Property {
+            #[serde(default)]
+            live: bool,
+        }
+        let asked = |one: &RawValue| {
+            // The registry has judged them all before code is loaded.
+            let Asking { reacts, saves, properties } = serde_json::from_str(one.get()).unwrap_or_default();
+            let is_live = properties.iter().any(|property| property.live);
+            let all = [
+                (reacts, "react", "\"reacts\": true"),
+                (saves, "save", "\"saves\": true"),
+                (saves, "restore", "\"saves\": true"),
+                (is_live, "update", "\"live\": true"),
+            ];
+            all.into_iter().filter(|(asks, ..)| *asks).map(|(_, function, why)| (function, why)).collect()
+        };
+        self.classes.iter().map(|one| asked(one)).collect()
     }
 
     /// The names of its loops, in the order of its tables.

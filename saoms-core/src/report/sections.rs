@@ -20,7 +20,15 @@ enum Entry {
 const RESERVED: [&str; 9] =
     ["seed", "time_s", "periods", "components", "journal", "votes", "standstill", "outcome", "trace_hash"];
 
+/// Greatest number of parts of a path: nested objects are written and read one within the other.
+const DEEPEST: usize = 64;
+
 impl Sections {
+    /// True if a path has too many parts.
+    pub fn is_too_deep(path: &str) -> bool {
+        path.split('.').nth(DEEPEST).is_some()
+    }
+
     /// True if a path would write over what the program itself reports.
     pub fn is_reserved(path: &str) -> bool {
         RESERVED.contains(&path.split_once('.').map_or(path, |(first, _)| first))

@@ -7,7 +7,8 @@ use std::collections::HashSet;
 
 use saoms_api::host::declaration::PropertyKind;
 
-use super::{ClassDeclaration, DeclaredEntry, LoopDeclaration, PropertyDeclaration, simple};
+use super::{ClassDeclaration, ClassTopic, DeclaredEntry, LoopDeclaration, PropertyDeclaration, simple};
+use crate::schema::Schema;
 
 /// The first contradiction.
 pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
@@ -25,6 +26,7 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
     unique("reference", class.references.iter().map(|reference| reference.name.as_str()))?;
     unique("published topic", class.publishes.iter().map(|topic| topic.name.as_str()))?;
     unique("subscribed topic", class.subscribes.iter().map(|topic| topic.name.as_str()))?;
+    schemas(class.publishes.iter().chain(&class.subscribes))?;
     loops(class)?;
     for alias in &class.also {
         if alias.name.trim().is_empty() {
@@ -71,8 +73,17 @@ pub(super) fn looping(one: &LoopDeclaration) -> Result<(), String> {
     unique("reference", one.references.iter().map(|reference| reference.name.as_str()))?;
     unique("published topic", one.publishes.iter().map(|topic| topic.name.as_str()))?;
     unique("subscribed topic", one.subscribes.iter().map(|topic| topic.name.as_str()))?;
+    schemas(one.publishes.iter().chain(&one.subscribes))?;
     unique("entry under `senses`", one.senses.iter().map(String::as_str))?;
     unique("entry under `effects`", one.effects.iter().map(String::as_str))
+}
+
+/// Checks the types of messages.
+fn schemas<'a>(mut topics: impl Iterator<Item = &'a ClassTopic>) -> Result<(), String> {
+    topics.try_for_each(|topic| match Schema::of(&topic.schema) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(format!("the schema of topic `{}`: {error}", topic.name)),
+    })
 }
 
 fn entries(all: &[DeclaredEntry]) -> Result<(), String> {

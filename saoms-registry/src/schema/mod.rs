@@ -125,6 +125,11 @@ impl Schema {
         read::block(self, place, &mut Reader::new(bytes).ok()?)
     }
 
+    /// True if messages have a block: a field that is their place.
+    pub fn has_place(&self) -> bool {
+        self.place.is_some()
+    }
+
     /// True if these bytes are such a message.
     ///
     /// # Errors
@@ -161,8 +166,32 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
         Ok(Field { name: field.name, kind })
     });
     let fields = fields.collect::<Result<Vec<Field>, _>>()?;
-    let place = shape.place.and_then(|place| fields.iter().position(|field| field.name == place));
+    let field = |name: &String, role: &str| {
+        let found = fields.iter().position(|field| field.name == *name);
+        found.ok_or_else(|| SchemaError(format!("the {role} of `{}` is `{name}`, which is no field of it", shape.name)))
+    };
+    let place = shape.place.as_ref().map(|place| field(place, "place")).transpose()?;
+    if let Some(place) = place.filter(|place| !is_block(&fields[*place].kind)) {
+        let name = &fields[place].name;
+        return Err(SchemaError(format!(
+            "the place of `{}` is `{name}`, which is no message of two fields of type int32",
+            shape.name
+        )));
+    }
+    if let Some(key) = &shape.key {
+        let key = field(key, "key")?;
+        if !matches!(fields[key].kind, Type::Number(_) | Type::Enumeration(..) | Type::Bool) {
+            let name = &fields[key].name;
+            return Err(SchemaError(format!("the key of `{}` is `{name}`, which is no number", shape.name)));
+        }
+    }
     Ok(Schema { fields, key: shape.key, place, name: shape.name })
+}
+
+/// True if a field is a column and a row.
+fn is_block(kind: &Type) -> bool {
+    let is_number = |field: &Field| field.kind == Type::Number(Number::Int32);
+    matches!(kind, Type::Message(block) if block.fields.len() == 2 && block.fields.iter().all(is_number))
 }
 
 fn kind(value: &Value, deepest: usize) -> Result<Type, SchemaError> {

@@ -12,16 +12,11 @@ pub(super) fn skip_message(schema: &Schema, reader: &mut Reader<'_>) -> Result<(
     schema.fields.iter().try_for_each(|field| skip(&field.kind, reader))
 }
 
-/// The two numbers of the field at this place.
+/// The two numbers of the field at this place, which is a block.
 pub(super) fn block(schema: &Schema, place: usize, reader: &mut Reader<'_>) -> Option<(i32, i32)> {
     schema.fields[..place].iter().try_for_each(|field| skip(&field.kind, reader)).ok()?;
-    let Type::Message(block) = &schema.fields[place].kind else { return None };
     let mut number = || Some(i32::from_le_bytes(reader.scalar().ok()?));
-    let is_number = |field: &super::Field| field.kind == Type::Number(Number::Int32);
-    match block.fields.len() == 2 && block.fields.iter().all(is_number) {
-        true => Some((number()?, number()?)),
-        false => None,
-    }
+    Some((number()?, number()?))
 }
 
 fn skip(kind: &Type, reader: &mut Reader<'_>) -> Result<(), DecodeError> {

@@ -152,5 +152,8 @@ fn an_actor_in_c_reacts_to_messages() {
     let crash = run(&[], &(trigger + &property("at", "react") + &property("does", "segv")));
     assert!(crash.text.contains("crashed in `react`: SIGSEGV"), "{}", crash.text);
     let null = run(&["REACT=NULL"], "");
-    assert_refused(&null, &["`react` in its `SaomsComponentTable` of class `c.Actor` is null, but its metadata say"]);
+    let expected = "`react` in its `SaomsComponentTable` of class `c.Actor` is null, but its metadata say";
+    assert_refused(&null, &[expected]);
+    // Half a function is none.
+    assert_refused(&run(&["SIZE=offsetof(SaomsComponentTable,react)+4"], ""), &[expected]);
 }

@@ -26,9 +26,17 @@ impl ImportedClass {
         ImportedClass { construct: table.construct, component: unsafe { read(table.component) }, library }
     }
 
-    /// True if its components have a function for messages that trigger them.
-    pub fn has_react(&self) -> bool {
-        self.component.react.is_some()
+    /// True if its components have this function, of those that may be null.
+    pub fn has(&self, function: &str) -> bool {
+        let ComponentTable { save, restore, waits_for, react, update, .. } = self.component;
+        match function {
+            "save" => save.is_some(),
+            "restore" => restore.is_some(),
+            "waits_for" => waits_for.is_some(),
+            "react" => react.is_some(),
+            "update" => update.is_some(),
+            _ => false,
+        }
     }
 
     /// Makes a component.
@@ -53,6 +61,8 @@ unsafe fn read(table: *const ComponentTable) -> ComponentTable {
     // zeros are a null function.
     unsafe {
         let size = (*table.cast::<usize>()).min(size_of::<ComponentTable>());
+        // Whole members alone: the size and each function are as large as this.
+        let size = size - size % size_of::<usize>();
         copy.as_mut_ptr().cast::<u8>().copy_from_nonoverlapping(table.cast(), size);
         copy.assume_init()
     }

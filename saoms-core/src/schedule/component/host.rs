@@ -44,6 +44,11 @@ impl ComponentHost<'_> {
     /// Checks that the component may use a topic now, and returns its task settings.
     fn may_use(&self, topic: &str, use_as: TopicUse) -> Result<Option<&TaskProperties>, Failure> {
         let verb = use_as.verb();
+        if self.part.publishers.len().max(self.part.subscriptions.len()) >= MAX_HANDLES {
+            return Err(Failure::new(format!(
+                "topic `{topic}`: a component can {verb} at most {MAX_HANDLES} times: keep what it returns"
+            )));
+        }
         if !self.part.initializing {
             return Err(Failure::new(format!(
                 "topic `{topic}`: a component can only {verb} in `initialize`; keep what it returns"
@@ -71,21 +76,22 @@ impl ComponentHost<'_> {
         Ok(task)
     }
 
+    /// The schema of a topic.
+    fn schema(&mut self, topic: TopicId) -> Result<Arc<Schema>, Failure> {
+        if let Some((_, known)) = self.part.schemas.iter().find(|(known, _)| *known == topic) {
+            return Ok(Arc::clone(known));
+        }
+        let text = self.shared.lock().bus.schema(topic).to_owned();
+        let schema = Schema::parse(&text).map_err(|error| Failure::new(format!("the schema of a topic: {error}")))?;
+        let schema = Arc::new(schema);
+        self.part.schemas.push((topic, Arc::clone(&schema)));
+        Ok(schema)
+    }
+
     /// Checks a message that a plugin sent as bytes, before it is published; gives its block.
     #[cold]
     fn check(&mut self, topic: TopicId, message: &SharedMessage) -> Result<Option<(i32, i32)>, Failure> {
-        let known = self.part.schemas.iter().find(|(known, _)| *known == topic).map(|(_, schema)| Arc::clone(schema));
-        let schema = match known {
-            Some(schema) => schema,
-            None => {
-                let text = self.shared.lock().bus.schema(topic).to_owned();
-                let schema =
-                    Schema::parse(&text).map_err(|error| Failure::new(format!("the schema of a topic: {error}")))?;
-                let schema = Arc::new(schema);
-                self.part.schemas.push((topic, Arc::clone(&schema)));
-                schema
-            }
-        };
+        let schema = self.schema(topic)?;
         schema.check(message.bytes()).map_err(|error| {
             let name = self.shared.lock().bus.name(topic).to_string();
             Failure::new(format!("topic `{name}`: what it sends is not a message `{}`: {error}", schema.name()))
@@ -94,6 +100,8 @@ impl ComponentHost<'_> {
     }
 }
 
+/// Greatest number of publishers, of subscriptions, and of functions that stop hardware of a component.
+const MAX_HANDLES: usize = 1000;
 /// Greatest number of messages in one execution.
 const MAX_SENT: usize = 1_000_000;
 /// Greatest size of all messages that code of a library sends in one execution, in bytes: four of the longest.
@@ -280,10 +288,18 @@ impl Host for ComponentHost<'_> {
 
     fn set_region(&mut self, subscription: u32, region: Option<Region>) -> Result<(), Failure> {
         let queue = self.spec().task.as_ref().map_or(1, |task| task.queue);
-        let Part { subscriptions, .. } = &mut *self.part;
-        let Some(reader) = subscriptions.get_mut(subscription as usize) else {
+        let Some(reader) = self.part.subscriptions.get(subscription as usize) else {
             return Err(Failure::new("this subscription belongs to no topic: keep what `Context::subscribe` returned"));
         };
+        let topic = self.shared.lock().bus.topic_of(reader);
+        if region.is_some() && !self.schema(topic)?.has_place() {
+            let name = self.shared.lock().bus.name(topic).to_string();
+            return Err(Failure::new(format!(
+                "topic `{name}`: its messages have no block, so a subscription can have no region: declare which field \
+                 is their `place`"
+            )));
+        }
+        let reader = &mut self.part.subscriptions[subscription as usize];
         self.shared.lock().bus.set_region(reader, region, queue);
         Ok(())
     }
@@ -321,6 +337,11 @@ impl Host for ComponentHost<'_> {
             return Err(Failure::new(format!(
                 "class `{}` does not declare that it stops hardware: write `stops` in its `#[class(...)]`",
                 class.name()
+            )));
+        }
+        if self.part.stops.len() >= MAX_HANDLES {
+            return Err(Failure::new(format!(
+                "a component can register at most {MAX_HANDLES} functions that stop its hardware"
             )));
         }
         let registered = self.shared.stops.register(self.part.index, &self.part.name, stop);
@@ -434,8 +455,14 @@ impl ComponentHost<'_> {
         self.shared.events.put(RunEvent { time: self.now(), component: Some(Arc::clone(&self.part.name)), what });
     }
 
-    /// True if the path is not one of the report's own fields.
+    /// True if the path is not one of the report's own fields, and not too deep.
     fn may_report(&mut self, path: &str) -> bool {
+        if Sections::is_too_deep(path) {
+            let shown: String = path.chars().take(40).collect();
+            let line = format_args!("`{shown}...` was left out of the report: it is more than 64 parts deep");
+            self.log(Level::Warning, line);
+            return false;
+        }
         let reserved = Sections::is_reserved(path);
         if reserved {
             self.log(Level::Warning, format_args!("`{path}` of the report is the program's own, and stays as it is"));

@@ -178,7 +178,11 @@ impl Engine {
     /// Notes that hardware may still move, which fails the run.
     pub(super) fn hardware_moves(&mut self, index: u32, message: String, now: u64) {
         let name = &self.slots[index as usize].name;
-        self.reasons.push(format!("component `{name}` could not stop its hardware: {message}"));
+        let reason = format!("component `{name}` could not stop its hardware: {message}");
+        // It is asked again at the end.
+        if !self.reasons.contains(&reason) {
+            self.reasons.push(reason);
+        }
         self.emit(now, index, Occurrence::NotStopped { message });
     }
 }

@@ -18,7 +18,8 @@ pub(super) struct StopThreads {
 #[derive(Default)]
 struct State {
     requested: VecDeque<Arc<RegisteredStop>>,
-    running: Vec<Arc<RegisteredStop>>,
+    /// Names of the components whose functions run.
+    running: Vec<Arc<str>>,
     threads: usize,
 }
 
@@ -46,7 +47,8 @@ impl StopThreads {
         let is_busy = |state: &mut State| state.threads > 0;
         let waited = self.returned.wait_timeout_while(lock(&self.state), patience, is_busy);
         let state = waited.unwrap_or_else(PoisonError::into_inner).0;
-        let mut names: Vec<_> = state.running.iter().chain(&state.requested).map(|one| Arc::clone(&one.name)).collect();
+        let requested = state.requested.iter().map(|one| &one.name);
+        let mut names: Vec<_> = state.running.iter().chain(requested).map(Arc::clone).collect();
         names.sort();
         names.dedup();
         names
@@ -58,11 +60,16 @@ fn work(stops: &Arc<Stops>) {
     let threads = &stops.threads;
     let mut state = lock(&threads.state);
     while let Some(function) = state.requested.pop_front() {
-        state.running.push(Arc::clone(&function));
+        let name = Arc::clone(&function.name);
+        state.running.push(Arc::clone(&name));
         drop(state);
         stops.call(&function);
+        // Without the lock: the last owner frees the state, which is code of the component, too.
+        drop(function);
         state = lock(&threads.state);
-        state.running.retain(|running| !Arc::ptr_eq(running, &function));
+        if let Some(place) = state.running.iter().position(|running| *running == name) {
+            state.running.swap_remove(place);
+        }
     }
     state.threads -= 1;
     threads.returned.notify_all();
