@@ -11,8 +11,6 @@ mod lsp;
 mod output;
 mod plugins;
 
-use std::process::ExitCode;
-
 use saoms_components as _;
 
 /// The exit code of the process; documented in `saoms --help`.
@@ -28,11 +26,10 @@ enum Exit {
     Interrupted = 130,
 }
 
-fn main() -> ExitCode {
+fn main() {
     // clap itself ends with 2 on a wrong command line, which is wrong input too.
     let exit = command::execute();
-    guard::ends_by_itself();
     // Whatever else there is to say of it: who reads the output lacks a part.
     let exit = if output::has_failed() { Exit::Failed } else { exit };
-    ExitCode::from(exit as u8)
+    guard::exit(exit as i32)
 }

@@ -7,18 +7,20 @@ use std::ptr;
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
-use saoms_api::host::present::here;
+use saoms_api::host::present::{here, is_of_program, library_at};
 
 use super::ENDS;
 use crate::Exit;
 
 /// The signals of a crash, with what they mean.
-const CRASHES: [(c_int, &str); 5] = [
+const CRASHES: [(c_int, &str); 7] = [
     (libc::SIGSEGV, "SIGSEGV: it accessed memory that is not its own"),
     (libc::SIGBUS, "SIGBUS: it accessed memory that does not exist"),
     (libc::SIGILL, "SIGILL: it executed an invalid instruction, as `__builtin_trap` does"),
     (libc::SIGFPE, "SIGFPE: a division by zero"),
     (libc::SIGABRT, "SIGABRT: it called `abort`"),
+    (libc::SIGTRAP, "SIGTRAP: it executed a breakpoint"),
+    (libc::SIGSYS, "SIGSYS: it called the system as it must not"),
 ];
 
 const OVERFLOW: &str = "SIGSEGV: its stack overflowed";
@@ -46,6 +48,9 @@ pub(super) fn install() {
             }
         }
     }
+    // A file that became too large is an error of whoever writes it, also where code of a library made the limit lower.
+    // SAFETY: nothing is called for an ignored signal.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
     // SAFETY: the function takes and gives nothing, and may run at the end of the process.
     unsafe { libc::atexit(ended) };
 }
@@ -67,7 +72,13 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
                 write(&["error: ", &owner.text, " crashed in ", function.name(), ": ", meaning, "\n"]);
                 action.sa_sigaction = libc::SIG_DFL;
             }
-            None => action = BEFORE[place].get().copied().unwrap_or(action),
+            None => match library_above(stack_pointer(context).unwrap_or_default()) {
+                Some(library) => {
+                    write(&["error: a thread of library `", library, "` crashed: ", meaning, "\n"]);
+                    action.sa_sigaction = libc::SIG_DFL;
+                }
+                None => action = BEFORE[place].get().copied().unwrap_or(action),
+            },
         }
         libc::sigaction(signal, &raw const action, ptr::null_mut());
         // A fault of the code happens again when it goes on; what was sent has to be sent again.
@@ -75,6 +86,29 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
             libc::raise(signal);
         }
     }
+}
+
+/// The library whose code a thread that it made runs, found by the addresses on its stack, from this one on.
+fn library_above(top: usize) -> Option<&'static str> {
+    // On a thread of the program they may be left from a call that has returned.
+    if is_of_program() {
+        return None;
+    }
+    let mut words = [0_usize; 2048];
+    let own = libc::iovec { iov_base: words.as_mut_ptr().cast(), iov_len: size_of_val(&words) };
+    // Page by page: what lies behind the end of the stack is not copied.
+    let page = 4096;
+    let mut parts = [libc::iovec { iov_base: ptr::null_mut(), iov_len: 0 }; 5];
+    let mut at = top & !(size_of::<usize>() - 1);
+    for part in &mut parts {
+        *part = libc::iovec { iov_base: at as *mut c_void, iov_len: page - at % page };
+        at += part.iov_len;
+    }
+    // SAFETY: the system copies what can be read into the words, and says how much that was.
+    let copied =
+        unsafe { libc::process_vm_readv(libc::getpid(), &raw const own, 1, parts.as_ptr(), parts.len() as u64, 0) };
+    let count = usize::try_from(copied).unwrap_or_default() / size_of::<usize>();
+    words[..count].iter().find_map(|word| library_at(*word))
 }
 
 /// The top of the stack at the time of the signal.
@@ -96,6 +130,7 @@ unsafe fn stack_pointer(context: *mut c_void) -> Option<usize> {
 
 /// Called at the end of the process: if the program did not end it, code of a library did.
 extern "C" fn ended() {
+    let top = 0_u8;
     if ENDS.load(Ordering::SeqCst) {
         return;
     }
@@ -103,7 +138,15 @@ extern "C" fn ended() {
         Some((owner, function)) => {
             write(&["error: ", &owner.text, " ended the whole process, by `exit` in ", function.name(), "\n"]);
         }
-        None => write(&["error: a thread of a library ended the whole process, by `exit`\n"]),
+        None => {
+            let top = ptr::from_ref(&top) as usize;
+            match library_above(top) {
+                Some(library) => {
+                    write(&["error: a thread of library `", library, "` ended the whole process, by `exit`\n"]);
+                }
+                None => write(&["error: a thread of a library ended the whole process, by `exit`\n"]),
+            }
+        }
     }
     // SAFETY: nothing runs after it.
     unsafe { libc::_exit(Exit::Failed as c_int) }

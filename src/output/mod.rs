@@ -14,7 +14,7 @@ use saoms_api::host::one_line;
 
 pub(crate) use json::json;
 pub(crate) use outputs::{Asked, Outputs, write_into};
-pub(crate) use place::{Place, Sink};
+pub(crate) use place::{Place, Sink, keep_folder};
 pub(crate) use replace::replace;
 pub(crate) use standard::{
     eprint, eprint_coloured, eprint_json, has_failed, keep_from_libraries, limit_patience, own, print, print_as_is,

@@ -7,7 +7,8 @@ use std::os::fd::{FromRawFd, RawFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
-use std::process;
+use std::sync::OnceLock;
+use std::{env, process};
 
 use super::replace::{can_replace, replace};
 use super::standard::{own, printed};
@@ -17,6 +18,16 @@ const STANDARD: &str = "-";
 
 /// The links that are followed one after the other, as Linux has it.
 const LINKS: usize = 40;
+
+/// The folder in which the program was started: code of a library may go into another one.
+static START: OnceLock<PathBuf> = OnceLock::new();
+
+/// Notes the present folder as that from which paths of outputs start.
+pub(crate) fn keep_folder() {
+    if let Ok(folder) = env::current_dir() {
+        START.get_or_init(|| folder);
+    }
+}
 
 /// The place that a path leads to.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +66,7 @@ impl Place {
         if path == Path::new(STANDARD) {
             return Ok(Place::Descriptor(libc::STDOUT_FILENO));
         }
-        let mut path = path.to_owned();
+        let mut path = START.get().map_or_else(|| path.to_owned(), |start| start.join(path));
         for _ in 0..LINKS {
             if let Some(descriptor) = descriptor(&path) {
                 return Ok(Place::Descriptor(descriptor));

@@ -13,6 +13,7 @@ use signal_hook::iterator::Signals;
 
 use crate::output::{Place, eprint, limit_patience, wait_for_no_reader};
 use crate::{Exit, guard};
+use guard::keep_signals;
 
 /// The signals that end a run, handled from its first moment on.
 pub(super) struct Signalled(Arc<State>);
@@ -36,6 +37,7 @@ impl Signalled {
         let signals = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup));
         let state: Arc<State> = Arc::default();
         let handled = Arc::clone(&state);
+        keep_signals(&[(SIGINT, "SIGINT"), (SIGTERM, "SIGTERM"), (SIGHUP, "SIGHUP")]);
         let spawned = signals.and_then(|mut signals| {
             let handle = move || signals.forever().for_each(|signal| handled.handle(signal, grace));
             thread::Builder::new().name("signals".to_owned()).spawn(handle)

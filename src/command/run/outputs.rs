@@ -57,7 +57,7 @@ impl RunFiles {
 fn grown(asked: Asked<'_>, place: Place) -> io::Result<JournalFile> {
     match place.open()? {
         Sink::Open(file) => Ok(JournalFile::to(file, asked.path)),
-        Sink::File(_) => Ok(JournalFile::new(asked.path)),
+        Sink::File(path) => Ok(JournalFile::new(path)),
         Sink::Standard => Err(io::Error::other("standard output is for the lines of the run; give it a file")),
     }
 }

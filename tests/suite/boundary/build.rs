@@ -88,14 +88,20 @@ fn write(path: &Path, text: &str) {
     fs::write(path, text).unwrap();
 }
 
-/// The library of `tests/plugins/c` with these definitions, in a folder.
+/// The library `actor` of `tests/plugins/c` with these definitions, in a folder.
 pub(crate) fn c_library(folder: &Path, definitions: &[&str]) -> PathBuf {
-    let library = folder.join("libactor.so");
+    c_library_of("actor", folder, definitions)
+}
+
+/// A library of `tests/plugins/c` with these definitions, in a folder.
+pub(crate) fn c_library_of(name: &str, folder: &Path, definitions: &[&str]) -> PathBuf {
+    let library = folder.join(format!("lib{name}.so"));
+    let source = root().join(format!("tests/plugins/c/{name}.c"));
     let mut cc = Command::new("cc");
     cc.args([
         "-std=gnu99", "-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-Wno-overlength-strings", "-pthread", "-I",
     ]);
-    cc.arg(root().join("saoms-abi/include")).arg("-o").args([&library, &root().join("tests/plugins/c/actor.c")]);
+    cc.arg(root().join("saoms-abi/include")).arg("-o").args([&library, &source]);
     let output = cc.args(definitions.iter().map(|one| format!("-D{one}"))).output().unwrap();
     assert!(output.status.success(), "{cc:?}: {}", String::from_utf8_lossy(&output.stderr));
     library

@@ -61,7 +61,7 @@ fn an_exit_of_a_library_is_told_and_is_a_failure() {
         assert_eq!(output.status.code(), Some(1), "{}", text(&output));
     }
     let output = run("execute", "exit on a thread");
-    assert!(text(&output).contains("error: a thread of a library ended the whole process"), "{}", text(&output));
+    assert!(text(&output).contains("libactor.so` ended the whole process, by `exit`"), "{}", text(&output));
     assert_eq!(output.status.code(), Some(1), "{}", text(&output));
 }
 

@@ -5,6 +5,7 @@ mod alike;
 mod build;
 mod crash;
 mod hang;
+mod hostile;
 mod keeper;
 mod misbehaving;
 mod named;

@@ -1,0 +1,230 @@
+/* Components in C that do to the process, or ask of the program, what they must not, by the property `does`. */
+#include <pthread.h>
+#include <signal.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "saoms_author.h"
+
+#define JSON(...) #__VA_ARGS__
+/* The same with macros in it expanded. */
+#define TEXT(...) JSON(__VA_ARGS__)
+#define WORD JSON({"name": "Word", "fields": [{"name": "text", "type": "string"}]})
+
+#ifndef KEY
+#define KEY "number"
+#endif
+#ifndef PLACE
+#define PLACE "spot"
+#endif
+/* Members of the declaration of `h.Motor`, and whether its property is live. */
+#ifndef SAYS
+#define SAYS
+#endif
+#ifndef LIVE
+#define LIVE false
+#endif
+#define SPOTTED JSON({"name": "Spotted", "fields": [{"name": "number", "type": "uint32"}, {"name": "spot", "type": {"name": "Spot", "fields": [{"name": "x", "type": "int32"}, {"name": "y", "type": "int32"}]}}], "key":) TEXT(KEY) JSON(, "place":) TEXT(PLACE) JSON(})
+
+typedef struct Actor {
+    char does[48];
+    uint32_t words, hears, spots, sees, callee, executions;
+} Actor;
+
+static volatile int *volatile nowhere = NULL;
+/* What the destructor of the library does. */
+static const char *volatile at_end = "";
+
+static int does(const Actor *actor, const char *what) { return strcmp(actor->does, what) == 0; }
+
+static void end(void) {
+    if (strcmp(at_end, "exits") == 0) {
+        _exit(0);
+    } else if (strcmp(at_end, "crashes") == 0) {
+        *nowhere = 1;
+    } else if (strcmp(at_end, "hangs") == 0) {
+        for (;;) {
+            sleep(1);
+        }
+    }
+}
+
+__attribute__((destructor)) static void unload(void) { end(); }
+
+static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void **made, SaomsFindingSink findings,
+                             SaomsSink error) {
+    Actor *actor = calloc(1, sizeof *actor);
+    (void)findings, (void)error;
+    saoms_property_text(values, count, "does", actor->does, sizeof actor->does);
+    if (does(actor, "goes elsewhere") && chdir("/") != 0) {
+        return saoms_fail(error, "there is no other folder");
+    }
+    *made = actor;
+    return SaomsStatus_OK;
+}
+
+static SaomsStatus stop(void *state, SaomsSink error) {
+    (void)state, (void)error;
+    return SaomsStatus_OK;
+}
+
+/* The state of a motor is a text that outlives the component. */
+static void release(void *state) {
+    if (strcmp(state, "hangs in release") == 0) {
+        for (;;) {
+            sleep(1);
+        }
+    }
+}
+
+static SaomsStatus register_stops(Actor *actor, const SaomsHostHandle *host, SaomsSink error) {
+    SaomsStopView view = {sizeof view, strdup(actor->does), stop, NULL, release};
+    uint32_t count = does(actor, "registers without end") ? 1000000 : 1;
+    SaomsStatus status = SaomsStatus_OK;
+    if (does(actor, "a short view")) {
+        view.size = offsetof(SaomsStopView, release) + 4;
+    }
+    while (status == SaomsStatus_OK && count-- > 0) {
+        status = host->functions->register_stop(host->state, &view, error);
+    }
+    return status;
+}
+
+static SaomsStatus initialize(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    Actor *actor = component;
+    const SaomsHostFunctions *functions = host->functions;
+    SaomsTopicView words = {saoms_text("WORDS"), saoms_text("Word"), saoms_text(WORD), 1};
+    SaomsTopicView spots = {saoms_text("SPOTS"), saoms_text("Spotted"), saoms_text(SPOTTED), 0};
+    uint32_t count = does(actor, "subscribes without end") ? 1000000 : 1;
+    SaomsStatus status = functions->publish(host->state, &words, &actor->words, error);
+    if (status == SaomsStatus_OK) {
+        status = functions->publish(host->state, &spots, &actor->spots, error);
+    }
+    while (status == SaomsStatus_OK && count-- > 0) {
+        status = functions->subscribe(host->state, &words, &actor->hears, error);
+    }
+    if (status == SaomsStatus_OK) {
+        status = functions->subscribe(host->state, &spots, &actor->sees, error);
+    }
+    if (status == SaomsStatus_OK) {
+        status = functions->reference(host->state, saoms_text("callee"), saoms_text("h.Callee"), &actor->callee, error);
+    }
+    return status;
+}
+
+static SaomsStatus initialize_motor(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    SaomsStatus status = register_stops(component, host, error);
+    return status == SaomsStatus_OK ? initialize(component, host, error) : status;
+}
+
+static void *crash(void *nothing) {
+    (void)nothing;
+    *nowhere = 1;
+    return NULL;
+}
+
+static void nothing(void *state, SaomsBytes bytes) { (void)state, (void)bytes; }
+
+/* Wide regions, from which one differs from the other, over all that is there. */
+static SaomsStatus move_region(Actor *actor, const SaomsHostHandle *host, SaomsSink error) {
+    SaomsStatus status = SaomsStatus_OK;
+    int32_t move;
+    for (move = 0; status == SaomsStatus_OK && move < 1000; move++) {
+        SaomsRegionView region = {{INT32_MIN, INT32_MIN}, {INT32_MAX - move % 2, INT32_MAX}};
+        status = host->functions->set_region(host->state, actor->sees, &region, error);
+    }
+    return status;
+}
+
+static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    Actor *actor = component;
+    const SaomsHostFunctions *functions = host->functions;
+    SaomsSink reply = {NULL, nothing};
+    SaomsRegionView region = {{0, 0}, {1, 1}};
+    SaomsBytes null = {NULL, 10};
+    uint64_t number;
+    if (actor->executions++ != 2) {
+        return SaomsStatus_OK;
+    }
+    if (does(actor, "reports deep")) {
+        static char path[200001];
+        memset(path, '.', sizeof path - 1);
+        functions->count(host->state, saoms_text(path), 1);
+        saoms_log(host, SAOMS_INFO, "has reported");
+    } else if (does(actor, "calls")) {
+        /* As a component in C passes a failed call on. */
+        return functions->call(host->state, actor->callee, 0, saoms_text(""), reply, error);
+    } else if (does(actor, "keeps null")) {
+        return functions->keep(host->state, null, &number, error);
+    } else if (does(actor, "a region without a block")) {
+        return functions->set_region(host->state, actor->hears, &region, error);
+    } else if (does(actor, "a region of nobody")) {
+        return functions->set_region(host->state, 77, &region, error);
+    } else if (does(actor, "moves a region")) {
+        return move_region(actor, host, error);
+    } else if (does(actor, "crashes on a thread")) {
+        pthread_t thread;
+        if (pthread_create(&thread, NULL, crash, NULL) == 0) {
+            pthread_join(thread, NULL);
+        }
+    } else if (does(actor, "takes signals")) {
+        signal(SIGINT, SIG_IGN);
+        signal(SIGTERM, SIG_IGN);
+    } else if (does(actor, "limits files")) {
+        struct rlimit none = {0, 0};
+        setrlimit(RLIMIT_FSIZE, &none);
+    } else if (does(actor, "traps")) {
+        raise(SIGTRAP);
+    } else if (strncmp(actor->does, "at the end ", 11) == 0) {
+        at_end = strdup(actor->does + 11);
+        atexit(end);
+        return saoms_fail(error, "fails before");
+    }
+    return SaomsStatus_OK;
+}
+
+static SaomsStatus shutdown(void *component, const SaomsHostHandle *host, SaomsSink error) {
+    (void)component, (void)host, (void)error;
+    return SaomsStatus_OK;
+}
+
+static SaomsStatus serve(void *component, const SaomsHostHandle *host, SaomsBytes service, uint32_t operation,
+                         SaomsBytes arguments, SaomsSink reply, SaomsSink error) {
+    (void)component, (void)host, (void)service, (void)operation, (void)arguments, (void)reply;
+    return saoms_fail(error, "serves nobody");
+}
+
+static void destroy(void *component) { free(component); }
+
+#define TOPICS JSON([{"topic": "WORDS", "kind": "event", "message": "Word", "optional": true, "schema":) WORD JSON(}, {"topic": "SPOTS", "kind": "state", "message": "Spotted", "optional": true, "schema":) SPOTTED JSON(}])
+#define CALLEE JSON({"name": "callee", "optional": true, "interface": {"name": "h.Callee", "operations": [{"name": "call", "arguments": [], "reply": "uint32"}]}})
+#define MEMBERS JSON("kind": "periodic", "properties": [{"name": "does", "type": "string", "default": "", "live":) TEXT(LIVE) JSON(}], "services": [) CALLEE JSON(], "references": [) CALLEE JSON(], "publishes":) TOPICS JSON(, "subscribes":) TOPICS
+
+SAOMS_METADATA static const char metadata[] =
+    JSON({"saoms": "plugin", "abi":) TEXT(SAOMS_ABI_VERSION) JSON(, "package": "hostile", "version": "0.1.0", "entry": "hostile_plugin", "classes": [
+        {"contract": 1, "class": "h.Actor",) MEMBERS JSON(}, {"contract": 1, "class": "h.Motor", "stops": true,) TEXT(SAYS) MEMBERS JSON(}]});
+
+static const SaomsComponentTable actor_table = {
+    .size = sizeof actor_table, .initialize = initialize, .execute = execute,
+    .shutdown = shutdown, .serve = serve, .destroy = destroy,
+};
+
+static const SaomsComponentTable motor_table = {
+    .size = sizeof motor_table, .initialize = initialize_motor, .execute = execute,
+    .shutdown = shutdown, .serve = serve, .destroy = destroy,
+};
+
+static const SaomsClassTable actors = {.size = sizeof actors, .construct = construct, .component = &actor_table};
+static const SaomsClassTable motors = {.size = sizeof motors, .construct = construct, .component = &motor_table};
+
+SAOMS_EXPORT const SaomsPluginTable *hostile_plugin(uint32_t version) {
+    static const SaomsClassTable *classes[] = {&actors, &motors};
+    static SaomsPluginTable table = {.size = sizeof table, .version = SAOMS_ABI_VERSION, .classes = classes, .class_count = 2};
+    (void)version;
+    table.metadata = saoms_text(metadata);
+    return &table;
+}

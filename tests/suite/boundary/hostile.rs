@@ -1,0 +1,174 @@
+//! Libraries that do to the process, or ask of the program, what they must not: all is told by name, and the program
+//! ends as it would without them.
+
+use std::io::{BufRead, BufReader};
+use std::os::unix::process::ExitStatusExt;
+use std::process::{Command, Output, Stdio};
+
+use super::build::c_library_of;
+use super::run::{Run, component, in_folder, property, second};
+use crate::support::{PROGRAM, command, stderr, text};
+
+fn bad(class: &str, does: &str, inside: &str) -> String {
+    component("Bad", class, &(property("does", does) + inside))
+}
+
+/// A second of virtual time with a component that does this, and one that does as it should.
+fn run(class: &str, does: &str) -> Run {
+    run_with(&bad(class, does, ""), &[])
+}
+
+fn run_with(components: &str, definitions: &[&str]) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let library = c_library_of("hostile", folder.path(), definitions);
+    second(&(components.to_owned() + &component("Good", "h.Actor", "")), &[library])
+}
+
+fn assert_goes_on(run: &Run, expected: &str) {
+    assert_eq!((run.code, &run.component("Good")["executions"]), (Some(1), &10.into()), "{}", run.text);
+    assert!(run.reasons().contains("Bad") && run.reasons().contains(expected), "{}\n{}", run.reasons(), run.text);
+}
+
+#[test]
+fn what_is_asked_without_end_is_refused() {
+    for (class, does, expected) in [
+        ("h.Actor", "subscribes without end", "topic `WORDS`: a component can subscribe at most 1000 times"),
+        ("h.Motor", "registers without end", "can register at most 1000 functions that stop its hardware"),
+        ("h.Motor", "a short view", "the `SaomsStopView` has 36 bytes, expected at least 40"),
+    ] {
+        let run = run(class, does);
+        assert_eq!(run.code, Some(1), "{}", run.text);
+        assert!(run.text.contains("component `Bad`") && run.text.contains(expected), "{}", run.text);
+    }
+}
+
+#[test]
+fn what_makes_no_sense_is_a_failure_of_its_component() {
+    for (does, expected) in [
+        ("keeps null", "found null for 10 bytes"),
+        ("a region without a block", "topic `WORDS`: its messages have no block"),
+        ("a region of nobody", "this subscription belongs to no topic"),
+        ("calls", "reference `callee` is not wired"),
+    ] {
+        assert_goes_on(&run("h.Actor", does), expected);
+    }
+    let provider = component("Provider", "h.Actor", "");
+    let caller = bad("h.Actor", "calls", "<reference name=\"callee\" target=\"Provider/callee\"/>");
+    let run = run_with(&(provider + &caller), &[]);
+    assert_goes_on(&run, "component `Provider` could not serve the call: serves nobody");
+}
+
+#[test]
+fn a_path_of_the_report_is_not_deeper_than_a_value() {
+    let run = run("h.Actor", "reports deep");
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    assert!(run.text.contains("was left out of the report: it is more than 64 parts deep"), "{}", run.text);
+    assert!(run.text.contains("has reported"), "{}", run.text);
+}
+
+#[test]
+fn a_region_may_move_often() {
+    assert_eq!(run("h.Actor", "moves a region").code, Some(0));
+}
+
+#[test]
+fn a_type_of_messages_that_contradicts_itself_is_refused() {
+    for (definition, expected) in [
+        ("PLACE=\"where\"", "the place of `Spotted` is `where`, which is no field of it"),
+        ("PLACE=\"number\"", "the place of `Spotted` is `number`, which is no message of two fields of type int32"),
+        ("PLACE=7", "invalid type: integer `7`, expected a string"),
+        ("KEY=\"nobody\"", "the key of `Spotted` is `nobody`, which is no field of it"),
+        ("KEY=\"spot\"", "the key of `Spotted` is `spot`, which is no number"),
+    ] {
+        let run = run_with("", &[definition]);
+        assert_eq!(run.code, Some(2), "{}", run.text);
+        assert!(run.text.contains("class `h.Actor` is malformed: the schema of topic `SPOTS`: "), "{}", run.text);
+        assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
+    }
+}
+
+#[test]
+fn a_function_that_a_declaration_asks_for_is_there() {
+    for (definition, expected) in [
+        (
+            "SAYS=\"saves\":true,",
+            "`save` in its `SaomsComponentTable` of class `h.Motor` is null, but its metadata say",
+        ),
+        ("LIVE=true", "`update` in its `SaomsComponentTable` of class `h.Actor` is null, but its metadata say"),
+        ("SAYS=\"saves\":7,", "`h.Motor` is malformed: invalid type: integer `7`, expected a boolean"),
+        ("LIVE=\"yes\"", "`h.Actor` is malformed: invalid type: string \"yes\", expected a boolean"),
+    ] {
+        let run = run_with("", &[definition]);
+        assert_eq!(run.code, Some(2), "{}", run.text);
+        assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
+    }
+}
+
+#[test]
+fn hardware_that_is_never_released_holds_up_no_end() {
+    assert_goes_on(&run("h.Motor", "hangs in release"), "could not stop its hardware");
+}
+
+#[test]
+fn a_report_is_written_where_it_was_asked_for() {
+    let run = run("h.Actor", "goes elsewhere");
+    assert_eq!((run.code, &run.component("Bad")["executions"]), (Some(0), &10.into()), "{}", run.text);
+}
+
+/// The command in a process of its own, without a core dump.
+fn ended(does: &str) -> Output {
+    let folder = in_folder(&bad("h.Actor", does, ""));
+    let library = c_library_of("hostile", folder.path(), &[]);
+    let line = format!(
+        "ulimit -c 0; exec '{PROGRAM}' run t.composite --virtual --for 950ms --report r.json --plugin '{}'",
+        library.display()
+    );
+    Command::new("timeout").args(["60", "sh", "-c", &line]).current_dir(folder.path()).output().unwrap()
+}
+
+#[test]
+fn the_end_of_a_library_is_not_that_of_the_program() {
+    for does in ["at the end exits", "at the end crashes", "at the end hangs"] {
+        let output = ended(does);
+        assert_eq!(output.status.code(), Some(1), "{does}: {}", text(&output));
+        assert!(text(&output).contains("component `Bad` failed: fails before"), "{does}: {}", text(&output));
+    }
+}
+
+#[test]
+fn a_crash_on_a_thread_of_a_library_is_told_with_the_library() {
+    let output = ended("crashes on a thread");
+    let expected = "libhostile.so` crashed: SIGSEGV: it accessed memory that is not its own";
+    assert!(text(&output).contains("error: a thread of library `"), "{}", text(&output));
+    assert!(text(&output).contains(expected), "{}", text(&output));
+    assert_ne!(output.status.code(), Some(0), "{}", text(&output));
+    let output = ended("traps");
+    assert!(text(&output).contains("component `Bad` of library `"), "{}", text(&output));
+    assert!(text(&output).contains("crashed in `execute`: SIGTRAP"), "{}", text(&output));
+}
+
+#[test]
+fn a_file_that_may_not_grow_is_told() {
+    let output = ended("limits files");
+    assert_eq!((output.status.signal(), output.status.code()), (None, Some(1)), "{}", text(&output));
+    assert!(
+        stderr(&output).contains("the report could not be written to `r.json`: File too large"),
+        "{}",
+        text(&output)
+    );
+}
+
+#[test]
+fn a_library_that_takes_signals_over_keeps_no_run_from_its_end() {
+    let folder = in_folder(&bad("h.Actor", "takes signals", "").replace(">100<", ">5<"));
+    let library = c_library_of("hostile", folder.path(), &[]);
+    let mut command = command(&["run", "t.composite", "--for", "1h", "--plugin"]);
+    command.arg(library).current_dir(folder.path()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    assert!(lines.any(|line| line.contains("took over the signal SIGTERM")), "it ended without a word");
+    // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
+    assert_eq!(unsafe { libc::kill(i32::try_from(child.id()).unwrap(), libc::SIGINT) }, 0);
+    lines.for_each(drop);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+}
