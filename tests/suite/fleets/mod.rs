@@ -1,5 +1,6 @@
 //! Fleets in virtual time: what each run has to keep.
 
+mod battery;
 mod composites;
 mod endings;
 mod environment;
