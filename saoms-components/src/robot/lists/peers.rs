@@ -1,5 +1,3 @@
-use saoms_api::Field;
-
 use crate::grid::Block;
 use crate::messages::Position;
 
@@ -12,31 +10,7 @@ pub struct Peers {
     period: u64,
 }
 
-/// The positions, for a robot that goes on.
-#[derive(Clone, Debug, Field)]
-pub(in crate::robot) struct PeersMemory {
-    newest: Vec<HeardPosition>,
-    period: u64,
-}
-
-#[derive(Clone, Debug, Field)]
-struct HeardPosition {
-    position: Position,
-    period: u64,
-}
-
 impl Peers {
-    pub(super) fn memory(&self) -> PeersMemory {
-        let heard =
-            |(position, period): &(Position, u64)| HeardPosition { position: position.clone(), period: *period };
-        PeersMemory { newest: self.newest.iter().map(heard).collect(), period: self.period }
-    }
-
-    pub(super) fn restore(&mut self, memory: PeersMemory) {
-        self.newest = memory.newest.into_iter().map(|heard| (heard.position, heard.period)).collect();
-        self.period = memory.period;
-    }
-
     /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Peers {
         Peers { number, newest: Vec::new(), period: 0 }
