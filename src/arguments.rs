@@ -1,8 +1,10 @@
 //! Options that several subcommands have.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use saoms_api::host::{parse_duration, shorten};
 
 /// Options that describe a fleet.
 #[derive(Clone, Debug, Args)]
@@ -62,10 +64,22 @@ pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
     size.ok_or_else(|| "expected a number of bytes, or a number with one of the units kB, MB, GB".to_owned())
 }
 
+/// A duration; the message of a wrong one quotes a line of it at most.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    parse_duration(text).map_err(|mut message| {
+        shorten(&mut message);
+        message
+    })
+}
+
 /// A setting, which has to be one argument.
 fn setting(text: &str) -> Result<String, String> {
     match text.contains('=') {
         true => Ok(text.to_owned()),
-        false => Err(format!("found no `=`: write `--set {text}=VALUE`, without blanks around `=`")),
+        false => {
+            let mut message = format!("found no `=`: write `--set {text}=VALUE`, without blanks around `=`");
+            shorten(&mut message);
+            Err(message)
+        }
     }
 }

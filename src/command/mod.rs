@@ -92,7 +92,8 @@ fn of_others(option: &str) -> Option<String> {
 /// Help for an option that is probably a property of the composite: of a command that sets such, unless it is nearly
 /// one of its own.
 fn as_setting(error: &clap::Error, option: &str) -> Option<String> {
-    let name = option.strip_prefix("--").filter(|name| name.chars().all(char::is_alphanumeric))?;
+    let is_name = |name: &&str| name.len() <= QUOTED && name.chars().all(char::is_alphanumeric);
+    let name = option.strip_prefix("--").filter(is_name)?;
     let command = std::env::args().nth(1)?;
     let all = Arguments::command();
     let sets = all.find_subcommand(&command)?.get_arguments().any(|one| one.get_long() == Some("set"));
@@ -108,6 +109,22 @@ fn with_one_dash(letter: &str) -> Option<String> {
     let all = Arguments::command();
     let mut options = all.get_subcommands().flat_map(|one| one.get_arguments());
     options.any(|one| one.get_long() == Some(name)).then(|| format!("write `--{name}`"))
+}
+
+/// The characters that a message of the parser quotes at most.
+const QUOTED: usize = 100;
+
+/// Shortens what a message of the parser quotes of the command line.
+fn quote_little(error: &mut clap::Error) {
+    for kind in [ContextKind::InvalidValue, ContextKind::InvalidArg, ContextKind::InvalidSubcommand] {
+        let Some(ContextValue::String(word)) = error.get(kind) else { continue };
+        if let Some((end, _)) = word.char_indices().nth(QUOTED) {
+            let short = format!("{}…", &word[..end]);
+            error.insert(kind, ContextValue::String(short));
+            // A tip repeats it.
+            error.remove(ContextKind::Suggested);
+        }
+    }
 }
 
 /// The parsed command line. A wrong one is reported and ends the process.
@@ -150,6 +167,7 @@ fn parsed() -> Arguments {
             let tip = "one of them has no effect beside the other: leave one out".to_owned();
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
+        quote_little(&mut error);
         if error.use_stderr() {
             let plain = error.render().to_string();
             if plain.contains(|one| one != '\n' && is_invisible(one)) {

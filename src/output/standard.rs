@@ -1,6 +1,7 @@
 //! Standard output and standard error. A reader that went away (`saoms components | head`) is no failure; a full disk
 //! is one.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -161,7 +162,24 @@ fn wait(descriptor: &impl AsRawFd, events: i16, milliseconds: i32) -> io::Result
 
 /// Writes a text for people to standard error, piece by piece: what in it would steer a terminal is escaped.
 pub(crate) fn eprint(shown: &(impl Display + ?Sized)) {
-    eprint_coloured(&Visible(shown));
+    let shown = shown.to_string();
+    let lines: Vec<Cow<'_, str>> = shown.split('\n').map(quoting_little).collect();
+    eprint_coloured(&Visible(&lines.join("\n")));
+}
+
+/// The characters of a value that a line quotes at most: a path is longer than other values.
+const QUOTED: usize = 300;
+
+/// A line that quotes no value, between backticks, beyond that.
+fn quoting_little(line: &str) -> Cow<'_, str> {
+    if line.len() <= QUOTED {
+        return line.into();
+    }
+    let pieces = line.split('`').enumerate().map(|(place, piece)| match piece.char_indices().nth(QUOTED) {
+        Some((end, _)) if place % 2 == 1 => format!("{}…", &piece[..end]),
+        _ => piece.to_owned(),
+    });
+    pieces.collect::<Vec<String>>().join("`").into()
 }
 
 /// Writes diagnostics to standard error, piece by piece. They escape what others wrote, and have colours.

@@ -162,6 +162,8 @@ fn is_in_library(
         }
         Some(LibraryLink::Missing(looked)) => {
             let one = wrong(format!("there is no library {}", quoted(library)));
+            let is_own = registry.get(class).is_some_and(|has| has.origin().is_none());
+            let one = if is_own { one.help("remove `library`: the class is part of this program") } else { one };
             let looked: Vec<String> = looked.iter().map(|path| path.display().to_string()).collect();
             one.help(format!("looked for {}", list(looked.iter().map(String::as_str)))).help(
                 "write the path of the library from the folder of the composite, or name its folder with `--plugin`",

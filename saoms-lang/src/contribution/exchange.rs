@@ -6,8 +6,9 @@ use std::path::Path;
 
 use super::finder::Finder;
 use super::index::is_of_definitions;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::limits::FOLDER_ENTRIES;
+use crate::load::ReadContext;
 use crate::load::description::{Description, Entry, Kind};
 
 /// The endings of files that hold no names to import, or only names that are known.
@@ -16,13 +17,11 @@ impl Finder {
     /// Warns of exported namespaces for which the contribution in `root` holds nothing, and of imported ones that no
     /// contribution around it exports. These may be elsewhere: so a missing one is reported only where its name is
     /// nearly that of another.
-    pub(super) fn exchange(
-        &mut self,
-        description: &Description,
-        root: &Path,
-        max_size: u64,
-        diagnostics: &mut Diagnostics,
-    ) {
+    pub(super) fn exchange(&mut self, description: &Description, root: &Path, context: &mut ReadContext<'_>) {
+        for entry in description.imports.iter().filter(|entry| entry.location.is_some()) {
+            self.imports.refuse_outside(entry, root, context);
+        }
+        let ReadContext { max_size, diagnostics, .. } = context;
         if description.exports.is_empty() && description.imports.is_empty() {
             return;
         }
@@ -46,7 +45,7 @@ impl Finder {
         let around = self.around.get_or_insert_default();
         for entry in &description.imports {
             let Some(namespace) = entry.namespace().filter(|one| !own.contains(*one)) else { continue };
-            let others = around.around(root, namespace, max_size);
+            let others = around.around(root, namespace, *max_size);
             if others.iter().any(|(_, exports)| exports.iter().any(|one| one == namespace)) {
                 continue;
             }

@@ -55,7 +55,7 @@ impl Finder {
                 has_definitions |= definitions::check(&path, false, context);
             }
             if let Some(description) = &description {
-                self.exchange(description, &root, max_size, context.diagnostics);
+                self.exchange(description, &root, context);
             }
             let deployables = description.iter().flat_map(|description| &description.deployables);
             let mut deployed: Vec<Option<PathBuf>> =
@@ -75,7 +75,7 @@ impl Finder {
     pub(super) fn describe(&mut self, path: &Path, root: &Path, context: &mut ReadContext<'_>) {
         self.index.limit(ASKED_FOLDER_ENTRIES);
         let description = Description::read(path.to_owned(), context);
-        self.exchange(&description, root, context.max_size, context.diagnostics);
+        self.exchange(&description, root, context);
         let files = self.index.contents(root).composites;
         let (max_size, unreported) = (context.max_size, &mut Diagnostics::new());
         let contribution =

@@ -75,6 +75,15 @@ impl Imports {
         description.is_some_and(|one| one.imports.iter().any(|entry| entry.is(kind, what)))
     }
 
+    /// Reports that an import of the contribution in `root` names a folder that must not be read, if it does.
+    pub(super) fn refuse_outside(&self, entry: &Entry, root: &Path, context: &mut ReadContext<'_>) {
+        let Some((folder, at)) = &entry.location else { return };
+        let neighbour = Neighbour::of(root.join(folder));
+        if !neighbour.is_open(&identity(root), context.sources.open()) {
+            outside(&neighbour, *at, context.diagnostics);
+        }
+    }
+
     /// The composite of this name that the contribution in `root` imports.
     pub(super) fn find(
         &mut self,
@@ -178,20 +187,21 @@ impl Imports {
         let description = self.descriptions.get(root).and_then(Option::as_ref);
         let entries = description.iter().flat_map(|one| &one.imports).filter(|entry| entry.is(kind, what));
         let located = entries.filter_map(|entry| entry.location.as_ref());
-        let mut located: Vec<(Neighbour, Location)> =
-            located.map(|(folder, at)| (Neighbour::of(root.join(folder)), *at)).collect();
         let open = context.sources.open().clone();
-        for (neighbour, at) in located.extract_if(.., |(neighbour, _)| !neighbour.is_open(&own, &open)) {
-            self.refused.insert((root.to_owned(), what.to_owned()));
-            let is_known = |one: &Diagnostic| one.code == &codes::FILE_OUTSIDE && one.location == at;
-            if !context.diagnostics.iter().any(is_known) {
-                context.diagnostics.push(outside(&neighbour, at));
+        let is_open = |(folder, at): &(PathBuf, Location)| {
+            let neighbour = Neighbour::of(root.join(folder));
+            if neighbour.is_open(&own, &open) {
+                return Some(neighbour);
             }
-        }
+            outside(&neighbour, *at, context.diagnostics);
+            self.refused.insert((root.to_owned(), what.to_owned()));
+            None
+        };
+        let located: Vec<Neighbour> = located.filter_map(is_open).collect();
         let beside = self.beside.entry(root.to_owned()).or_insert_with_key(|root| beside(root));
         let beside = beside.iter().filter(|one| one.is_open(&own, &open));
         let mut seen = HashSet::from([own.as_path()]);
-        let all = located.iter().map(|(neighbour, _)| neighbour).chain(&self.given).chain(beside);
+        let all = located.iter().chain(&self.given).chain(beside);
         all.filter(|other| seen.insert(&other.identity)).map(|other| other.folder.clone()).collect()
     }
 
@@ -205,12 +215,17 @@ impl Imports {
     }
 }
 
-/// The error that an import names a folder that must not be read.
-fn outside(neighbour: &Neighbour, at: Location) -> Diagnostic {
+/// Reports an import that names a folder that must not be read, once.
+fn outside(neighbour: &Neighbour, at: Location, diagnostics: &mut Diagnostics) {
+    if diagnostics.iter().any(|one| one.code == &codes::FILE_OUTSIDE && one.location == at) {
+        return;
+    }
     let message = "this folder is outside the folder of the contribution and not beside it, and is not read";
     let folder = quoted(&neighbour.identity.display().to_string());
-    Diagnostic::new(&codes::FILE_OUTSIDE, at, message)
-        .help(format!("move {folder} beside the contribution, or allow it with `--allow-outside`"))
+    diagnostics.push(
+        Diagnostic::new(&codes::FILE_OUTSIDE, at, message)
+            .help(format!("move {folder} beside the contribution, or allow it with `--allow-outside`")),
+    );
 }
 
 /// The namespaces that are imported or exported.

@@ -18,7 +18,10 @@ pub fn quoted(text: &str) -> String {
 
 /// The description of a suggestion that replaces a name.
 pub(crate) fn replacing(name: &str, meant: &str) -> String {
-    format!("replace {} with {}", quoted(name), quoted(meant))
+    match meant {
+        "" => format!("remove {}", quoted(name)),
+        meant => format!("replace {} with {}", quoted(name), quoted(meant)),
+    }
 }
 
 /// Names for a line of help: `a`, `b` and `c`, so many of them.

@@ -9,7 +9,7 @@ use super::vocabulary::CONTRIBUTION;
 use super::{Loader, ReadContext, push_faults, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::model::Version;
-use crate::source::{FileId, Location, Sources, Text};
+use crate::source::{FileId, Location, Sources, Text, identity};
 use crate::syntax::{self, Element, Parse};
 
 /// The places of the description of a contribution in its folder: the author's, or else a tool's.
@@ -220,7 +220,8 @@ impl Description {
         let imports = root.children().filter(|child| child.local_name().starts_with("import"));
         for location in imports.filter_map(|child| Some(child.attribute("location")?.trimmed())) {
             let path = folder.join(location.as_str());
-            let is_folder = || sources.open().outside(&path).is_some() || path.exists();
+            let is_beside = || identity(&path).parent() == identity(folder).parent();
+            let is_folder = || sources.open().outside(&path).is_some() && !is_beside() || path.exists();
             if location.is_empty() || location.contains(':') || is_folder() {
                 continue;
             }

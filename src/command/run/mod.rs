@@ -25,7 +25,7 @@ use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::INPUT;
 
 use crate::Exit;
-use crate::arguments::{FleetArguments, Format};
+use crate::arguments::{FleetArguments, Format, duration};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use console::Console;
@@ -58,7 +58,7 @@ pub(crate) struct RunArguments {
     pub(crate) format: Format,
 
     /// End the run after this time (a bare number is milliseconds; units us, ms, s, min, h)
-    #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
+    #[arg(long = "for", value_name = "DURATION", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) limit: Option<Duration>,
 
     /// Run in virtual time: deterministic, and as fast as the machine allows
@@ -109,16 +109,16 @@ pub(crate) struct RunArguments {
 
     /// Maximum delay of the timer that the kernel may add to save power, in real time and without `--realtime`; 1ns is
     /// the most punctual
-    #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) timer_slack: Duration,
 
     /// Time that an execution may delay the others before a spare thread takes over, in real time
-    #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) budget: Duration,
 
     /// Time that a component may take to end before it is abandoned, and that a reader of standard output may block
     /// after a signal
-    #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
+    #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) grace: Duration,
 }
 

@@ -14,7 +14,7 @@ use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
 
 use crate::Exit;
-use crate::arguments::Format;
+use crate::arguments::{Format, duration};
 use crate::output::{self, Outputs, eprint, print, print_as_is};
 
 const EXIT_CODES: &str = "\
@@ -34,7 +34,7 @@ pub(crate) struct WhyArguments {
 
     /// Explain what it did last before this time of the run; by default, before its end (a bare number is milliseconds;
     /// units us, ms, s, min, h)
-    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = saoms_api::host::parse_duration)]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) at: Option<Duration>,
 
     /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input

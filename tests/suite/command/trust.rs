@@ -147,6 +147,15 @@ fn an_import_leads_to_no_folder_elsewhere() {
         assert!(!told.contains(SECRET) && told.contains("1 error"), "{location}: {told}");
         assert!(check(location, &["--allow-outside"]).contains(SECRET), "{location}: the link leads there, too");
     }
+    // Also where nothing needs the import: the folder is checked as a contribution.
+    write(folder.path(), "fleet.composite", &composite(""));
+    let import = |location: &str| {
+        let import = format!("<import namespace=\"urn:p\" location=\"{location}\"/>");
+        write(folder.path(), "sca-contribution.xml", &description(&import));
+        saoms(&site, &["check", "fleet"]).2
+    };
+    assert!(import("../../far/part").contains("error[S0009]"));
+    assert!(import("../none").contains("there is no folder `../none`"), "beside it that is no secret");
 }
 
 #[test]
@@ -276,6 +285,30 @@ fn messages_quote_a_line_of_a_value_at_most() {
         }
         let (_, stdout, stderr) = saoms(&site, &["check", "fleet/fleet.composite"]);
         assert!(!(stdout + &stderr).contains(&long[..401]), "{place}: {stderr:.800}");
+    }
+}
+
+#[test]
+fn messages_quote_a_line_of_the_command_line_at_most() {
+    let folder = site();
+    write(folder.path(), "fleet.composite", &hostile("R1"));
+    let (long, file) = ("y".repeat(5_000), "fleet/fleet.composite");
+    let option = format!("--{long}");
+    for arguments in [
+        &["explain", &long][..],
+        &["components", &long],
+        &["run", file, "--for", &long],
+        &["run", file, "--console", &long],
+        &["run", file, "--virtual", "--report", &long],
+        &["run", file, "--plugin", &long],
+        &["run", file, "--virtual", "--events", &long],
+        &["check", file, &option],
+        &["check", file, "--set", &long],
+        &["check", file, "--severity", &long],
+        &[&long],
+    ] {
+        let (code, stdout, stderr) = saoms(&folder.path().join("site"), arguments);
+        assert!(code == 2 && !(stdout + &stderr).contains(&long[..401]), "{arguments:.20?}: {stderr:.1000}");
     }
 }
 

@@ -258,6 +258,9 @@ pub(crate) fn as_index(text: &str) -> Option<String> {
         ("{index", "${index"),
         ("[index]", "${index}"),
     ];
+    if text.contains("{{index") {
+        return Some(text.replace("{{index", "${index").replace("}}", "}"));
+    }
     let found = WRITTEN.iter().find(|(written, _)| text.contains(written));
     found.map(|(written, meant)| text.replace(written, meant))
 }
@@ -284,6 +287,10 @@ pub(crate) fn report_faults(text: &Text, faults: &[ExpressionFault], names: &Nam
     let parts = report.parts(text);
     for fault in faults {
         let written = text.get(fault.at.clone()).unwrap_or_default();
+        // A fault of the XML, too, which is reported.
+        if report.written(parts.part(fault.at.clone())) == "&&" {
+            continue;
+        }
         if !names.report_value(written.trim(), report) {
             report.push(wrong(written, parts.part(fault.at.clone()), &fault.problem, names));
         }

@@ -35,6 +35,12 @@ pub(crate) fn named(property: &Property, document: &Document, report: &mut Repor
         let is_of_sca = namespace.is_none_or(|namespace| Version::from_namespace(namespace).is_some());
         if let Some(meant) = meant(local).filter(|_| prefix.is_empty() && is_of_sca) {
             unprefixed(of, meant, element, document, report);
+        } else if let Some(namespace) = namespace.filter(|one| BUILT_IN_TYPES.contains(&local) && is_nearly_schema(one))
+            && report.is_first_unbound(document.file(), prefix)
+        {
+            let message = format!("unknown namespace {} of this type", quoted(namespace));
+            let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message).severity(Severity::Warning);
+            report.push(one.help(format!("did you mean {}?", quoted(&format!("xmlns:{prefix}=\"{XML_SCHEMA}\"")))));
         }
         return;
     }
@@ -43,13 +49,20 @@ pub(crate) fn named(property: &Property, document: &Document, report: &mut Repor
     }
     let message = format!("XML Schema has no type {}", quoted(local));
     let one = Diagnostic::new(&codes::UNKNOWN_TYPE, of.location, message);
-    report.push(match meant(local) {
+    let is_whole = property.value.iter().chain(&property.text).all(|text| text.trim().parse::<i32>().is_ok());
+    let number = (local == "number" && is_whole).then_some("int");
+    report.push(match number.or_else(|| meant(local)) {
         Some(meant) => {
             let meant = if prefix.is_empty() { meant.to_owned() } else { format!("{prefix}:{meant}") };
             one.suggest(replacing(of, &meant), of.location, meant)
         }
         None => one.help("its types are `string`, `boolean`, `int`, `double` and so on; a type of your own has the prefix of its own namespace"),
     });
+}
+
+/// True if a namespace is that of XML Schema but for a slip.
+fn is_nearly_schema(namespace: &str) -> bool {
+    nearest(namespace, [XML_SCHEMA]).is_some()
 }
 
 /// The type of XML Schema that is meant by a name.
