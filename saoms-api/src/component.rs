@@ -8,7 +8,7 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 ///
 /// 1. [`new`](Component::new) with the properties of the composite. It may refuse values that do not fit together; it
 ///    does no work, opens nothing and sends nothing, because the checker constructs components that will never run.
-/// 2. [`initialize`](Component::initialize) once, when the component is scheduled: it asks for its topics and
+/// 2. [`initialize`](Component::initialize) once, when the component is scheduled: it requests its topics and
 ///    references.
 /// 3. [`execute`](Component::execute) once in each period. Messages that it sends leave when it returns.
 /// 4. [`shutdown`](Component::shutdown) once, when the component is unscheduled or the run ends.
@@ -17,7 +17,7 @@ use crate::{CallError, Context, Failure, Properties, Saved};
 ///
 /// # Failures
 /// An `Err` and a panic from `initialize`, `execute` or `shutdown` are the same to the host: the component has failed,
-/// the report says so, and its `restart` policy decides. Other components continue.
+/// the report counts it, and its `restart` policy decides. Other components continue.
 ///
 /// # Blocking
 /// `execute` must not wait for anything. An execution beyond the watchdog's budget is reported, and from then on the
@@ -68,8 +68,8 @@ pub trait Component: Derived + Send + Sized + 'static {
     /// `#[properties]`, and everything else is its `Default`: a component with other fields writes this function.
     ///
     /// # Errors
-    /// The values do not fit together; the message says which and why. [`Finding`](crate::Finding)s are shown in the
-    /// composite at the very values, or parts of values, that they are about, all of them at once.
+    /// The values do not fit together; the message names the values and the reason. [`Finding`](crate::Finding)s are
+    /// shown in the composite at the very values, or parts of values, that they are about, all of them at once.
     fn new(properties: Self::Properties) -> Result<Self, Failure> {
         <Self as Derived>::made::<true>(properties)
     }
@@ -130,7 +130,7 @@ pub trait Component: Derived + Send + Sized + 'static {
     }
 
     /// Handles messages of the topics that the composite names in `trigger`, at once and not in the next execution. The
-    /// class says `reacts`.
+    /// class declares `reacts`.
     ///
     /// Each such message comes here alone, and those of all other topics to [`execute`](Component::execute). Without a
     /// `trigger` in the composite all come to `execute`, so a component handles them in both. A reaction is no
@@ -229,7 +229,7 @@ pub trait Component: Derived + Send + Sized + 'static {
         derived::shutdown(self, context)
     }
 
-    /// Saves the state for a successor. Of a class that says `saves`, the host calls it after each execution of a
+    /// Saves the state for a successor. If the class declares `saves`, the host calls it after each execution of a
     /// component whose `restart` can start it anew, and the new one continues from the state of the last execution that
     /// did not fail: then it has to succeed between any two executions, also in the middle of a job.
     ///
@@ -308,7 +308,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// | `saves` | it [saves](Component::save) its state after each execution, for the one that a restart puts in its place |
 /// | `reacts` | it has a function [`react`](Component::react) for messages that trigger it |
 /// | `stops` | it registers a function that [stops its hardware](crate::StopFunction) |
-/// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite says otherwise, in their order |
+/// | `loops(A, B, C)` | the [loops](crate::LoopClass) that it has unless a composite changes them, in their order |
 /// | `loops(property = "policy", safe(A, B), classic(A, C))` | the same, one list for each value of a property |
 /// | `also("robot.Robot001", number = 1)` | a further name, with properties preset to literals |
 ///
@@ -321,7 +321,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// | `#[reference] gps: GpsReference` | a service of another component that this one calls, with the name of the field |
 /// | `#[reference("gps")] gps: Option<GpsReference>` | one that needs no target, under another name; it is `None` without a target |
 /// | `#[reference] lights: Vec<LightReference>` | one that takes several targets; with `optional`, as in `#[reference(optional)]`, also none |
-/// | `#[property(default = 1, range = 1..=100)] step: u32` | a property, with all that [`Properties`] says |
+/// | `#[property(default = 1, range = 1..=100)] step: u32` | a property, with all that [`Properties`] allows |
 /// | `#[properties] properties: CounterProperties` | all properties, as a struct, in the place of single ones |
 /// | `#[knowledge] knowledge: LampKnowledge`, `#[loops] loops: Loops` | the [knowledge](crate::host::KnowledgeClass), and the loops that work on it |
 /// | `#[extends] robot: Robot` | what it extends, see below |
@@ -329,7 +329,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// Handles are bound before [`initialize`](Component::initialize), and a component whose other fields have a default
 /// needs no [`new`](Component::new). With `#[property]` fields, `type Properties` is [`Own<Self>`](crate::Own).
 ///
-/// What is not kept in a field is said in `#[class(...)]`, too, and asked for in `initialize`: `publishes(A, B)`,
+/// What is not kept in a field is declared in `#[class(...)]`, too, and requested in `initialize`: `publishes(A, B)`,
 /// `subscribes(A, B)`, `reference("gps": Gps)` with `optional` and `many` behind it, `knowledge = RobotKnowledge`.
 ///
 /// Linked classes register themselves: [`Registration::linked`](crate::host::Registration::linked) lists them.
@@ -393,7 +393,7 @@ pub trait Class: Component {
     /// Serves a call to one of the declared services.
     ///
     /// # Errors
-    /// As [`CallError`] says.
+    /// See [`CallError`].
     fn serve(&mut self, invocation: &mut Invocation<'_>, context: &mut Context<'_>) -> Result<(), CallError>;
 }
 

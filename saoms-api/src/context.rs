@@ -235,9 +235,9 @@ impl<'a> Context<'a> {
     }
 
     /// Keeps these bytes beyond a crash of the component, in place of those that it kept before:
-    /// [`kept`](Context::kept) gives them back, also to the component that takes its place after a failure. What this
-    /// execution sends goes out once they are kept, so that nobody hears of what could be forgotten. The number tells
-    /// them from others.
+    /// [`kept`](Context::kept) gives them back, also to the component that takes its place after a failure. The
+    /// messages of this execution are delivered once the bytes are kept, so that no component receives a message about
+    /// a state that could be lost. The number distinguishes them from earlier ones.
     ///
     /// They are lost if this execution fails. They are kept in memory, for as long as the program runs.
     ///
@@ -285,7 +285,7 @@ impl<'a> Context<'a> {
         self.host.goes_on()
     }
 
-    /// Registers a function that stops the component's hardware from any thread; the class says `stops`. Only in
+    /// Registers a function that stops the component's hardware from any thread; the class declares `stops`. Only in
     /// `initialize`; each call adds one.
     ///
     /// # Errors
@@ -302,7 +302,7 @@ impl<'a> Context<'a> {
     /// For generated code: calls through the reference of this index.
     ///
     /// # Errors
-    /// As [`CallError`] says.
+    /// See [`CallError`].
     #[doc(hidden)]
     pub fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError> {
         self.host.call(reference, call)

@@ -3,7 +3,7 @@ use std::fmt;
 
 use crate::Finding;
 
-/// The reason why a component cannot continue, in words for the person who runs the fleet.
+/// The reason why a component cannot continue, as a text for users of the fleet.
 ///
 /// The host adds the component's name and the time. What happens next is the `restart` policy of the composite.
 ///

@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use crate::rule::Severity;
 
-/// A place in a composite: a component, a property of it, or a part of what the property's text says.
+/// A place in a composite: a component, a property of it, or a part of the property's text.
 ///
 /// A text is the value as the component gets it; the host knows where each of its bytes is written, entity references,
 /// CDATA sections and files included.
@@ -20,7 +20,7 @@ impl Place {
         Place { component: Some(index), ..Place::default() }
     }
 
-    /// A property of the component that says so.
+    /// A property of the component that reports the finding.
     pub fn property(name: impl Into<String>) -> Place {
         Place { property: Some(name.into()), ..Place::default() }
     }
@@ -42,7 +42,7 @@ impl Place {
         Place { part: Some((value, bytes)), ..self }
     }
 
-    /// The index of the component; `None` for the one that says so.
+    /// The index of the component; `None` for the one that reports the finding.
     pub fn component_index(&self) -> Option<usize> {
         self.component
     }
@@ -58,7 +58,7 @@ impl Place {
     }
 }
 
-/// Something that is wrong with what a composite says, with its very place.
+/// A fault of a composite, with its exact place.
 ///
 /// ```
 /// use saoms_api::{Failure, Finding, Place};
@@ -112,7 +112,7 @@ impl Finding {
         self
     }
 
-    /// Sets how bad it is, other than the rule's code says. What a constructor refuses is always an error.
+    /// Sets another severity than that of the rule's code. What a constructor refuses is always an error.
     #[must_use]
     pub fn severity(mut self, severity: Severity) -> Finding {
         self.severity = Some(severity);

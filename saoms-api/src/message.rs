@@ -96,7 +96,7 @@ pub struct Header {
     pub sender: u32,
     /// Due time of the execution that sent it.
     pub sent: Time,
-    /// The record of the journal that says why it was sent.
+    /// The record of the journal with the reason for which it was sent.
     pub cause: Cause,
 }
 
@@ -267,7 +267,7 @@ impl<'a, M: Message> Messages<'a, M> {
         Messages { shared: shared.iter(), message: std::marker::PhantomData }
     }
 
-    /// The messages together with who sent them and when.
+    /// The messages with their senders and times.
     pub fn with_headers(self) -> impl DoubleEndedIterator<Item = (Header, &'a M)> {
         self.shared.filter_map(|shared| Some((shared.header(), shared.get::<M>()?)))
     }

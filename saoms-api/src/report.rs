@@ -36,7 +36,7 @@ pub enum Work {
     Open,
     /// As far as this component sees, the work is done.
     Done,
-    /// Some work was given up for good. The run is incomplete then, whatever ends it. This says nothing about the work
+    /// Some work was given up for good. The run is incomplete then, whatever ends it. This is independent of the work
     /// that is left: `Open` or `Done` does, before or after it.
     GivenUp,
 }

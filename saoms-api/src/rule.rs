@@ -217,7 +217,8 @@ impl<'a> FleetView<'a> {
         })
     }
 
-    /// A fact about the fleet: the first rule that asks for it finds it out for all of its crate.
+    /// A fact about the fleet: it is computed for the first rule that requests it, and shared by all rules of the
+    /// crate.
     pub fn fact<F: Fact>(&self) -> Rc<F> {
         let key = TypeId::of::<F>();
         let known = self.facts.borrow().iter().find(|(of, _)| *of == key).map(|(_, fact)| Rc::clone(fact));

@@ -5,7 +5,7 @@ use crate::Failure;
 
 /// A function that stops the hardware of a component, wherever the component is at that moment.
 ///
-/// A class that says `stops` in `#[class(...)]` registers one or several in `initialize`, with
+/// A class that declares `stops` in `#[class(...)]` registers one or several in `initialize`, with
 /// [`Context::register_stop`](crate::Context::register_stop). The host calls it
 ///
 /// - when the component fails, does not return, is unscheduled or removed,
@@ -18,7 +18,7 @@ use crate::Failure;
 ///
 /// A *heartbeat* covers what no function can: a program that was killed, a network that was cut. The host calls it
 /// after each finished execution of the component, and of each component that is wired to it, with the time within
-/// which the next one is due. The driver passes it on, and hardware that hears none for twice that time stops by
+/// which the next one is due. The driver passes it on, and hardware that receives none for twice that time stops by
 /// itself. A heartbeat must not wait.
 ///
 /// ```
@@ -61,7 +61,7 @@ pub struct StopFunction {
 }
 
 impl StopFunction {
-    /// A function that stops the hardware. An `Err` says that the hardware may still move: the run has failed then.
+    /// A function that stops the hardware. An `Err` means that the hardware may still move: the run has failed then.
     pub fn new(stop: impl Fn() -> Result<(), Failure> + Send + Sync + 'static) -> StopFunction {
         StopFunction { stop: Box::new(stop), heartbeat: None }
     }
@@ -85,7 +85,7 @@ impl StopFunction {
         self.heartbeat.is_some()
     }
 
-    /// For hosts: tells the hardware that its component is alive; the next heartbeat is due within `period`.
+    /// For hosts: signals the hardware that its component is alive; the next heartbeat is due within `period`.
     pub fn beat(&self, period: Duration) {
         if let Some(heartbeat) = &self.heartbeat {
             heartbeat(period);

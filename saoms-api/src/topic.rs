@@ -102,7 +102,7 @@ pub struct TopicDeclaration<'a> {
 }
 
 /// The right to send on a topic, from [`Context::publish`](crate::Context::publish). The default one belongs to no
-/// topic: sending with it is a failure that says so.
+/// topic: sending with it is a failure with this reason.
 pub struct Publisher<M> {
     index: u32,
     message: PhantomData<fn() -> M>,

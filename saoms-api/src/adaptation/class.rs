@@ -23,10 +23,10 @@ use crate::{Failure, Loop, Properties};
 /// | `#[reference] gps: GpsReference` | a service of another component that it calls, as of a [class](crate::Class) |
 /// | `#[property(default = 1.0)] limit: f64`, `#[properties] properties: DimmerProperties` | what a composite sets, as of a class |
 ///
-/// What is not kept in a field is said in `#[looping(...)]`, too, and asked for in [`initialize`](Loop::initialize):
-/// `senses("battery", "block")`, `effects("next")`, `entries(Saving)` (a struct that derives
-/// [`Entries`](crate::Entries) and `Default`), `publishes(A, B)`, `subscribes(A, B)`, `reference("gps": Gps)`. A loop
-/// that works on a component's own struct names so what it senses and effects.
+/// What is not kept in a field is declared in `#[looping(...)]`, too, and requested in
+/// [`initialize`](Loop::initialize): `senses("battery", "block")`, `effects("next")`, `entries(Saving)` (a struct that
+/// derives [`Entries`](crate::Entries) and `Default`), `publishes(A, B)`, `subscribes(A, B)`, `reference("gps": Gps)`.
+/// A loop that works on a component's own struct names so what it senses and effects.
 ///
 /// Topics and references of a loop count as those of the component that has the loop; where both have a reference of
 /// one name, it is one.

@@ -7,10 +7,10 @@ use crate::rule::nearest;
 use crate::{Failure, Field, Knowledge, Value};
 
 /// An entry of a component's knowledge, to read it and to see whether it changed; from [`Entry::of`]. The default one
-/// belongs to no knowledge: reading it is a failure that says so.
+/// belongs to no knowledge: reading it is a failure with this reason.
 ///
-/// Changes are seen by value: an entry that was changed and changed back between two looks has not changed. So those
-/// who change entries, as a rule by writing to a field, pay nothing for those who watch.
+/// Changes are seen by value: an entry that was changed and changed back between two looks has not changed. So a
+/// change of an entry, as a rule a write to a field, costs nothing for its readers.
 pub struct Entry<T> {
     place: u32,
     seen: Seen,

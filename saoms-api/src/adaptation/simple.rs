@@ -48,7 +48,7 @@ pub trait SimpleLoop: DerivedLoop + Send + Sized + 'static {
         <Self as DerivedLoop>::made::<true>(properties)
     }
 
-    /// Looks for a reason to act, and says what to do about it; called once in each execution of the component.
+    /// Looks for a reason to act, and returns what to do about it; called once in each execution of the component.
     ///
     /// # Errors
     /// The component has failed.

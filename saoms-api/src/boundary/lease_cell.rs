@@ -18,8 +18,8 @@ use super::host::HOST_FUNCTIONS;
 /// The memory behind a [`Lease`]: a context, knowledge and sinks that the other side is lent for the time of a call.
 ///
 /// Code in C can keep a pointer that it was lent, and use it later or from a thread of its own. So a cell is never
-/// freed, and says which thread may use it now. Only a thread itself stores its own token, so the comparison needs no
-/// order.
+/// freed, and records which thread may use it now. Only a thread itself stores its own token, so the comparison needs
+/// no order.
 pub(super) struct LeaseCell {
     /// The token of the thread with the active call; 0: no thread may use the cell.
     pub(super) holder: AtomicUsize,

@@ -1,4 +1,4 @@
-//! Null where code in C must not have it: told as what it is, before it ends the program.
+//! Null pointers from C where they are not allowed: reported as such before the program ends.
 
 use std::ffi::c_void;
 

@@ -8,7 +8,7 @@ pub struct RunSummary {
     pub result: fn(&Counts<'_>) -> Option<String>,
     /// The progress of a run that has not ended; `None` where the counts say nothing.
     pub progress: fn(&Counts<'_>) -> Option<String>,
-    /// The components that say when the work is done, as advice to who runs a fleet without any: `a world and a
+    /// The components that vote when the work is done, as advice for a fleet without any: `a world and a
     /// scenario`.
     pub voters: &'static str,
 }

@@ -49,7 +49,7 @@ pub(crate) fn contained_or<T, R>(
 }
 
 /// Goes on with a panic that was caught at the boundary to a library, as if the library's code were linked in: what
-/// contains that contains this. The failure is told as it is.
+/// contains that contains this. The failure is passed on unchanged.
 #[cold]
 pub(crate) fn resume(failure: Failure) -> ! {
     panic::resume_unwind(Box::new(failure))

@@ -101,7 +101,7 @@ pub trait Host {
     /// Calls through a reference.
     ///
     /// # Errors
-    /// As [`CallError`] says.
+    /// See [`CallError`].
     fn call(&mut self, reference: u32, call: &mut dyn ServiceCall) -> Result<(), CallError>;
     /// See [`Context::set_region`](crate::Context::set_region).
     ///

@@ -1,4 +1,4 @@
-//! For hosts: the code of libraries that runs on each thread now, so that a crash and a hang are told by name.
+//! For hosts: the library code that each thread runs now, so that reports of crashes and hangs name it.
 //!
 //! Whoever calls into a library [enters](enter) first. What is written down can be read by a signal handler on the same
 //! thread ([`here`]) and by another thread ([`everywhere`]): names are interned, and nothing of it is ever freed.
@@ -107,7 +107,7 @@ impl Function {
 struct ThreadCall {
     owner: AtomicPtr<Owner>,
     function: AtomicU8,
-    /// Counts beginnings and ends, so that another thread can tell two calls from one.
+    /// Counts beginnings and ends, so that another thread can distinguish two calls.
     changes: AtomicU64,
 }
 

@@ -34,8 +34,8 @@ pub fn one_line(text: &str) -> Cow<'_, str> {
 /// Characters of a quotation in a message, and of what stands between two of them: about a line, and about ten.
 const LONGEST: [usize; 2] = [1000, 100];
 
-/// Shortens what a message quotes between backticks, however long it is: the place says where all of it stands. The
-/// rest of a message is not without end either, as it may be of a plugin.
+/// Shortens what a message quotes between backticks, however long it is: the whole value is at the place of the
+/// message. The rest of a message is not without end either, as it may be of a plugin.
 ///
 /// ```
 /// let mut message = format!("found `{}`, expected a number", "x".repeat(1_000_000));

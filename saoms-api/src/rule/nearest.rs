@@ -154,7 +154,7 @@ fn typing_errors(a: &[char], b: &[char], most: usize) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// The distance as its definition says it.
+    /// The distance by its definition.
     fn all_of_it(a: &[char], b: &[char]) -> usize {
         let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
         for i in 1..=a.len() {

@@ -1,15 +1,19 @@
 //! `docs/messages.md`: the topics of the classes that ship, with the fields of their messages, made from their
-//! declarations.
+//! declarations. What a field means is its doc comment: schemas carry none, since both ends of a topic compare them.
 //!
 //! `UPDATE_EXPECT=1 cargo test --test suite messages` writes the page anew.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
 
 use expect_test::expect_file;
 use saoms_components as _;
 use saoms_lang::registry::{ClassTopic, Registry, inner_type};
 use serde_json::Value;
+
+use crate::support::root;
 
 const HEAD: &str = "\
 # Messages
@@ -17,8 +21,7 @@ const HEAD: &str = "\
 The topics of the classes that ship, under their names before any `topicRename`, and the fields of their messages. A state
 topic keeps the newest message of each publisher, or of each key; an event topic loses none. A plugin in Rust has the same
 messages from `saoms_components::messages`; another one declares them with these names and types. `saoms check --wiring`
-shows the topics of a fleet. What each field means is in the Rust docs of that module (`cargo doc --open`). This page is
-generated from the declarations of the classes.
+shows the topics of a fleet. This page is generated from the declarations of the classes and the docs of the fields.
 ";
 
 /// A topic, and the classes and loops at its ends.
@@ -54,22 +57,85 @@ fn messages_are_documented() {
     for one in registry.loops().filter(|one| ships(one.name())) {
         add(one.name(), &one.declaration().publishes, &one.declaration().subscribes);
     }
+    let meanings = Meanings::of_sources(&root().join("saoms-components/src"));
     let (mut page, mut types) = (HEAD.to_owned(), BTreeMap::new());
     for ends in topics.values() {
-        page += &section(ends, &mut types);
+        page += &section(ends, &meanings, &mut types);
     }
     page += "\n## Types\n";
     // The fields of a type can be of further types.
     let mut written = BTreeSet::new();
     while let Some((name, schema)) = types.pop_first() {
         if written.insert(name.clone()) {
-            let _ = write!(page, "\n### {name}\n\n{}", fields(&schema, &mut types));
+            let _ = write!(page, "\n### {name}\n\n{}", fields((&name, &schema), &meanings, &mut types));
         }
     }
     expect_file!["../../../docs/messages.md"].assert_eq(&page);
 }
 
-fn section(ends: &Ends<'_>, types: &mut BTreeMap<String, Value>) -> String {
+/// The docs of the fields of structs, by the names of both.
+struct Meanings(BTreeMap<(String, String), String>);
+
+impl Meanings {
+    /// Reads all sources in a folder.
+    fn of_sources(folder: &Path) -> Meanings {
+        let mut all = Meanings(BTreeMap::new());
+        let mut waiting = vec![folder.to_owned()];
+        while let Some(folder) = waiting.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                match path.is_dir() {
+                    true => waiting.push(path),
+                    false => all.add(&fs::read_to_string(path).unwrap()),
+                }
+            }
+        }
+        all
+    }
+
+    fn add(&mut self, source: &str) {
+        let (mut owner, mut docs) = (None, Vec::new());
+        for line in source.lines() {
+            let text = line.trim();
+            if let Some(name) = line.strip_prefix("pub struct ").and_then(|rest| rest.strip_suffix(" {")) {
+                owner = Some(name.to_owned());
+            } else if line == "}" {
+                owner = None;
+            }
+            if let Some(doc) = text.strip_prefix("///") {
+                docs.push(doc.trim());
+                continue;
+            }
+            let field = text.strip_prefix("pub ").and_then(|rest| rest.split_once(':')).map(|(name, _)| name);
+            if let (Some(owner), Some(field)) = (&owner, field) {
+                self.0.insert((owner.clone(), field.to_owned()), plain(&docs.join(" ")));
+            }
+            if !text.starts_with("#[") {
+                docs.clear();
+            }
+        }
+    }
+
+    /// The meaning of a field, which each has.
+    fn get(&self, owner: &str, field: &str) -> &str {
+        let found = self.0.get(&(owner.to_owned(), field.to_owned())).filter(|meaning| !meaning.is_empty());
+        found.unwrap_or_else(|| panic!("`{owner}::{field}` has no docs"))
+    }
+}
+
+/// A doc without links to other items.
+fn plain(doc: &str) -> String {
+    let mut plain = String::new();
+    let mut rest = doc;
+    while let Some((before, behind)) = rest.split_once("[`") {
+        let (name, behind) = behind.split_once("`]").unwrap();
+        plain += &format!("{before}`{name}`");
+        rest = behind.strip_prefix('(').and_then(|target| target.split_once(')')).map_or(behind, |(_, rest)| rest);
+    }
+    plain + rest
+}
+
+fn section(ends: &Ends<'_>, meanings: &Meanings, types: &mut BTreeMap<String, Value>) -> String {
     let Ends { topic, publishers, readers } = ends;
     let list = |names: &BTreeSet<&str>| match names.len() {
         0 => "nothing that ships".to_owned(),
@@ -83,19 +149,20 @@ fn section(ends: &Ends<'_>, types: &mut BTreeMap<String, Value>) -> String {
         topic.message,
         list(publishers),
         list(readers),
-        fields(&topic.schema, types)
+        fields((&topic.message, &topic.schema), meanings, types)
     )
 }
 
 /// A table of the fields of a message or a type. Types of fields are noted.
-fn fields(schema: &Value, types: &mut BTreeMap<String, Value>) -> String {
-    let mut table = "| field | type |\n| --- | --- |\n".to_owned();
+fn fields((owner, schema): (&str, &Value), meanings: &Meanings, types: &mut BTreeMap<String, Value>) -> String {
+    let mut table = "| field | type | meaning |\n| --- | --- | --- |\n".to_owned();
     for field in schema["fields"].as_array().unwrap() {
-        let _ = writeln!(table, "| `{}` | {} |", field["name"].as_str().unwrap(), type_name(&field["type"], types));
+        let (name, of) = (field["name"].as_str().unwrap(), type_name(&field["type"], types));
+        let _ = writeln!(table, "| `{name}` | {of} | {} |", meanings.get(owner, name));
     }
     for one in schema["constants"].as_array().into_iter().flatten() {
         let (name, of) = (one["name"].as_str().unwrap(), type_name(&one["type"], types));
-        let _ = writeln!(table, "| constant `{name}` = `{}` | {of} |", one["value"]);
+        let _ = writeln!(table, "| constant `{name}` = `{}` | {of} |  |", one["value"]);
     }
     table
 }

@@ -39,7 +39,7 @@ impl RemoteEntries {
 /// Checks that a table of functions is whole.
 ///
 /// # Safety
-/// It is null, or there with the size that it says.
+/// It is null, or valid for the size that it declares.
 unsafe fn check(table: *const EntriesFunctions) -> Result<(), Failure> {
     macro_rules! members {
         ($($member:ident),*) => { [$((stringify!($member), offset_of!(EntriesFunctions, $member))),*] };

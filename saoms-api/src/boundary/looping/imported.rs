@@ -57,7 +57,7 @@ struct ImportedLoop {
     owner: &'static Owner,
     effects: &'static [&'static str],
     lease: Lease,
-    /// What is wrong with its entries: told when it initializes, as it has none then.
+    /// The fault of its entries, which `initialize` reports, because it has no entries then.
     fault: RefCell<Option<Failure>>,
 }
 

@@ -34,12 +34,12 @@
 //! - `also` are further names of the class; the properties in `preset` have these texts, as if the composite had set
 //!   them.
 //! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`. `"optional": true` in
-//!   one that is published says that it needs no reader.
+//!   one that is published declares that it needs no reader.
 //! - `stops`, where it is `true`: its components register functions that stop their hardware.
 //! - `reacts`, where it is `true`: its components have a function for messages that trigger them.
 //! - `apart`, where it is `true`: its components never run on the thread of the timer.
 //! - `saves`, where it is `true`: its components can save their state after each execution.
-//! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite says otherwise, in
+//! - `knowledge` is what its loops work on, and `loops` names those that it has unless a composite changes them, in
 //!   their order: either `{"default": [...]}`, or one list for each value of a property. A class without loops has
 //!   neither.
 //! - `extends` is the whole declaration of the class that this one extends; absent where there is none. The class has
@@ -96,11 +96,11 @@
 //! | `allowed` | the only texts, for enumerations and some strings |
 //! | `nonEmpty` | `true`: the text must not be empty or blank |
 //! | `live` | `true`: it can be changed while the component runs |
-//! | `many` | `true`: any number of values; everything else is said of each |
+//! | `many` | `true`: any number of values; everything else applies to each |
 //! | `unique` | a word: no two components have the same value for properties with this word |
 //! | `properties` | those of a `complex` one |
 //!
-//! Fields that do not apply are absent. [`Rule`] says exactly which texts a scalar property accepts, for the checker
+//! Fields that do not apply are absent. [`Rule`] defines exactly which texts a scalar property accepts, for the checker
 //! and the component alike.
 //!
 //! # A schema

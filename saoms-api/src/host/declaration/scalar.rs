@@ -123,7 +123,8 @@ impl fmt::Display for Scalar {
     }
 }
 
-/// Reads a value of a scalar type. `None` when the text is no such value; [`Rule::check`](super::Rule::check) says why.
+/// Reads a value of a scalar type. `None` when the text is no such value; [`Rule::check`](super::Rule::check) gives the
+/// reason.
 pub fn parse_scalar(kind: PropertyKind, text: &SmolStr) -> Option<Scalar> {
     let trimmed = trim(text);
     match kind {
