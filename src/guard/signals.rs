@@ -1,5 +1,5 @@
-//! The signals that end a run: code of a library may take them over, as middleware for robots does, and nobody could end
-//! the run any more.
+//! The signals that end a run: code of a library may take them over, as middleware for robots does, and nobody could
+//! end the run any more.
 
 use std::ffi::c_int;
 use std::mem::MaybeUninit;
