@@ -131,12 +131,12 @@ fn a_run_does_not_end_while_messages_are_to_come() {
 
 #[test]
 fn a_run_does_not_end_while_somebody_holds_it() {
-    let (fleet, _) = start("A actor period=5 each=[0: done]", Settings::default());
+    let (fleet, _) = start("A actor period=5 delay=300 each=[0: done]", Settings::default());
     let fleet = fleet.unwrap();
     let hold = fleet.handle().hold();
-    fleet.run_until(at(60));
+    fleet.run_until(at(360));
     drop(hold);
     let report = fleet.run_to_end();
     assert_eq!(report.outcome.status, RunStatus::Done);
-    assert!(report.time_s >= 0.06, "{}", report.time_s);
+    assert!(report.time_s >= 0.36, "{}", report.time_s);
 }
