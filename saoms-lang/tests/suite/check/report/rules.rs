@@ -38,15 +38,15 @@ those of `S0001` to `S0009`, `S2035` and `S3016`, which cannot be files.
 const SECOND: &str = "
 ## Rules of SCA Assembly 1.1
 
-Where no code stands, the last column says why. SCA 1.0 has no numbers; where it allows what 1.1 forbids, the diagnostic is a warning there. So
-is what is wrong with the services and references of a composite of SCA 1.0 that runs by itself: nothing in the program takes them.
+If a rule has no code, the last column gives the reason. SCA 1.0 has no numbers; where it allows what 1.1 forbids, the diagnostic is a warning there. The
+same holds for faults of the services and references of a composite of SCA 1.0 that is no part of another one: no component of the program uses them.
 
 The XML schemas of both versions (ASM13001) are followed, but for what other programs live with as well:
 
 - the order of elements: an implementation may stand behind services and references, an interface behind bindings, an include behind components;
 - elements of other namespaces stand anywhere;
 - a composite's reference of 1.1 without `multiplicity`, which the schema requires, takes one target (`1..1`), as in 1.0;
-- what cannot be a name of XML is told as a warning (S1011) where it starts wrong, or has a colon or a blank in it; other characters are let pass in names of parts, and names of classes and interfaces
+- a name that is no XML name is a warning (S1011) if its first character is wrong, or if it has a colon or a blank; other characters are accepted in names of components, properties, services and references, and names of classes and interfaces
   are those of their languages;
 - bindings, implementations and policies that are not described by the core, such as those for JMS, EJB or BPEL, are taken as they are.
 
