@@ -55,7 +55,7 @@ struct MotorProperties {
     /// Work of an execution or a call: nothing, `fail`, `panic` or `hang`.
     #[property(default = "")]
     work: String,
-    /// Work of the function that stops: nothing, `fail` or `hang`.
+    /// Work of the function that stops: nothing, `fail`, `hang` or `panic in the heartbeat`.
     #[property(default = "")]
     stop: String,
 }
@@ -83,7 +83,11 @@ impl Motor {
                 _ => Ok(()),
             }
         });
-        context.register_stop(function.with_heartbeat(move |period| of_beat.hear(format!("alive for {period:?}"))))
+        let panics = self.properties.stop == "panic in the heartbeat";
+        context.register_stop(function.with_heartbeat(move |period| {
+            assert!(!panics, "the line is dead");
+            of_beat.hear(format!("alive for {period:?}"));
+        }))
     }
 
     fn work(&mut self, context: &Context<'_>) -> Result<(), Failure> {
@@ -185,6 +189,18 @@ fn hardware_of_a_component_that_fails_or_panics_is_stopped() {
         let (told, wire) = run(&wire, &fleet, simulated(30));
         assert!(told.starts_with("Failed"), "{told}");
         assert!(wire.count("stop") >= 1 && wire.count("alive for 10ms") == 0, "{:?}", wire.heard());
+    }
+}
+
+#[test]
+fn a_heartbeat_that_panics_fails_who_executes() {
+    for fleet in [
+        "A wheel period=10 wire=@ stop=[panic in the heartbeat]",
+        "A actor period=10 peer=D\nD arm wire=@ stop=[panic in the heartbeat]",
+    ] {
+        let (told, wire) = run("silent", fleet, simulated(30));
+        assert!(told.starts_with("Failed") && told.contains("`A` failed: the heartbeat of the hardware of"), "{told}");
+        assert!(told.contains("the line is dead") && wire.count("stop") >= 1, "{told}");
     }
 }
 

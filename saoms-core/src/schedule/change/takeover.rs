@@ -51,14 +51,19 @@ struct Endpoints {
     recorder: Recorder,
 }
 
-/// An instance that is no part of the fleet any more. Its destructor is the component's code, which may not return.
-pub(crate) struct Outgoing(Option<Box<dyn DynComponent>>);
+/// An instance that is no part of the fleet any more, with its functions that stop hardware. Its destructor and theirs
+/// are the component's code, which may not return.
+pub(crate) struct Outgoing {
+    instance: Option<Box<dyn DynComponent>>,
+    stops: Vec<Arc<RegisteredStop>>,
+}
 
 impl Drop for Outgoing {
     fn drop(&mut self) {
-        let instance = self.0.take();
+        let (instance, stops) = (self.instance.take(), std::mem::take(&mut self.stops));
         // A panic of its destructor does not concern its successor.
         let _ = contained(|| drop(instance));
+        let _ = contained(|| drop(stops));
     }
 }
 
@@ -169,7 +174,7 @@ impl Body {
     /// released. The earlier one is given back, to be dropped where nobody waits for it.
     pub(crate) fn inherit(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
         // The hardware goes on: it is the new instance that stops it from now on.
-        let Predecessor { instance, endpoints, stops: _, inboxes } = predecessor;
+        let Predecessor { instance, endpoints, stops, inboxes } = predecessor;
         let Endpoints { publishers, mut subscriptions, .. } = endpoints;
         self.part.lasting.take_unread(inboxes, subscriptions.iter().map(|reader| bus.topic_of(reader)));
         let queue = self.part.spec.task.as_ref().map(|task| task.queue);
@@ -191,14 +196,14 @@ impl Body {
         }
         self.give_unread(bus);
         self.part.held = false;
-        Outgoing(Some(instance))
+        Outgoing { instance: Some(instance), stops }
     }
 
     /// Undoes the takeover. The new instance is given back, to be dropped where nobody waits for it.
     pub(crate) fn give_back(&mut self, bus: &mut Bus, predecessor: Predecessor) -> Outgoing {
-        let outgoing = Outgoing(self.instance.replace(predecessor.instance));
         let part = &mut self.part;
-        part.stops = predecessor.stops;
+        let stops = std::mem::replace(&mut part.stops, predecessor.stops);
+        let outgoing = Outgoing { instance: self.instance.replace(predecessor.instance), stops };
         part.publishers.drain(..).for_each(|topic| bus.unpublish(topic));
         for subscription in part.subscriptions.drain(..).chain(part.kept.drain(..)) {
             bus.unsubscribe(subscription);

@@ -181,6 +181,9 @@ impl Body {
             self.part.lasting.touch();
             return result;
         }
+        if result.is_ok() && job == Job::Execute && !self.part.heartbeats.is_empty() {
+            result = shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
+        }
         if result.is_ok() && self.part.lasting.saves && matches!(job, Job::Execute | Job::React) {
             result = self.save_execution();
         }
@@ -189,15 +192,9 @@ impl Body {
                 inbox.clear();
             }
         }
-        match &result {
-            Ok(()) if job == Job::Execute && !self.part.heartbeats.is_empty() => {
-                shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
-            }
-            Ok(()) => {}
-            Err(_) => {
-                shared.stops.request(&self.part.stops);
-                self.part.lasting.take_back(&mut shared.sections());
-            }
+        if result.is_err() {
+            shared.stops.request(&self.part.stops);
+            self.part.lasting.take_back(&mut shared.sections());
         }
         if self.part.has_departed {
             self.part.departed.iter_mut().for_each(Vec::clear);

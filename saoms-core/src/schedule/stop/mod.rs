@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
-use saoms_api::StopFunction;
 use saoms_api::host::contain::contained;
+use saoms_api::{Failure, StopFunction};
 
 use self::threads::StopThreads;
 use super::engine::Engine;
@@ -120,12 +120,19 @@ impl Stops {
     }
 
     /// Tells the hardware of these components that an execution has finished, and within which time the next one does.
+    ///
+    /// # Errors
+    /// The function of one panicked: its hardware stops by itself, which whoever executed has to know.
     #[cold]
-    pub(crate) fn beat(&self, components: &[u32], period: Duration) {
+    pub(crate) fn beat(&self, components: &[u32], period: Duration) -> Result<(), Failure> {
+        let mut result = Ok(());
         for registered in components.iter().flat_map(|component| self.of(*component)) {
-            // A panic is a missing heartbeat, at which the hardware stops.
-            let _ = contained(|| registered.function.beat(period));
+            if let Err(panic) = contained(|| registered.function.beat(period)) {
+                let name = &registered.name;
+                result = Err(Failure::new(format!("the heartbeat of the hardware of component `{name}`: {panic}")));
+            }
         }
+        result
     }
 
     /// Waits until all that were requested have returned; gives the components of those that have not.

@@ -23,6 +23,23 @@ static SaomsStatus counter_construct(const SaomsPropertyView *values, size_t cou
     return *made == NULL ? saoms_fail(error, "there is no memory left") : SaomsStatus_OK;
 }
 
+#ifdef MOTOR
+static SaomsStatus motor_stop(void *state, SaomsSink error) {
+    (void)state, (void)error;
+    return SaomsStatus_OK;
+}
+
+static void motor_release(void *state) {
+    (void)state;
+    for (;;) {
+        sleep(1);
+    }
+}
+#define STOPS "true"
+#else
+#define STOPS "false"
+#endif
+
 static SaomsStatus counter_initialize(void *component, const SaomsHostHandle *host, SaomsSink error) {
     (void)component, (void)error;
     host->functions->count(host->state, saoms_text("counter.initialized"), 1);
@@ -30,6 +47,10 @@ static SaomsStatus counter_initialize(void *component, const SaomsHostHandle *ho
     for (;;) {
         sleep(1);
     }
+#endif
+#ifdef MOTOR
+    SaomsStopView view = {sizeof view, NULL, motor_stop, NULL, motor_release};
+    return host->functions->register_stop(host->state, &view, error);
 #endif
 #ifdef STUMBLES
     return saoms_fail(error, "this build cannot initialize");
@@ -99,7 +120,7 @@ static SaomsStatus counter_restore(void *component, SaomsBytes saved, SaomsSink 
 
 SAOMS_METADATA static const char metadata[] =
     "{\"saoms\":\"plugin\",\"abi\":3,\"package\":\"counter\",\"version\":\"0.1.0\",\"entry\":\"counter_plugin\",\"classes\":"
-    "[{\"contract\":1,\"class\":\"test.Counter\",\"kind\":\"periodic\",\"doc\":\"" DOC "\",\"properties\":[],"
+    "[{\"contract\":1,\"class\":\"test.Counter\",\"kind\":\"periodic\",\"stops\":" STOPS ",\"doc\":\"" DOC "\",\"properties\":[],"
     "\"publishes\":[],\"subscribes\":[],\"services\":[],\"references\":[]}]}";
 
 SAOMS_EXPORT const SaomsPluginTable *counter_plugin(uint32_t version) {

@@ -148,6 +148,18 @@ fn a_build_that_hangs_leaves_the_earlier_one_running() {
 }
 
 #[test]
+fn nobody_waits_for_the_hardware_of_an_earlier_build_to_be_released() {
+    let mut run = Run::start(&["-DBUILD=1", "-DMOTOR"]);
+    run.wait_for("build 1 counts 100");
+    run.build(&["-DBUILD=2", "-DMOTOR"]);
+    run.wait_for("build 2 counts");
+    run.wait_for("build 2 counts");
+    let (_, report, _) = run.end();
+    assert_eq!(report["components"][0]["replaced"], 1);
+    assert_eq!(report["components"][0]["failures"], 0);
+}
+
+#[test]
 fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.wait_for("build 1 counts 100");
