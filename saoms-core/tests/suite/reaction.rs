@@ -151,5 +151,6 @@ fn a_slow_reaction_holds_up_nobody() {
          B actor period=1s trigger=TALK subscribes=TALK reacts=[sleep 50]
          C actor period=2";
     let (report, _) = run(fleet, real(400));
-    assert!(of(&report, "C").executions > 100 && of(&report, "B").slow >= 1, "{:?}", of(&report, "B"));
+    // C is due 200 times; behind B, it would run once in 50 ms. A busy machine makes it miss some.
+    assert!(of(&report, "C").executions > 40 && of(&report, "B").slow >= 1, "{:?}", of(&report, "B"));
 }
