@@ -59,16 +59,15 @@ fn a_blocked_execution_does_not_hold_up_the_others() {
 #[test]
 fn any_number_of_blocked_executions_does_not_hold_up_the_others() {
     let blocked: String = (0..12).map(|n| format!("A{n} actor period=400 each=[sleep 300]\n")).collect();
-    let (report, diary) = run(&format!("{blocked}B actor period=2"), real(700));
+    // A busy machine stalls the start or the end of a component for longer than the usual budget of 1 ms.
+    let settings = Settings { budget: Duration::from_millis(15), ..real(700) };
+    let (report, diary) = run(&format!("{blocked}B actor period=2"), settings);
     assert_eq!(outcome(&report), "Elapsed after 0.7 s");
-    let names: Vec<String> = (0..12).map(|n| format!("A{n}")).collect();
-    for name in &names {
-        assert!(takeovers(&diary, name) >= 1, "{name}");
-        assert_eq!(of(&report, name).executions, 2, "{name}");
+    for n in 0..12 {
+        let name = format!("A{n}");
+        assert_eq!(takeovers(&diary, &name), 1, "{name}");
+        assert_eq!(of(&report, &name).executions, 2, "{name}");
     }
-    // Whoever is known to be slow is not taken over again. A busy machine may stall the start or the end of a few.
-    let all: usize = names.iter().map(|name| takeovers(&diary, name)).sum();
-    assert!(all < 18, "{all} takeovers of {} components", names.len());
     assert!(of(&report, "B").executions > 100, "{:?}", of(&report, "B"));
 }
 
