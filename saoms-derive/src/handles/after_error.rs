@@ -2,7 +2,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{DeriveInput, Error};
 
-/// The error, and what `impl Component` or `impl Loop` needs: so that the error is the only one.
+/// The error, and what `impl Component` or `impl Loop` needs: so that the error is the only one. No body of
+/// the generated functions ever runs, since the error beside them ends the compilation.
 pub(crate) fn after_error(input: &DeriveInput, error: &Error, is_class: bool) -> TokenStream {
     let (ident, error) = (&input.ident, error.to_compile_error());
     if !input.generics.params.is_empty() {
