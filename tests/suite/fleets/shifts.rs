@@ -17,6 +17,15 @@ fn the_robot_of_shifts_runs_in_its_shifts_alone_and_no_luggage_is_lost() {
     assert_eq!(shifts[..2], ["starts shift 1 of 15 s for 1 component", "shift 1 is over for 1 component"]);
 }
 
+/// With these seeds a shift ends while luggage of the shift before still waits for help.
+#[test]
+fn luggage_of_two_shifts_waits_for_help_at_once() {
+    for seed in [3, 9, 10, 11, 12, 13, 16] {
+        let run = Fleet::of_file("composites/shift.composite").run(seed, Duration::from_mins(10));
+        assert_eq!((run.count("luggage.delivered"), run.count("luggage.open")), (12, 0), "seed {seed}");
+    }
+}
+
 #[test]
 fn shifts_without_an_end_and_without_a_pause_follow_each_other() {
     let text = std::fs::read_to_string(crate::support::root().join("composites/shift.composite")).unwrap();

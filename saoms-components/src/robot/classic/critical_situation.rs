@@ -230,8 +230,9 @@ impl ClassicCriticalSituation {
     }
 
     fn intend(&mut self, robot: u32, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
-        let Some(help) = knowledge.lists.helps.claim(robot) else { return Ok(()) };
-        let situation = help.situation.clone();
+        let helps = &mut knowledge.lists.helps;
+        let Some(situation) = helps.get(robot).map(|help| help.situation.clone()) else { return Ok(()) };
+        helps.claim(&situation);
         (knowledge.variables.healer, knowledge.variables.busy) = (true, true);
         self.said = context.cause();
         context.console(format_args!("Robot{} is a new healer for Robot{robot}", knowledge.number));

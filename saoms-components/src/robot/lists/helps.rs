@@ -40,10 +40,12 @@ pub struct Helps {
     settled: Vec<Settled>,
 }
 
-/// An answered request.
+/// An answered request, the newest of its robot.
 #[derive(Clone, Copy, Debug, Field)]
 struct Settled {
     critical: u32,
+    /// The luggage of its job, if it had one.
+    luggage: Option<u32>,
     /// True if a robot only substitutes the broken one, which leaves its job open.
     stands_in: bool,
     /// Time of the answer.
@@ -52,7 +54,8 @@ struct Settled {
 
 impl Settled {
     fn settles(&self, situation: &CriticalSituation) -> bool {
-        let covered = !self.stands_in || situation.kind == CriticalKind::Idle;
+        let luggage = luggage_of(situation);
+        let covered = if self.stands_in { luggage.is_none() } else { luggage.is_none() || luggage == self.luggage };
         self.critical == situation.critical && covered
     }
 }
@@ -96,10 +99,10 @@ impl Helps {
             CriticalStage::Release => help.rivals.retain(|rival| rival.robot != message.healer),
             CriticalStage::Request | CriticalStage::Taken | CriticalStage::StandsIn => {}
         };
-        self.open.iter_mut().chain(&mut self.claimed).filter(|help| help.is_of(critical)).for_each(respond);
+        self.open.iter_mut().chain(&mut self.claimed).filter(|help| help.is_for(message)).for_each(respond);
         let stands_in = message.stage == CriticalStage::StandsIn;
         if stands_in || message.stage == CriticalStage::Taken {
-            let settled = Settled { critical, stands_in, time: header.sent };
+            let settled = Settled { critical, luggage: luggage_of(message), stands_in, time: header.sent };
             self.settled.retain(|old| (old.critical, old.stands_in) != (critical, stands_in));
             self.settled.push(settled);
             self.open.retain(|help| !settled.settles(&help.situation));
@@ -107,16 +110,18 @@ impl Helps {
         }
     }
 
-    /// Handles a request. A robot that asks again has another reason: its last request does not count any more.
+    /// Handles a request. A robot that asks again about the same luggage, or after a request without a job, has another
+    /// reason: the earlier request does not count any more. A job that it left before stays open: a robot can break or
+    /// end, be scheduled again, and leave its next job.
     fn hear_request(&mut self, message: &CriticalSituation, header: Header) {
         if self.settled.iter().any(|settled| settled.settles(message) && settled.time > header.sent) {
             return;
         }
         let help =
             Help { situation: message.clone(), since: header.sent, cause: header.cause, rivals: Vec::new(), needs: 0 };
-        if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.is_of(message.critical)) {
+        if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.is_replaced_by(message)) {
             claimed.situation = help.situation;
-        } else if let Some(known) = self.open.iter_mut().find(|known| known.is_of(message.critical)) {
+        } else if let Some(known) = self.open.iter_mut().find(|known| known.is_replaced_by(message)) {
             *known = help;
         } else {
             self.open.push(help);
@@ -149,10 +154,10 @@ impl Helps {
         self.claimed.as_ref()
     }
 
-    /// Offers to heal the robot with this number, if it waits.
-    pub fn claim(&mut self, critical: u32) -> Option<&Help> {
+    /// Offers to answer a request, if it is open.
+    pub fn claim(&mut self, request: &CriticalSituation) -> Option<&Help> {
         if self.claimed.is_none() {
-            let place = self.open.iter().position(|help| help.is_of(critical))?;
+            let place = self.open.iter().position(|help| help.is_for(request))?;
             self.claimed = Some(self.open.remove(place));
         }
         self.claimed.as_ref()
@@ -171,28 +176,43 @@ impl Helps {
         }
     }
 
-    /// The request of a robot, unless this robot offered to answer it.
+    /// The oldest request of a robot, unless this robot offered to answer it.
     pub fn get(&self, critical: u32) -> Option<&Help> {
         self.open.iter().find(|help| help.is_of(critical))
     }
 
     /// Defers a request until the battery lasts for `needs` executions.
-    pub fn postpone(&mut self, critical: u32, needs: u32) {
-        if let Some(help) = self.open.iter_mut().find(|help| help.is_of(critical)) {
+    pub fn postpone(&mut self, request: &CriticalSituation, needs: u32) {
+        if let Some(help) = self.open.iter_mut().find(|help| help.is_for(request)) {
             help.needs = needs;
         }
     }
 
     /// Leaves a request to other robots for good.
-    pub fn refuse(&mut self, critical: u32) {
-        self.open.retain(|help| !help.is_of(critical));
+    pub fn refuse(&mut self, request: &CriticalSituation) {
+        self.open.retain(|help| !help.is_for(request));
     }
 }
 
 impl Help {
-    fn is_of(&self, critical: u32) -> bool {
+    pub(in crate::robot) fn is_of(&self, critical: u32) -> bool {
         self.situation.critical == critical
     }
+
+    /// True if this is the request that a message makes or answers: of that robot, about that luggage.
+    fn is_for(&self, message: &CriticalSituation) -> bool {
+        self.is_of(message.critical) && luggage_of(&self.situation) == luggage_of(message)
+    }
+
+    /// True if a new request of the same robot takes the place of this one.
+    fn is_replaced_by(&self, request: &CriticalSituation) -> bool {
+        self.is_for(request) || self.is_of(request.critical) && self.situation.kind == CriticalKind::Idle
+    }
+}
+
+/// The luggage of the job that a situation leaves open.
+fn luggage_of(situation: &CriticalSituation) -> Option<u32> {
+    situation.job().map(|job| job.luggage)
 }
 
 #[cfg(test)]
@@ -209,8 +229,10 @@ mod tests {
         CriticalSituation { critical: 2, kind, luggage: 7, ..CriticalSituation::default() }
     }
 
-    fn response(stage: CriticalStage) -> CriticalSituation {
-        CriticalSituation { stage, healer: 3, ..request(CriticalKind::Idle) }
+    /// A response as robots send it: about the job, unless the healer only stands in.
+    fn response(kind: CriticalKind, stage: CriticalStage) -> CriticalSituation {
+        let kind = if stage == CriticalStage::StandsIn { CriticalKind::Idle } else { kind };
+        CriticalSituation { stage, healer: 3, ..request(kind) }
     }
 
     #[test]
@@ -223,12 +245,40 @@ mod tests {
         ] {
             let mut helps = Helps::new(1);
             helps.hear(&request(kind), header(1));
-            helps.hear(&response(stage), header(2));
+            helps.hear(&response(kind, stage), header(2));
             assert_eq!(helps.open().len(), open, "{kind:?}, {stage:?}");
             let mut late = Helps::new(1);
-            late.hear(&response(stage), header(2));
+            late.hear(&response(kind, stage), header(2));
             late.hear(&request(kind), header(1));
             assert_eq!(late.open().len(), open, "{kind:?}, {stage:?}: the request arrives later");
         }
+    }
+
+    #[test]
+    fn each_job_that_a_robot_left_stays_open_until_it_is_taken() {
+        let job = |luggage| CriticalSituation { luggage, ..request(CriticalKind::CarriesLuggage) };
+        let open =
+            |helps: &Helps| helps.open().iter().filter_map(|help| luggage_of(&help.situation)).collect::<Vec<_>>();
+        let mut helps = Helps::new(1);
+        helps.hear(&job(7), header(1));
+        helps.hear(&job(8), header(2));
+        helps.hear(&request(CriticalKind::Idle), header(3));
+        assert_eq!(open(&helps), [7, 8]);
+        helps.hear(&CriticalSituation { luggage: 8, stage: CriticalStage::Taken, healer: 3, ..job(8) }, header(4));
+        assert_eq!(open(&helps), [7]);
+        helps.hear(&job(7), header(5));
+        assert_eq!(open(&helps), [7], "asks again");
+        helps.claim(&job(7));
+        helps.hear(&job(9), header(6));
+        assert_eq!((helps.claimed().and_then(|help| luggage_of(&help.situation)), open(&helps)), (Some(7), vec![9]));
+    }
+
+    #[test]
+    fn a_request_with_a_job_takes_the_place_of_one_without() {
+        let mut helps = Helps::new(1);
+        helps.hear(&request(CriticalKind::Idle), header(1));
+        helps.hear(&request(CriticalKind::OnTheWay), header(2));
+        assert_eq!(helps.open().len(), 1);
+        assert_eq!(helps.open()[0].situation.kind, CriticalKind::OnTheWay);
     }
 }

@@ -179,7 +179,7 @@ impl Loop for SafeCriticalSituation {
                 None => SafeCriticalDecision::Offer(situation),
                 Some(job) => match knowledge.means(&job) {
                     Feasibility::Enough => SafeCriticalDecision::Offer(situation),
-                    Feasibility::Needs(needs) => SafeCriticalDecision::Postpone { critical: situation.critical, needs },
+                    Feasibility::Needs(needs) => SafeCriticalDecision::Postpone { situation, needs },
                     Feasibility::Never => SafeCriticalDecision::Refuse(situation),
                 },
             },
@@ -205,7 +205,7 @@ impl Loop for SafeCriticalSituation {
                 return self.call_for_help(knowledge, context, trouble, kind);
             }
             SafeCriticalDecision::Offer(situation) => {
-                knowledge.lists.helps.claim(situation.critical);
+                knowledge.lists.helps.claim(&situation);
                 knowledge.offers_help = true;
                 self.was_healer = std::mem::replace(&mut knowledge.variables.healer, true);
                 knowledge.variables.busy = true;
@@ -214,11 +214,11 @@ impl Loop for SafeCriticalSituation {
                 context.console(format_args!("Robot{} is a new healer for Robot{critical}", knowledge.number));
                 self.respond(knowledge, context, situation, CriticalStage::Intention)?;
             }
-            SafeCriticalDecision::Postpone { critical, needs } => {
-                knowledge.lists.helps.postpone(critical, needs);
+            SafeCriticalDecision::Postpone { situation, needs } => {
+                knowledge.lists.helps.postpone(&situation, needs);
             }
             SafeCriticalDecision::Refuse(situation) => {
-                knowledge.lists.helps.refuse(situation.critical);
+                knowledge.lists.helps.refuse(&situation);
                 if let Some(job) = situation.job() {
                     let refused = job.response(knowledge.number, knowledge.block, LuggageStage::Refused);
                     context.send(&self.luggage, refused)?;
@@ -441,7 +441,8 @@ impl RobotKnowledge {
     }
 
     fn needs_help(&self, critical: u32) -> bool {
-        self.lists.helps.get(critical).is_some_and(|request| self.is_to_be_helped(request))
+        let mut requests = self.lists.helps.open().iter();
+        requests.any(|request| request.is_of(critical) && self.is_to_be_helped(request))
     }
 
     /// Ends the offer to help.

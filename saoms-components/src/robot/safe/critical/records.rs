@@ -78,8 +78,8 @@ pub enum SafeCriticalDecision {
     Offer(CriticalSituation),
     /// Consider the request again when the battery lasts long enough.
     Postpone {
-        /// Number of the robot in need.
-        critical: u32,
+        /// The request.
+        situation: CriticalSituation,
         /// Number of executions that the battery has to last.
         needs: u32,
     },
