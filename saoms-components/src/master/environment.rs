@@ -7,8 +7,8 @@ use super::open_luggage::{OpenLuggage, OpenMemory};
 use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent, EventLuggage, ExceptionalEvent, FAULT,
-    Fault, LuggageStage, ROBOT_LIST, RobotList,
+    AREA, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent,
+    EventLuggage, ExceptionalEvent, FAULT, Fault, LuggageStage, ROBOT_LIST, RobotList,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
@@ -19,7 +19,7 @@ use crate::validation::{MessageValidator, Problem, SpeakerMemory, Validate};
 ///
 /// Any component may publish on the environment's topic. Impossible events, such as luggage outside the area of the
 /// world, are reported with their sender, counted, and dropped. Luggage that all robots refuse, or for which no robot
-/// is left, is reported as given up.
+/// is left, is reported as given up. A robot that starts later gets the requests that still wait.
 #[derive(Debug, Class)]
 #[class(name = "saoms.MasterEnvironment", periodic, saves, also("unibg.saoms.MasterEnvironmentManagingSystem"))]
 pub struct MasterEnvironment {
@@ -34,8 +34,12 @@ pub struct MasterEnvironment {
     responses: Subscription<EventLuggage>,
     #[subscribes(ROBOT_LIST)]
     robots: Subscription<RobotList>,
+    #[subscribes(CRITICAL_SITUATION)]
+    situations_heard: Subscription<CriticalSituation>,
     #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
+    #[publishes(CRITICAL_SITUATION)]
+    situations: Publisher<CriticalSituation>,
     #[publishes(EXCEPTIONAL_EVENT)]
     exceptional: Publisher<ExceptionalEvent>,
     #[publishes(FAULT)]
@@ -67,9 +71,10 @@ impl Component for MasterEnvironment {
                 self.filter.learn(area.clone().into());
             }
         }
+        let mut started = Vec::new();
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            if self.validator.accepts(robot, header, self.filter.area(), context) {
-                self.open.hear_robot(robot);
+            if self.validator.accepts(robot, header, self.filter.area(), context) && self.open.hear_robot(robot) {
+                started.push((header.cause, robot.robot));
             }
         }
         let now = Timestamp::now(context);
@@ -82,6 +87,17 @@ impl Component for MasterEnvironment {
         for (header, said) in context.receive(&self.responses).with_headers() {
             self.hear(context, header, said);
         }
+        for (header, situation) in context.receive(&self.situations_heard).with_headers() {
+            let is_own = header.sender == context.sender();
+            if !is_own && self.validator.accepts(situation, header, self.filter.area(), context) {
+                self.open.hear_situation(situation);
+            }
+        }
+        for (cause, robot) in started {
+            context.because(cause);
+            self.repeat_for(robot, context)?;
+        }
+        context.because(Cause::default());
         for (luggage, from, to) in self.open.take_hopeless(context.now()) {
             context.log(
                 Level::Error,
@@ -152,6 +168,18 @@ impl MasterEnvironment {
         Ok(())
     }
 
+    /// Repeats what waits, for a robot that has just started.
+    fn repeat_for(&self, robot: u32, context: &mut Context<'_>) -> Result<(), Failure> {
+        let (luggage, helps) = self.open.waiting_for(robot);
+        for request in luggage {
+            context.send(&self.luggage, request.again_for(robot))?;
+        }
+        for situation in helps {
+            context.send(&self.situations, situation.again_for(robot))?;
+        }
+        Ok(())
+    }
+
     /// Handles a message about luggage from a robot, or from another component on the robots' topic.
     fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
         if header.sender == context.sender() || !self.validator.accepts(said, header, self.filter.area(), context) {
@@ -159,6 +187,7 @@ impl MasterEnvironment {
         }
         if said.stage == LuggageStage::Request {
             self.filter.note(said.luggage);
+            self.open.hear_response(said);
         } else if self.filter.knows(said.luggage) {
             self.open.hear_response(said);
         } else {

@@ -4,12 +4,15 @@ use std::time::Duration;
 use saoms_api::{Field, Time};
 
 use crate::grid::Block;
-use crate::messages::{EventLuggage, LuggageStage, RobotList};
+use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, RobotList};
+use crate::robot::Job;
 
 /// Open luggage, and the robots that could bring it.
 #[derive(Debug, Default)]
 pub(super) struct OpenLuggage {
     pieces: BTreeMap<u32, Piece>,
+    /// Requests for help with a job that no robot has answered, by luggage.
+    helps: BTreeMap<u32, CriticalSituation>,
     /// Robots that report that they are active, with their period.
     active: BTreeMap<u32, Duration>,
     /// Active robots that are told to break, with the time until which they can say so themselves.
@@ -28,12 +31,15 @@ struct Piece {
     to: Block,
     /// Robots that can never bring it.
     refused: BTreeSet<u32>,
+    /// True while no robot has taken it.
+    waits: bool,
 }
 
 /// Open luggage, for a master that goes on.
 #[derive(Clone, Debug, Field)]
 pub(super) struct OpenMemory {
     pieces: Vec<PieceMemory>,
+    helps: Vec<CriticalSituation>,
     active: Vec<ActiveMemory>,
     breaking: Vec<BreakingMemory>,
     broken: Vec<u32>,
@@ -47,6 +53,7 @@ struct PieceMemory {
     from: Block,
     to: Block,
     refused: Vec<u32>,
+    waits: bool,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -65,8 +72,9 @@ impl OpenLuggage {
     /// The state for a master that goes on.
     pub(super) fn memory(&self) -> OpenMemory {
         let piece = |(luggage, piece): (&u32, &Piece)| {
-            let Piece { from, to, refused } = piece;
-            PieceMemory { luggage: *luggage, from: *from, to: *to, refused: refused.iter().copied().collect() }
+            let Piece { from, to, refused, waits } = piece;
+            let refused = refused.iter().copied().collect();
+            PieceMemory { luggage: *luggage, from: *from, to: *to, refused, waits: *waits }
         };
         // Periods came as whole microseconds.
         let active = |(robot, period): (&u32, &Duration)| ActiveMemory {
@@ -76,6 +84,7 @@ impl OpenLuggage {
         let breaking = self.breaking.iter().map(|(&robot, &until)| BreakingMemory { robot, until });
         OpenMemory {
             pieces: self.pieces.iter().map(piece).collect(),
+            helps: self.helps.values().cloned().collect(),
             active: self.active.iter().map(active).collect(),
             breaking: breaking.collect(),
             broken: self.broken.iter().copied().collect(),
@@ -87,12 +96,13 @@ impl OpenLuggage {
     /// The state of a master that goes on.
     pub(super) fn of(memory: OpenMemory) -> OpenLuggage {
         let piece = |piece: PieceMemory| {
-            let PieceMemory { luggage, from, to, refused } = piece;
-            (luggage, Piece { from, to, refused: refused.into_iter().collect() })
+            let PieceMemory { luggage, from, to, refused, waits } = piece;
+            (luggage, Piece { from, to, refused: refused.into_iter().collect(), waits })
         };
         let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
         OpenLuggage {
             pieces: memory.pieces.into_iter().map(piece).collect(),
+            helps: memory.helps.into_iter().map(|help| (help.luggage, help)).collect(),
             active: active.collect(),
             breaking: memory.breaking.iter().map(|breaking| (breaking.robot, breaking.until)).collect(),
             broken: memory.broken.into_iter().collect(),
@@ -102,7 +112,7 @@ impl OpenLuggage {
     }
 
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
-        self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new() });
+        self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new(), waits: true });
         self.changed = true;
     }
 
@@ -117,27 +127,58 @@ impl OpenLuggage {
         self.breaking.entry(robot).or_insert(now + period.saturating_mul(2));
     }
 
-    pub(super) fn hear_robot(&mut self, robot: &RobotList) {
+    /// Handles the state of a robot; true if it was not active before.
+    pub(super) fn hear_robot(&mut self, robot: &RobotList) -> bool {
         self.seen = true;
-        self.changed |= if robot.active {
-            self.active.insert(robot.robot, Duration::from_micros(robot.period)).is_none()
-        } else {
+        let is_new = robot.active && { self.active.insert(robot.robot, Duration::from_micros(robot.period)).is_none() };
+        self.changed |= is_new;
+        if !robot.active {
             // A robot that reports itself again was repaired.
             self.broken.remove(&robot.robot);
             self.breaking.remove(&robot.robot);
-            self.active.remove(&robot.robot).is_some()
-        };
+            self.changed |= self.active.remove(&robot.robot).is_some();
+        }
+        is_new
+    }
+
+    /// Handles a request for help, or the response of a healer.
+    pub(super) fn hear_situation(&mut self, situation: &CriticalSituation) {
+        let Some(Job { luggage, .. }) = situation.job() else { return };
+        match situation.stage {
+            CriticalStage::Request if self.pieces.contains_key(&luggage) => {
+                self.helps.insert(luggage, situation.clone());
+            }
+            CriticalStage::Taken => _ = self.helps.remove(&luggage),
+            CriticalStage::Request | CriticalStage::Intention | CriticalStage::Release | CriticalStage::StandsIn => {}
+        }
+    }
+
+    /// Requests that wait for a robot, as luggage and as calls for help, without those that this robot refused.
+    pub(super) fn waiting_for(&self, robot: u32) -> (Vec<EventLuggage>, Vec<CriticalSituation>) {
+        let open = |luggage: u32| self.pieces.get(&luggage).is_some_and(|piece| !piece.refused.contains(&robot));
+        let waiting = self.pieces.iter().filter(|(luggage, piece)| piece.waits && open(**luggage));
+        let luggage = waiting.map(|(luggage, piece)| EventLuggage::request(*luggage, piece.from, piece.to));
+        let helps = self.helps.iter().filter(|(luggage, _)| open(**luggage)).map(|(_, help)| help.clone());
+        (luggage.collect(), helps.collect())
     }
 
     pub(super) fn hear_response(&mut self, response: &EventLuggage) {
         match response.stage {
-            LuggageStage::Delivered | LuggageStage::GivenUp => _ = self.pieces.remove(&response.luggage),
+            LuggageStage::Delivered | LuggageStage::GivenUp => {
+                self.pieces.remove(&response.luggage);
+                self.helps.remove(&response.luggage);
+            }
+            LuggageStage::Request | LuggageStage::Taken => {
+                if let Some(piece) = self.pieces.get_mut(&response.luggage) {
+                    piece.waits = response.stage == LuggageStage::Request;
+                }
+            }
             LuggageStage::Refused => {
                 if let Some(piece) = self.pieces.get_mut(&response.luggage) {
                     self.changed |= piece.refused.insert(response.robot);
                 }
             }
-            _ => {}
+            LuggageStage::Interest | LuggageStage::Release => {}
         }
     }
 
@@ -150,12 +191,14 @@ impl OpenLuggage {
         if !std::mem::take(&mut self.changed) || !self.seen {
             return Vec::new();
         }
-        let OpenLuggage { pieces, active, broken, .. } = self;
+        let OpenLuggage { pieces, helps, active, broken, .. } = self;
         let can = |piece: &Piece| {
             active.keys().filter(|robot| !broken.contains(robot)).any(|robot| !piece.refused.contains(robot))
         };
         let hopeless = pieces.extract_if(.., |_, piece| !can(piece));
-        hopeless.map(|(luggage, piece)| (luggage, piece.from, piece.to)).collect()
+        let hopeless: Vec<_> = hopeless.map(|(luggage, piece)| (luggage, piece.from, piece.to)).collect();
+        hopeless.iter().for_each(|(luggage, ..)| _ = helps.remove(luggage));
+        hopeless
     }
 }
 
@@ -214,6 +257,34 @@ mod tests {
         open.hear_robot(&robot(2, false));
         assert_eq!(hopeless_at(&mut open, 1950), [0; 0], "the other one may still bring it");
         assert_eq!(hopeless_at(&mut open, 2000), [1, 2], "it says nothing");
+    }
+
+    #[test]
+    fn a_robot_that_starts_later_gets_what_waits() {
+        let block = |x| Block::new(x, 0);
+        let help = |stage| CriticalSituation { critical: 1, luggage: 2, stage, ..CriticalSituation::default() };
+        let waiting = |open: &OpenLuggage, robot| {
+            let (luggage, helps) = open.waiting_for(robot);
+            let luggage = luggage.iter().map(|request| request.luggage).collect::<Vec<_>>();
+            (luggage, helps.iter().map(|help| help.luggage).collect::<Vec<_>>())
+        };
+        let mut open = OpenLuggage::default();
+        for luggage in 1..=3 {
+            open.add(luggage, block(0), block(1));
+        }
+        assert!(open.hear_robot(&robot(1, true)));
+        assert!(!open.hear_robot(&robot(1, true)), "it was active before");
+        open.hear_response(&EventLuggage { stage: LuggageStage::Taken, ..refusal(2, 1) });
+        open.hear_response(&refusal(3, 2));
+        assert_eq!(waiting(&open, 2), (vec![1], vec![]));
+        open.hear_situation(&help(CriticalStage::Request));
+        open.hear_robot(&robot(1, false));
+        assert!(open.hear_robot(&robot(1, true)));
+        assert_eq!(waiting(&open, 1), (vec![1, 3], vec![2]), "a robot that starts again knows nothing");
+        open.hear_situation(&help(CriticalStage::Taken));
+        assert_eq!(waiting(&open, 1), (vec![1, 3], vec![]));
+        open.hear_response(&EventLuggage { stage: LuggageStage::Request, ..refusal(2, 0) });
+        assert_eq!(waiting(&open, 2), (vec![1, 2], vec![]));
     }
 
     #[test]

@@ -70,7 +70,7 @@ pub enum LuggageStage {
 /// A request to bring luggage from one block to another, or the response of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 pub struct EventLuggage {
-    /// Number of the robot that responds; 0 in a request.
+    /// Number of the robot that responds; in a request 0, or the number of the only robot that it is for.
     pub robot: u32,
     /// Number of the luggage.
     pub luggage: u32,
@@ -88,6 +88,16 @@ impl EventLuggage {
     /// A request.
     pub const fn request(luggage: u32, from: Block, to: Block) -> EventLuggage {
         EventLuggage { robot: 0, luggage, stage: LuggageStage::Request, from, to, block: from }
+    }
+
+    /// The same request again, for a robot that started later.
+    pub fn again_for(self, robot: u32) -> EventLuggage {
+        EventLuggage { robot, ..self }
+    }
+
+    /// True if the message is a request for all robots, or for this one.
+    pub fn is_request_for(&self, robot: u32) -> bool {
+        self.stage == LuggageStage::Request && (self.robot == 0 || self.robot == robot)
     }
 
     /// A report that no robot can bring the luggage of a request.
@@ -113,7 +123,12 @@ impl Validate for EventLuggage {
     fn validate(&self, sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
         let EventLuggage { robot, from, to, block, .. } = *self;
         match self.stage {
-            LuggageStage::Request => Problem::of_request(self, area),
+            LuggageStage::Request => {
+                if robot != 0 {
+                    validator.check_known(robot)?;
+                }
+                Problem::of_request(&EventLuggage { robot: 0, ..self.clone() }, area)
+            }
             // The component that requested luggage gives it up without a robot's number, even if the request was
             // impossible.
             LuggageStage::GivenUp if robot == 0 => Ok(()),

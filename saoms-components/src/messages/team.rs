@@ -108,7 +108,7 @@ impl Validate for RobotList {
 
 /// Requests for help, and the responses of healers.
 ///
-/// Published by robots; read by robots.
+/// Published by robots and the master of the environment; read by both.
 pub const CRITICAL_SITUATION: Topic<CriticalSituation> = Topic::event("CSMSTOPIC");
 
 /// Activity of a robot when it became critical.
@@ -156,7 +156,7 @@ pub struct CriticalSituation {
     pub kind: CriticalKind,
     /// Request, or kind of response.
     pub stage: CriticalStage,
-    /// Number of the robot that responds; 0 in a request.
+    /// Number of the robot that responds; in a request 0, or the number of the only robot that it is for.
     pub healer: u32,
     /// Position of the healer; without meaning in a request.
     pub healer_block: Block,
@@ -172,6 +172,18 @@ impl CriticalSituation {
             CriticalKind::Idle => return None,
         };
         Some(Job { luggage: self.luggage, from, to: self.to })
+    }
+}
+
+impl CriticalSituation {
+    /// The same request again, for a robot that started later.
+    pub fn again_for(self, robot: u32) -> CriticalSituation {
+        CriticalSituation { healer: robot, ..self }
+    }
+
+    /// True if the message is a request for one robot alone.
+    pub fn is_again(&self) -> bool {
+        self.stage == CriticalStage::Request && self.healer != 0
     }
 }
 
@@ -197,6 +209,10 @@ impl Validate for CriticalSituation {
         Problem::of_block(self.block, area)?;
         for block in self.job().into_iter().flat_map(|job| [job.from, job.to]) {
             Problem::of_block(block, area)?;
+        }
+        // The master asks again for a robot that started later.
+        if self.healer != 0 {
+            return validator.check_known(self.healer);
         }
         // A healer that breaks asks again for the robot that it wanted to help.
         if validator.is_speaker(sender) {

@@ -38,13 +38,15 @@ impl World {
         context.send(&self.collisions, collision)
     }
 
+    /// True if a robot is at a block, or beside a robot that is out of service there.
+    fn reaches(&self, robot: u32, block: Block) -> Result<bool, Failure> {
+        let here = self.referee.block(robot)?;
+        Ok(here == block || here.distance(block) == 1 && self.referee.is_retired_at(block))
+    }
+
     /// Ends collecting or depositing.
     fn handle(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
-        let here = self.referee.block(robot)?;
-        // Robots next to a robot that is out of service reach its block.
-        let in_reach = here.distance(action.block) == 1 && self.referee.is_retired_at(action.block);
-        let block = if in_reach { action.block } else { here };
-        let referee = &self.referee;
+        let (referee, block) = (&self.referee, action.block);
         let lies_on = |other: u32| {
             (referee.is_retired(other) || referee.has_entered_again(other)) && referee.block(other) == Ok(block)
         };
@@ -115,6 +117,12 @@ impl Hardware for World {
         }
         if self.referee.has_done(robot, action) {
             return Ok(Progress::Done);
+        }
+        // Decided once, at the beginning: meanwhile a robot that stood there may start again, and leave.
+        if !self.reaches(robot, action.block)? {
+            let here = self.referee.block(robot)?;
+            warn!(context, "robot {robot} at {here} does not reach {}", action.block);
+            return Ok(Progress::Failed);
         }
         self.referee.begin_handling(robot, action, context.now() + self.properties.handling_time)?;
         self.poll(context, robot)

@@ -113,8 +113,15 @@ impl Helps {
     /// Handles a request. A robot that asks again about the same luggage, or after a request without a job, has another
     /// reason: the earlier request does not count any more. A job that it left before stays open: a robot can break or
     /// end, be scheduled again, and leave its next job.
+    ///
+    /// A request that only repeats an earlier one, for a robot that started later, changes nothing for who knows it.
     fn hear_request(&mut self, message: &CriticalSituation, header: Header) {
-        if self.settled.iter().any(|settled| settled.settles(message) && settled.time > header.sent) {
+        let is_again = message.is_again();
+        let is_known = || self.open.iter().chain(&self.claimed).any(|known| known.is_for(message));
+        if is_again && (message.healer != self.number || is_known()) {
+            return;
+        }
+        if self.settled.iter().any(|settled| settled.settles(message) && (is_again || settled.time > header.sent)) {
             return;
         }
         let help =
@@ -271,6 +278,19 @@ mod tests {
         helps.claim(&job(7));
         helps.hear(&job(9), header(6));
         assert_eq!((helps.claimed().and_then(|help| luggage_of(&help.situation)), open(&helps)), (Some(7), vec![9]));
+    }
+
+    #[test]
+    fn a_request_that_is_repeated_for_a_robot_is_for_that_one_and_opens_nothing_again() {
+        let again = |robot| request(CriticalKind::OnTheWay).again_for(robot);
+        let mut helps = Helps::new(1);
+        helps.hear(&again(3), header(1));
+        assert_eq!(helps.open().len(), 0);
+        helps.hear(&again(1), header(2));
+        assert_eq!(helps.open().len(), 1);
+        helps.hear(&response(CriticalKind::OnTheWay, CriticalStage::Taken), header(3));
+        helps.hear(&again(1), header(4));
+        assert_eq!(helps.open().len(), 0);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use saoms_api::{Cause, Field, Header, Time};
 use crate::grid::Block;
 use crate::messages::{EventLuggage, LuggageStage};
 use crate::robot::Job;
+use crate::state::Numbers;
 
 /// Another robot that took an interest in the same luggage, or offered the same help.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Field)]
@@ -69,6 +70,8 @@ pub struct Requests {
     refused: Vec<u32>,
     /// Luggage that other robots refused, with the robot.
     refusals: BTreeSet<(u32, u32)>,
+    /// Luggage that a robot took, brought or gave up: a request that only repeats an earlier one does not count.
+    settled: Numbers,
 }
 
 /// The list, for a robot that goes on.
@@ -78,6 +81,7 @@ pub(in crate::robot) struct RequestsMemory {
     claimed: Option<Request>,
     refused: Vec<u32>,
     refusals: Vec<Refusal>,
+    settled: Numbers,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -93,17 +97,26 @@ impl Requests {
             claimed: self.claimed.clone(),
             refused: self.refused.clone(),
             refusals: self.refusals.iter().map(|&(luggage, robot)| Refusal { luggage, robot }).collect(),
+            settled: self.settled.clone(),
         }
     }
 
     pub(super) fn restore(&mut self, memory: RequestsMemory) {
         (self.open, self.claimed, self.refused) = (memory.open, memory.claimed, memory.refused);
         self.refusals = memory.refusals.iter().map(|refusal| (refusal.luggage, refusal.robot)).collect();
+        self.settled = memory.settled;
     }
 
     /// An empty list, for the robot with this number.
     pub fn new(number: u32) -> Requests {
-        Requests { number, open: Vec::new(), claimed: None, refused: Vec::new(), refusals: BTreeSet::new() }
+        Requests {
+            number,
+            open: Vec::new(),
+            claimed: None,
+            refused: Vec::new(),
+            refusals: BTreeSet::new(),
+            settled: Numbers::default(),
+        }
     }
 
     /// Handles a request or a response. Of the robot's own responses those count that end its interest for good:
@@ -111,6 +124,10 @@ impl Requests {
     pub fn hear(&mut self, event: &EventLuggage, header: Header) {
         if event.stage == LuggageStage::Request {
             return self.hear_request(event, header);
+        }
+        let gone = matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
+        if gone {
+            self.settled.insert(event.luggage);
         }
         if event.robot == self.number {
             return self.hear_own(event);
@@ -122,7 +139,6 @@ impl Requests {
             }
             _ => {}
         }
-        let gone = matches!(event.stage, LuggageStage::Taken | LuggageStage::Delivered | LuggageStage::GivenUp);
         if let Some(claimed) = self.claimed.as_mut().filter(|claimed| claimed.job.luggage == event.luggage) {
             claimed.hear(event);
             if gone {
@@ -150,6 +166,10 @@ impl Requests {
     }
 
     fn hear_request(&mut self, event: &EventLuggage, header: Header) {
+        let is_again = event.robot != 0;
+        if !event.is_request_for(self.number) || is_again && self.settled.contains(event.luggage) {
+            return;
+        }
         let mut known = self.open.iter().chain(&self.claimed);
         let refused = self.refused.contains(&event.luggage);
         if !refused && !known.any(|request| request.job.luggage == event.luggage) {

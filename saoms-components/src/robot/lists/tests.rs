@@ -46,6 +46,18 @@ fn taken_luggage_leaves_the_list() {
 }
 
 #[test]
+fn a_request_that_is_repeated_for_a_robot_is_for_that_one_and_opens_nothing_again() {
+    let mut lists = lists();
+    lists.requests.hear(&request(4).again_for(MINE), at(4));
+    lists.requests.hear(&request(5).again_for(7), at(4));
+    lists.requests.hear(&response(1, 1, LuggageStage::Taken), at(4));
+    lists.requests.hear(&request(1).again_for(MINE), at(5));
+    assert_eq!(open(&lists), [2, 3, 4]);
+    lists.requests.hear(&request(1), at(6));
+    assert_eq!(open(&lists), [2, 3, 4, 1], "who took it offers it to all");
+}
+
+#[test]
 fn luggage_that_this_robot_refused_does_not_wait_for_it_again() {
     let mut lists = lists();
     lists.requests.hear(&response(2, MINE, LuggageStage::Refused), at(4));

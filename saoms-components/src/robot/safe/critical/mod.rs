@@ -93,8 +93,9 @@ impl Loop for SafeCriticalSituation {
             if !knowledge.accepts(situation, header, context) {
                 continue;
             }
-            // A robot that only charges looks for its substitute itself.
-            if situation.critical != knowledge.number {
+            // A robot that only charges looks for its substitute itself. One that started again learns from the master
+            // which job it left.
+            if situation.critical != knowledge.number || situation.is_again() {
                 knowledge.lists.helps.hear(situation, header);
             }
             if situation.stage == CriticalStage::StandsIn
@@ -334,10 +335,16 @@ impl SafeCriticalSituation {
             (knowledge.variables.busy, knowledge.variables.healer) = (true, true);
             knowledge.set_out(&job);
             let luggage = job.luggage;
-            info!(context, "takes over luggage {luggage} from robot {critical}");
+            if critical == knowledge.number {
+                info!(context, "takes luggage {luggage} again, which it left at {}", job.from);
+            } else {
+                info!(context, "takes over luggage {luggage} from robot {critical}");
+            }
         }
-        self.substitution = Some(Substitution::of(critical));
-        self.missing = context.cause();
+        if critical != knowledge.number {
+            self.substitution = Some(Substitution::of(critical));
+            self.missing = context.cause();
+        }
         self.respond(knowledge, context, situation, CriticalStage::Taken)
     }
 
