@@ -355,7 +355,8 @@ typedef struct SaomsHostFunctions {
                              const struct SaomsTopicView *topic,
                              uint32_t *subscription,
                              struct SaomsSink error);
-    // Sends a message in its CDR form, with its key or null; it leaves at the end of the present execution.
+    // Sends a message in its CDR form; it leaves at the end of the present execution. The key is that of the
+    // message, as a number, or null.
     SaomsStatus (*send)(void *state,
                         uint32_t publisher,
                         const uint64_t *key,

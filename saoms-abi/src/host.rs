@@ -61,7 +61,8 @@ pub struct HostFunctions {
         subscription: *mut u32,
         error: Sink,
     ) -> Status,
-    /// Sends a message in its CDR form, with its key or null; it leaves at the end of the present execution.
+    /// Sends a message in its CDR form; it leaves at the end of the present execution. The key is that of the
+    /// message, as a number, or null.
     pub send: unsafe extern "C" fn(
         state: *mut c_void,
         publisher: u32,

@@ -130,12 +130,12 @@ impl SharedMessage {
         SharedMessage(Arc::new(Shared { header, key, place: None, bytes, forms, payload: Arrived }))
     }
 
-    /// The same message with this block, which its bytes say.
+    /// The same message with this key and block, which its bytes say.
     #[must_use]
-    pub fn at(mut self, place: Option<(i32, i32)>) -> SharedMessage {
+    pub fn of(mut self, key: Option<u64>, place: Option<(i32, i32)>) -> SharedMessage {
         // Nobody shares a message that was made just now.
         if let Some(shared) = Arc::get_mut(&mut self.0) {
-            shared.place = place;
+            (shared.key, shared.place) = (key, place);
         }
         self
     }

@@ -3,7 +3,7 @@
 //! Publishing puts a message into its topic once, however many readers there are; a reader collects what is new to it
 //! when its own execution starts. A [state topic](saoms_api::host::TopicKind::State) keeps the newest message of each
 //! publisher and key, so that a reader that comes later gets the present state, and one that reads rarely gets each key
-//! once. An [event topic](saoms_api::host::TopicKind::Event) keeps each message until every reader has read it; a
+//! once; a publisher has a bounded number of keys. An [event topic](saoms_api::host::TopicKind::Event) keeps each message until every reader has read it; a
 //! reader that falls behind by more than its queue loses the oldest messages, and gets their number.
 //!
 //! A [`Bus`] has no lock of its own: it belongs to one scheduler, which delivers in batches. It knows neither clock nor
@@ -26,6 +26,7 @@ use std::sync::Arc;
 use saoms_api::host::{SharedMessage, TopicDeclaration};
 use saoms_api::{Departed, Region};
 
+pub(crate) use state::MOST_KEYS;
 use topic::{BusTopic, ReadPosition};
 
 /// All topics of a fleet, by the names that they have after renaming.
@@ -130,10 +131,11 @@ impl Bus {
         topic.leave(subscription.reader)
     }
 
-    /// Puts a message into a topic.
+    /// Puts a message into a topic. False if a state topic cannot keep it, since its publisher has too many keys.
     #[inline]
-    pub fn publish(&mut self, topic: TopicId, message: SharedMessage) {
-        self.topics[topic.0 as usize].publish(message);
+    #[must_use = "a message that is lost is told"]
+    pub fn publish(&mut self, topic: TopicId, message: SharedMessage) -> bool {
+        self.topics[topic.0 as usize].publish(message)
     }
 
     /// Notes that the messages that a reader gets trigger the component with this number.

@@ -135,7 +135,7 @@ fn a_reader_knows_the_newest_messages_of_its_region_whatever_moves() {
                 }
                 _ => {
                     let (sender, key, at) = (chance.below(3) as u32, chance.below(10) as u32, block());
-                    bus.publish(topic, message(sender, key, at, step));
+                    assert!(bus.publish(topic, message(sender, key, at, step)));
                     truth.insert((sender, u64::from(key)), (at, step));
                 }
             }
@@ -151,7 +151,7 @@ fn a_reader_gets_the_events_of_its_region_in_their_order() {
     let mut all = bus.subscribe("EVENT", &EVENT.declaration(), &who(), 9).unwrap();
     bus.set_region(&mut near, Some(Region::around((0, 0), 1)), 3);
     for (value, block) in [(0, 0), (5, 5), (-1, 1), (1, 0), (2, 0)].into_iter().enumerate() {
-        bus.publish(topic, message(1, 0, block, value as u64));
+        assert!(bus.publish(topic, message(1, 0, block, value as u64)));
     }
     let collect = |bus: &mut Bus, near: &TopicReader| {
         let (mut inbox, mut departed) = (Vec::new(), Vec::new());
@@ -161,20 +161,20 @@ fn a_reader_gets_the_events_of_its_region_in_their_order() {
     assert_eq!(collect(&mut bus, &near), (vec![0, 2, 3], 0, Vec::new()));
     assert!(!bus.has_news(&near));
     bus.set_region(&mut near, Some(Region::around((20, 20), 1)), 3);
-    (5..10).for_each(|value| bus.publish(topic, message(1, 0, (20, 21), value)));
-    bus.publish(topic, message(1, 0, (0, 0), 10));
+    (5..10).for_each(|value| assert!(bus.publish(topic, message(1, 0, (20, 21), value))));
+    assert!(bus.publish(topic, message(1, 0, (0, 0), 10)));
     assert_eq!(collect(&mut bus, &near), (vec![7, 8, 9], 2, Vec::new()));
     let mut inbox = Vec::new();
     assert_eq!((bus.collect(&mut all, &mut inbox), values(&inbox).len()), (2, 9));
     // Without a region it gets all that comes.
     bus.set_region(&mut near, None, 3);
-    bus.publish(topic, message(1, 0, (-9, 9), 11));
+    assert!(bus.publish(topic, message(1, 0, (-9, 9), 11)));
     inbox.clear();
     assert_eq!((bus.collect(&mut near, &mut inbox), values(&inbox)), (0, vec![11]));
     bus.set_region(&mut near, Some(Region::around((0, 0), 1)), 3);
-    (0..5).for_each(|value| bus.publish(topic, message(1, 0, (0, 0), value)));
+    (0..5).for_each(|value| assert!(bus.publish(topic, message(1, 0, (0, 0), value))));
     assert_eq!(bus.unsubscribe(near), 2);
-    bus.publish(topic, message(1, 0, (0, 0), 0));
+    assert!(bus.publish(topic, message(1, 0, (0, 0), 0)));
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn changes_that_nobody_collects_take_no_memory_without_end() {
     let mut readers = RegionReaders::default();
     let place = readers.join(Region::around((0, 0), 1), 1, Some(&table));
     for value in 0..100_000 {
-        let (entry, before) = table.publish(message(0, (value % 3) as u32, (0, 0), value));
+        let (entry, before) = table.publish(message(0, (value % 3) as u32, (0, 0), value)).unwrap();
         readers.changed(entry, before.and_then(|before| before.place()), Some((0, 0)));
         readers.move_to(place, Region::around((0, 0), 1 + (value % 2) as u32), Some(&table));
     }

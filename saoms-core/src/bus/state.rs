@@ -6,9 +6,15 @@ use super::hash::KeyHashing;
 
 const NONE: u32 = u32::MAX;
 
+/// Greatest number of keys of one publisher, since no message that is retained ever leaves: ten for each of 10,000
+/// robots.
+pub(crate) const MOST_KEYS: u32 = 100_000;
+
 /// The messages that a state topic retains: the newest one of each key from each publisher, linked in the order of
 /// their changes. A publisher never replaces a message of another publisher, as with the transient-local durability of
 /// DDS.
+///
+/// A publisher has a [bounded](MOST_KEYS) number of keys.
 ///
 /// A change moves its entry to the end, whatever the number of readers. A reader walks back from the end to the last
 /// change it knows.
@@ -16,6 +22,8 @@ pub(super) struct StateTable {
     entries: Vec<Entry>,
     /// Place of the message of a publisher and key.
     places: HashMap<(u32, u64), u32, KeyHashing>,
+    /// Number of keys of each publisher.
+    keys: HashMap<u32, u32>,
     newest: u32,
     changes: u64,
 }
@@ -29,29 +37,36 @@ struct Entry {
 
 impl Default for StateTable {
     fn default() -> StateTable {
-        StateTable { entries: Vec::new(), places: HashMap::default(), newest: NONE, changes: 0 }
+        StateTable { entries: Vec::new(), places: HashMap::default(), keys: HashMap::new(), newest: NONE, changes: 0 }
     }
 }
 
 impl StateTable {
-    /// Takes in a message; gives its entry, and the message that it replaces.
-    pub(super) fn publish(&mut self, message: SharedMessage) -> (u32, Option<SharedMessage>) {
-        self.changes += 1;
+    /// Takes in a message; gives its entry, and the message that it replaces. `None` if its publisher has too many
+    /// keys for a further one.
+    pub(super) fn publish(&mut self, message: SharedMessage) -> Option<(u32, Option<SharedMessage>)> {
         // Either all messages of a topic have a key, or none has.
         let key = (message.header().sender, message.key().unwrap_or_default());
         if let Some(&place) = self.places.get(&key) {
+            self.changes += 1;
             self.unlink(place);
             let entry = &mut self.entries[place as usize];
             let before = std::mem::replace(&mut entry.message, message);
             entry.change = self.changes;
             self.link(place);
-            return (place, Some(before));
+            return Some((place, Some(before)));
         }
+        let keys = self.keys.entry(key.0).or_default();
+        if *keys >= MOST_KEYS {
+            return None;
+        }
+        *keys += 1;
+        self.changes += 1;
         let place = u32::try_from(self.entries.len()).unwrap_or(NONE);
         self.entries.push(Entry { message, change: self.changes, older: NONE, newer: NONE });
         self.places.insert(key, place);
         self.link(place);
-        (place, None)
+        Some((place, None))
     }
 
     /// The retained messages, by their entries.

@@ -67,7 +67,7 @@ proptest! {
             match step {
                 Step::Publish(_) => {
                     number += 1;
-                    bus.publish(topic, SharedMessage::new(header(0), Plain { value: number }));
+                    assert!(bus.publish(topic, SharedMessage::new(header(0), Plain { value: number })));
                     for (_, length, queue, lost) in &mut readers {
                         queue.push_back(number);
                         if queue.len() > *length {
@@ -108,7 +108,7 @@ proptest! {
                 Step::Publish(key) => {
                     let message = Keyed { key: key % 5, value: all.len() as u32 };
                     all.push(message.clone());
-                    bus.publish(topic, SharedMessage::new(header(0), message));
+                    assert!(bus.publish(topic, SharedMessage::new(header(0), message)));
                 }
                 Step::Join(length) => {
                     readers.push((bus.subscribe("T", &STATE.declaration(), &who(), length).unwrap(), 0));
@@ -138,7 +138,7 @@ fn without_a_key_each_publisher_has_its_own() {
     let mut bus = Bus::default();
     let topic = bus.publisher("T", &OWN.declaration(), &who()).unwrap();
     for (sender, value) in [(1, 10), (2, 20), (1, 11)] {
-        bus.publish(topic, SharedMessage::new(header(sender), Plain { value }));
+        assert!(bus.publish(topic, SharedMessage::new(header(sender), Plain { value })));
     }
     let mut reader = bus.subscribe("T", &OWN.declaration(), &who(), 1).unwrap();
     let (inbox, _) = collect(&mut bus, &mut reader);
@@ -155,13 +155,13 @@ fn nobody_hides_what_another_publisher_said_under_the_same_key() {
     let topic = bus.publisher("T", &STATE.declaration(), &who()).unwrap();
     let mut reader = bus.subscribe("T", &STATE.declaration(), &who(), 1).unwrap();
     for (sender, value) in [(1, 10), (2, 20), (1, 11), (2, 21)] {
-        bus.publish(topic, SharedMessage::new(header(sender), Keyed { key: 7, value }));
+        assert!(bus.publish(topic, SharedMessage::new(header(sender), Keyed { key: 7, value })));
     }
     let mut values = || -> Vec<u32> {
         collect(&mut bus, &mut reader).0.iter().map(|shared| shared.get::<Keyed>().unwrap().value).collect()
     };
     assert_eq!(values(), [11, 21]);
-    bus.publish(topic, SharedMessage::new(header(1), Keyed { key: 7, value: 12 }));
+    assert!(bus.publish(topic, SharedMessage::new(header(1), Keyed { key: 7, value: 12 })));
     let mut late = bus.subscribe("T", &STATE.declaration(), &who(), 1).unwrap();
     let late: Vec<u32> =
         collect(&mut bus, &mut late).0.iter().map(|shared| shared.get::<Keyed>().unwrap().value).collect();
@@ -175,7 +175,7 @@ fn messages_that_all_have_read_are_let_go() {
     let mut reader = bus.subscribe("T", &EVENT.declaration(), &who(), 1_000_000).unwrap();
     let mut peak = 0;
     for value in 0..10_000 {
-        bus.publish(topic, SharedMessage::new(header(0), Plain { value }));
+        assert!(bus.publish(topic, SharedMessage::new(header(0), Plain { value })));
         assert_eq!(collect(&mut bus, &mut reader).0.len(), 1);
         peak = peak.max(bus.topics[topic.0 as usize].held());
     }
@@ -223,4 +223,21 @@ fn schemas_that_say_the_same_agree_however_they_are_written() {
     assert!(bus.subscribe("T", &declared, &who(), 1).is_ok());
     let other = by_hand.replace("uint32", "int32");
     assert!(bus.subscribe("T", &saoms_api::host::TopicDeclaration { schema: &other, ..declared }, &who(), 1).is_err());
+}
+
+#[test]
+fn a_publisher_has_a_bounded_number_of_keys_on_a_state_topic() {
+    #[derive(Clone, Debug, PartialEq, Message)]
+    #[message(key = "key")]
+    struct Wide {
+        key: u32,
+    }
+    let mut bus = Bus::default();
+    let topic = bus.publisher("T", &Topic::<Wide>::state("T").declaration(), &who()).unwrap();
+    let mut publish = |sender, key| bus.publish(topic, SharedMessage::new(header(sender), Wide { key }));
+    assert!((0..super::MOST_KEYS).all(|key| publish(1, key)));
+    assert!(!publish(1, super::MOST_KEYS), "a key too many");
+    assert!(publish(1, 7) && publish(2, super::MOST_KEYS), "a known key, and another publisher");
+    let mut reader = bus.subscribe("T", &Topic::<Wide>::state("T").declaration(), &who(), 1).unwrap();
+    assert_eq!(collect(&mut bus, &mut reader).0.len(), super::MOST_KEYS as usize + 1);
 }

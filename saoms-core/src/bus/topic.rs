@@ -148,24 +148,28 @@ impl BusTopic {
         }
     }
 
+    /// Takes in a message. False if a state topic cannot keep it.
     #[inline]
-    pub(super) fn publish(&mut self, message: SharedMessage) {
+    pub(super) fn publish(&mut self, message: SharedMessage) -> bool {
         if self.regions.is_some() {
             return self.publish_in_regions(message);
         }
         match &mut self.store {
-            Store::State(table) => drop(table.publish(message)),
-            Store::Event(log) => log.publish(message),
+            Store::State(table) => table.publish(message).is_some(),
+            Store::Event(log) => {
+                log.publish(message);
+                true
+            }
         }
     }
 
     #[cold]
-    fn publish_in_regions(&mut self, message: SharedMessage) {
-        let Some(regions) = &mut self.regions else { return };
+    fn publish_in_regions(&mut self, message: SharedMessage) -> bool {
+        let Some(regions) = &mut self.regions else { return false };
         match &mut self.store {
             Store::State(table) => {
                 let place = message.place();
-                let (entry, before) = table.publish(message);
+                let Some((entry, before)) = table.publish(message) else { return false };
                 regions.changed(entry, before.and_then(|before| before.place()), place);
             }
             Store::Event(log) => {
@@ -173,6 +177,7 @@ impl BusTopic {
                 log.publish(message);
             }
         }
+        true
     }
 
     /// Lets a reader get the messages of a region alone, or all again.

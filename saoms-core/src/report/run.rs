@@ -96,7 +96,7 @@ pub struct ComponentReport {
     pub replaced: u32,
     /// Number of failures, by an error or a panic.
     pub failures: u64,
-    /// Messages that its event queues could not hold.
+    /// Messages that its event queues could not hold, and messages of it that a state topic could not keep.
     pub dropped: u64,
     /// Messages sent and received.
     pub messages: MessageCounts,

@@ -166,17 +166,16 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
         error,
     };
     let schema = Schema::parse(&schema).map_err(|error| refused("", error.to_string()))?;
-    let (bytes, key) = match content {
+    let bytes = match content {
         InjectedContent::Fields(fields) => {
-            let bytes = schema.encode(&fields).map_err(|error| refused(schema.name(), error.to_string()))?;
-            (bytes, schema.key(&fields))
+            schema.encode(&fields).map_err(|error| refused(schema.name(), error.to_string()))?
         }
         InjectedContent::Bytes(bytes) => {
-            let fields = schema.decode(&bytes).map_err(|error| refused(schema.name(), error.to_string()))?;
-            (bytes, schema.key(&fields))
+            schema.check(&bytes).map_err(|error| refused(schema.name(), error.to_string()))?;
+            bytes
         }
     };
-    let place = schema.place(&bytes);
+    let (key, place) = (schema.key(&bytes), schema.place(&bytes));
     let mut engine = shared.lock();
     let when = at.map_or(0, Time::as_nanos).max(shared.clock.now());
     engine.injections.add(when, Due::Message { topic: id, bytes, key, place, text });
@@ -222,7 +221,7 @@ impl Engine {
         let name = Arc::clone(self.bus.name(topic));
         let cause = self.record_outside(time, text);
         let header = Header { sender: OUTSIDE, sent: Time::from_nanos(time), cause };
-        let message = SharedMessage::from_bytes(header, key, bytes).at(place);
+        let message = SharedMessage::from_bytes(header, None, bytes).of(key, place);
         if let Some(trace) = &mut self.trace {
             trace.message(time, OUTSIDE, self.bus.name_hash(topic), &message);
         }

@@ -31,8 +31,8 @@ use serde_json::Value;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Schema {
     name: String,
-    /// The field that is the key of a state topic.
-    key: Option<String>,
+    /// Place of the field that is the key of a state topic.
+    key: Option<usize>,
     /// Place of the field that is the block of a message.
     place: Option<usize>,
     fields: Vec<Field>,
@@ -112,11 +112,15 @@ impl Schema {
         &self.name
     }
 
-    /// The key under which a state topic keeps a message that is given as JSON.
-    pub fn key(&self, message: &Value) -> Option<u64> {
-        let value = message.get(self.key.as_ref()?)?;
-        // A negative number has its place too.
-        value.as_u64().or_else(|| value.as_i64().map(|number| number as u64))
+    /// The key under which a state topic keeps a message that is given as bytes; `None` where its type declares none.
+    pub fn key(&self, bytes: &[u8]) -> Option<u64> {
+        let key = self.key?;
+        read::key(self, key, &mut Reader::new(bytes).ok()?)
+    }
+
+    /// The name of the field that is the key of a message.
+    pub fn key_name(&self) -> Option<&str> {
+        self.key.map(|key| self.fields[key].name.as_str())
     }
 
     /// Column and row of the block of a message that is given as bytes; `None` where its type declares no place.
@@ -178,14 +182,17 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
             shape.name
         )));
     }
-    if let Some(key) = &shape.key {
-        let key = field(key, "key")?;
-        if !matches!(fields[key].kind, Type::Number(_) | Type::Enumeration(..) | Type::Bool) {
-            let name = &fields[key].name;
-            return Err(SchemaError(format!("the key of `{}` is `{name}`, which is no number", shape.name)));
-        }
+    let key = shape.key.as_ref().map(|key| field(key, "key")).transpose()?;
+    let what = match key.map(|key| &fields[key].kind) {
+        Some(Type::Number(number)) if number.is_float() => Some("no integer"),
+        None | Some(Type::Number(_) | Type::Enumeration(..) | Type::Bool) => None,
+        Some(_) => Some("no number"),
+    };
+    if let (Some(key), Some(what)) = (key, what) {
+        let name = &fields[key].name;
+        return Err(SchemaError(format!("the key of `{}` is `{name}`, which is {what}", shape.name)));
     }
-    Ok(Schema { fields, key: shape.key, place, name: shape.name })
+    Ok(Schema { fields, key, place, name: shape.name })
 }
 
 /// True if a field is a column and a row.

@@ -19,6 +19,19 @@ pub(super) fn block(schema: &Schema, place: usize, reader: &mut Reader<'_>) -> O
     Some((number()?, number()?))
 }
 
+/// The field at this place, which is a key, as a number: a negative one has its place too.
+pub(super) fn key(schema: &Schema, place: usize, reader: &mut Reader<'_>) -> Option<u64> {
+    schema.fields[..place].iter().try_for_each(|field| skip(&field.kind, reader)).ok()?;
+    match &schema.fields[place].kind {
+        Type::Bool => boolean(reader).ok().map(u64::from),
+        Type::Number(number) | Type::Enumeration(number, _) => match scalar(*number, reader).ok()? {
+            Scalar::Integer(key) => Some(key as u64),
+            Scalar::Float(_) => None,
+        },
+        _ => None,
+    }
+}
+
 fn skip(kind: &Type, reader: &mut Reader<'_>) -> Result<(), DecodeError> {
     match kind {
         Type::Bool => boolean(reader).map(drop),

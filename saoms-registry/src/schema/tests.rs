@@ -139,3 +139,26 @@ fn samples_are_messages() {
         assert!(cdr::decode::<All>(&bytes).is_ok(), "{bytes:?}");
     }
 }
+
+#[test]
+fn the_key_of_a_message_is_read_from_its_bytes() {
+    #[derive(Clone, Debug, Message)]
+    #[message(key = "key")]
+    struct Keyed {
+        text: String,
+        key: i16,
+        flag: bool,
+    }
+    let schema = Schema::parse(Keyed::SCHEMA).unwrap();
+    for key in [-1, 0, 7] {
+        let message = Keyed { text: "before".to_owned(), key, flag: true };
+        assert_eq!(schema.key(&cdr::encode(&message)), message.key());
+    }
+    let key = |schema: &str, bytes: &[u8]| Schema::parse(schema).unwrap().key(bytes);
+    let own = |kind: &str| format!(r#"{{"name":"Own","fields":[{{"name":"key","type":{kind}}}],"key":"key"}}"#);
+    assert_eq!(key(&own(r#""bool""#), &[0, 1, 0, 0, 1]), Some(1));
+    assert_eq!(key(&own(r#"{"enumeration":"uint8","values":{"A":3}}"#), &[0, 1, 0, 0, 3]), Some(3));
+    assert_eq!(key(All::SCHEMA, &cdr::encode(&All::default())), None);
+    let error = Schema::parse(&own(r#""float32""#)).unwrap_err().to_string();
+    assert_eq!(error, "the key of `Own` is `key`, which is no integer");
+}

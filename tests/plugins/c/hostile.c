@@ -140,6 +140,34 @@ static SaomsStatus move_region(Actor *actor, const SaomsHostHandle *host, SaomsS
     return status;
 }
 
+static SaomsStatus send_spot(Actor *actor, const SaomsHostHandle *host, uint32_t topic, uint32_t number, uint64_t key,
+                             SaomsSink error) {
+    uint8_t bytes[64];
+    SaomsBuffer writer = saoms_writer(bytes, sizeof bytes);
+    (void)actor;
+    saoms_write_u32(&writer, number);
+    saoms_write_i32(&writer, 1);
+    saoms_write_i32(&writer, 1);
+    return host->functions->send(host->state, topic, &key, saoms_written(&writer), error);
+}
+
+static SaomsStatus send_word(Actor *actor, const SaomsHostHandle *host, SaomsSink error) {
+    uint8_t bytes[64];
+    uint64_t key = 3;
+    SaomsBuffer writer = saoms_writer(bytes, sizeof bytes);
+    saoms_write_string(&writer, "word");
+    return host->functions->send(host->state, actor->words, &key, saoms_written(&writer), error);
+}
+
+static SaomsStatus publish_keys(Actor *actor, const SaomsHostHandle *host, uint32_t count, SaomsSink error) {
+    SaomsStatus status = SaomsStatus_OK;
+    uint32_t key;
+    for (key = 0; status == SaomsStatus_OK && key < count; key++) {
+        status = send_spot(actor, host, actor->spots, key, key, error);
+    }
+    return status;
+}
+
 static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSink error) {
     Actor *actor = component;
     const SaomsHostFunctions *functions = host->functions;
@@ -164,6 +192,12 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
         return functions->set_region(host->state, actor->hears, &region, error);
     } else if (does(actor, "a region of nobody")) {
         return functions->set_region(host->state, 77, &region, error);
+    } else if (does(actor, "keys without end")) {
+        return publish_keys(actor, host, 100500, error);
+    } else if (does(actor, "a foreign key")) {
+        return send_spot(actor, host, actor->spots, 7, 9, error);
+    } else if (does(actor, "a key of no message")) {
+        return send_word(actor, host, error);
     } else if (does(actor, "moves a region")) {
         return move_region(actor, host, error);
     } else if (does(actor, "crashes on a thread")) {

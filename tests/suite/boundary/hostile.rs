@@ -59,6 +59,25 @@ fn what_makes_no_sense_is_a_failure_of_its_component() {
 }
 
 #[test]
+fn keys_that_a_state_topic_cannot_keep_are_told_and_counted() {
+    let run = run("h.Actor", "keys without end");
+    assert_goes_on(&run, "has published 100000 keys on topic `SPOTS`, which is the most");
+    let bad = run.component("Bad");
+    assert_eq!((&bad["dropped"], &bad["messages"]["sent"]), (&500.into(), &100_500.into()), "{}", run.text);
+    assert_eq!(run.text.matches("which is the most: messages of further keys are lost").count(), 2, "{}", run.text);
+}
+
+#[test]
+fn a_key_is_that_of_the_message() {
+    for (does, expected) in [
+        ("a foreign key", "topic `SPOTS`: the key 9 is given for a message `Spotted` whose field `number` is 7"),
+        ("a key of no message", "topic `WORDS`: the key 3 is given for a message `Word`, which has none"),
+    ] {
+        assert_goes_on(&run("h.Actor", does), expected);
+    }
+}
+
+#[test]
 fn a_path_of_the_report_is_not_deeper_than_a_value() {
     let run = run("h.Actor", "reports deep");
     assert_eq!(run.code, Some(0), "{}", run.text);

@@ -88,15 +88,31 @@ impl ComponentHost<'_> {
         Ok(schema)
     }
 
-    /// Checks a message that a plugin sent as bytes, before it is published; gives its block.
+    /// Checks a message that a plugin sent as bytes, before it is published; gives it the key and the block that its
+    /// bytes say.
     #[cold]
-    fn check(&mut self, topic: TopicId, message: &SharedMessage) -> Result<Option<(i32, i32)>, Failure> {
+    fn check(&mut self, topic: TopicId, message: SharedMessage) -> Result<SharedMessage, Failure> {
         let schema = self.schema(topic)?;
-        schema.check(message.bytes()).map_err(|error| {
+        let refused = |reason: String| {
             let name = self.shared.lock().bus.name(topic).to_string();
-            Failure::new(format!("topic `{name}`: what it sends is not a message `{}`: {error}", schema.name()))
-        })?;
-        Ok(schema.place(message.bytes()))
+            Err(Failure::new(format!("topic `{name}`: {reason}")))
+        };
+        if let Err(error) = schema.check(message.bytes()) {
+            return refused(format!("what it sends is not a message `{}`: {error}", schema.name()));
+        }
+        let (key, place) = (schema.key(message.bytes()), schema.place(message.bytes()));
+        match (message.key(), key, schema.key_name()) {
+            (Some(given), None, _) => refused(format!(
+                "the key {given} is given for a message `{}`, which has none: give null, or declare which field is its \
+                 `key`",
+                schema.name()
+            )),
+            (Some(given), Some(key), Some(field)) if given != key => refused(format!(
+                "the key {given} is given for a message `{}` whose field `{field}` is {key}: give that, or null",
+                schema.name()
+            )),
+            _ => Ok(message.of(key, place)),
+        }
     }
 }
 
@@ -254,8 +270,7 @@ impl Host for ComponentHost<'_> {
             Some(topic) => {
                 let mut message = message;
                 if !message.is_value() {
-                    let place = self.check(topic, &message)?;
-                    message = message.at(place);
+                    message = self.check(topic, message)?;
                     self.part.sent_bytes += message.bytes().len();
                 }
                 if self.part.outbox.len() >= MAX_SENT || self.part.sent_bytes > MAX_SENT_BYTES {

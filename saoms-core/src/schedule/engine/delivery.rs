@@ -1,15 +1,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use saoms_api::Time;
 use saoms_api::host::SharedMessage;
+use saoms_api::{Level, Time};
 use saoms_lang::assembly::Loss;
 
 use super::{Engine, RunPhase};
-use crate::bus::TopicId;
+use crate::bus::{MOST_KEYS, TopicId};
 use crate::fault::MessageFaultKind;
 use crate::observe::{Notification, Occurrence, SentMessage};
 use crate::schedule::component::body::Part;
+use crate::schedule::inject::OUTSIDE_NAME;
 use crate::schedule::settings::nanos;
 
 impl Engine {
@@ -68,9 +69,34 @@ impl Engine {
     /// Puts a message into its topic, and triggers the components that react to it.
     #[inline]
     pub(crate) fn publish(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
-        self.bus.publish(topic, message);
+        let sender = message.header().sender;
+        if !self.bus.publish(topic, message) {
+            return self.unkept(sender, topic, now);
+        }
         if !self.bus.triggers(topic).is_empty() {
             self.trigger_all(topic, now);
+        }
+    }
+
+    /// Counts a message that its topic could not keep, since its publisher has too many keys there.
+    #[cold]
+    fn unkept(&mut self, sender: u32, topic: TopicId, now: u64) {
+        let topic = Arc::clone(self.bus.name(topic));
+        let keys = format!(
+            "has published {MOST_KEYS} keys on topic `{topic}`, which is the most: messages of further keys are lost; use the \
+             keys again, or an event topic"
+        );
+        let Some(slot) = self.slots.get_mut(sender as usize) else {
+            let reason = format!("`{OUTSIDE_NAME}` {keys}");
+            if !self.reasons.contains(&reason) {
+                self.reasons.push(reason);
+            }
+            return;
+        };
+        slot.statistics.unkept += 1;
+        if slot.statistics.unkept == 1 {
+            self.reasons.push(format!("component `{}` {keys}", slot.name));
+            self.emit(now, sender, Occurrence::Log { level: Level::Warning, text: keys });
         }
     }
 

@@ -52,7 +52,7 @@ impl Engine {
                     restarts: slot.restarts,
                     replaced: slot.statistics.replaced,
                     failures: statistics.failures,
-                    dropped: statistics.dropped,
+                    dropped: statistics.dropped + statistics.unkept,
                     messages: MessageCounts { sent: statistics.sent, received: statistics.received },
                 }
             })

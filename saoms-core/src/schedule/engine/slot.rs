@@ -203,6 +203,8 @@ pub(crate) struct Statistics {
     pub(crate) failures: u64,
     pub(crate) replaced: u32,
     pub(crate) dropped: u64,
+    /// Messages of the component that a state topic could not keep.
+    pub(crate) unkept: u64,
     pub(crate) sent: u64,
     pub(crate) received: u64,
     pub(crate) late: Lateness,
