@@ -6,7 +6,6 @@ use std::{io, thread};
 
 use saoms_api::host::present::{Function, Owner, everywhere};
 
-use super::signals;
 use crate::output::eprint;
 
 /// How long such code runs before it is told.
@@ -25,7 +24,7 @@ fn look_for_ever() {
     let mut told = HashSet::new();
     loop {
         thread::sleep(LOOK);
-        signals::take_back();
+        super::look_again();
         let calls = everywhere();
         since.resize(calls.len(), (u64::MAX, Duration::ZERO));
         for (thread, (call, since)) in calls.into_iter().zip(&mut since).enumerate() {

@@ -1,9 +1,11 @@
 //! What libraries of plugins can do to the process, told by name: a crash, an end, code that does not return.
 
+mod blame;
 mod crash;
+mod end;
 mod hang;
-
 mod signals;
+mod stray;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Once, mpsc};
@@ -11,9 +13,12 @@ use std::time::Duration;
 use std::{process, ptr, thread};
 
 pub(crate) use hang::waited_for;
-pub(crate) use signals::keep as keep_signals;
+use saoms_api::host::present::{self, Function, Owner};
+use signals::UseAs;
+pub(crate) use signals::{forget as forget_signals, keep as keep_signals};
 
-use crate::output::{eprint, keep_folder, keep_from_libraries};
+use crate::Exit;
+use crate::output::{eprint, fail, has_failed, has_lost_descriptors, keep_folder, keep_from_libraries};
 
 /// True once the program ends by itself, and not because code of a library ended it.
 static ENDS: AtomicBool = AtomicBool::new(false);
@@ -27,12 +32,44 @@ const FLUSH_PATIENCE: Duration = Duration::from_millis(200);
 pub(crate) fn install() {
     INSTALLED.call_once(|| {
         keep_folder();
+        blame::keep_process();
         crash::install();
+        end::install();
+        stray::install();
+        signals::keep_for(libc::SIGPIPE, "SIGPIPE", UseAs::Pipe);
+        present::look_after(look);
         keep_from_libraries();
         if let Err(error) = hang::watch() {
             eprint(&format!("warning: nobody watches for code that does not return: {error}\n"));
         }
     });
+}
+
+/// Looks at what code of a library that begins has done to the process.
+fn look(owner: &'static Owner, function: Function) {
+    let place = format!(" in {}", function.name());
+    signals::unblock(&owner.text, &place);
+    signals::take_back(&owner.text, &place);
+    tell_lost_descriptors(&owner.text, &place);
+}
+
+/// Looks at what code of libraries that has run for longer has done.
+fn look_again() {
+    let libraries: String = blame::libraries_joined().collect();
+    let who = format!("code of library `{libraries}`");
+    signals::take_back(&who, "");
+    tell_lost_descriptors(&who, "");
+}
+
+fn tell_lost_descriptors(who: &str, place: &str) {
+    static TOLD: AtomicBool = AtomicBool::new(false);
+    if has_lost_descriptors() && !TOLD.swap(true, Ordering::SeqCst) {
+        fail();
+        eprint(&format!(
+            "error: {who} closed descriptors of the program{place}: files and standard output may be incomplete; it may \
+             close only what it opened\n"
+        ));
+    }
 }
 
 /// Says that the program ends by itself.
@@ -43,6 +80,13 @@ pub(crate) fn ends_by_itself() {
 /// Ends the process. Where there may be libraries, without what they have for its end (`atexit`, destructors of static
 /// variables): it could hang, crash, or give another exit code.
 pub(crate) fn exit(code: i32) -> ! {
+    let mut code = code;
+    if INSTALLED.is_completed() {
+        look_again();
+        if code == Exit::Done as i32 && has_failed() {
+            code = Exit::Failed as i32;
+        }
+    }
     ends_by_itself();
     if INSTALLED.is_completed() {
         let (flushed, all) = mpsc::channel();
@@ -55,8 +99,7 @@ pub(crate) fn exit(code: i32) -> ! {
         if thread::Builder::new().spawn(flush).is_ok() {
             let _ = all.recv_timeout(FLUSH_PATIENCE);
         }
-        // SAFETY: nothing runs after it.
-        unsafe { libc::_exit(code) }
+        blame::leave(code)
     }
     process::exit(code)
 }

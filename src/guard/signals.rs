@@ -1,32 +1,52 @@
-//! The signals that end a run: code of a library may take them over, as middleware for robots does, and nobody could
-//! end the run any more.
+//! Signals that the program handles: those that end a run, those of a crash, and that of a reader that went away. Code
+//! of a library may take them over or block them, as middleware for robots does; nobody could end the run any more, or
+//! would hear of a crash.
 
 use std::ffi::c_int;
 use std::mem::MaybeUninit;
 use std::ptr;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use crate::output::eprint;
 
 struct Kept {
     signal: c_int,
     name: &'static str,
+    use_as: UseAs,
     action: libc::sigaction,
     is_told: AtomicBool,
 }
 
-static KEPT: OnceLock<Vec<Kept>> = OnceLock::new();
-
-/// Keeps these signals handled as they are now.
-pub(crate) fn keep(signals: &[(c_int, &'static str)]) {
-    let kept = |&(signal, name): &(c_int, &'static str)| {
-        Some(Kept { signal, name, action: action(signal)?, is_told: AtomicBool::new(false) })
-    };
-    KEPT.get_or_init(|| signals.iter().filter_map(kept).collect());
+/// What the program handles a signal for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum UseAs {
+    End,
+    Crash,
+    Pipe,
 }
 
-fn action(signal: c_int) -> Option<libc::sigaction> {
+static KEPT: Mutex<Vec<Kept>> = Mutex::new(Vec::new());
+
+/// Keeps these signals handled as they are now: they end the run.
+pub(crate) fn keep(signals: &[(c_int, &'static str)]) {
+    signals.iter().for_each(|(signal, name)| keep_for(*signal, name, UseAs::End));
+}
+
+/// Keeps none any more that ends the run.
+pub(crate) fn forget() {
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner).retain(|kept| kept.use_as != UseAs::End);
+}
+
+/// Keeps a signal handled as it is now.
+pub(super) fn keep_for(signal: c_int, name: &'static str, use_as: UseAs) {
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(action) = action(signal).filter(|_| kept.iter().all(|known| known.signal != signal)) {
+        kept.push(Kept { signal, name, use_as, action, is_told: AtomicBool::new(false) });
+    }
+}
+
+pub(super) fn action(signal: c_int) -> Option<libc::sigaction> {
     let mut action = MaybeUninit::<libc::sigaction>::uninit();
     // SAFETY: no new action is given, and the present one is written to where there is room for it.
     let is_known = unsafe { libc::sigaction(signal, ptr::null(), action.as_mut_ptr()) } == 0;
@@ -34,17 +54,73 @@ fn action(signal: c_int) -> Option<libc::sigaction> {
     is_known.then(|| unsafe { action.assume_init() })
 }
 
-/// Takes back what libraries took over, which is told once.
-pub(super) fn take_back() {
-    for kept in KEPT.get().into_iter().flatten() {
-        if action(kept.signal).is_none_or(|now| now.sa_sigaction == kept.action.sa_sigaction) {
+/// Lets a function handle a signal.
+///
+/// # Safety
+/// The function is one for these flags, and all that it calls is safe in a signal handler.
+pub(super) unsafe fn set(signal: c_int, handler: usize, flags: c_int) {
+    // SAFETY: all zeros are an action; the rest is as the caller promises.
+    unsafe {
+        let mut action: libc::sigaction = MaybeUninit::zeroed().assume_init();
+        action.sa_sigaction = handler;
+        action.sa_flags = flags;
+        libc::sigemptyset(&raw mut action.sa_mask);
+        libc::sigaction(signal, &raw const action, ptr::null_mut());
+    }
+}
+
+/// Takes back what code of a library took over, which is told once.
+pub(super) fn take_back(who: &str, place: &str) {
+    for kept in KEPT.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+        let Some(now) = action(kept.signal).filter(|now| now.sa_sigaction != kept.action.sa_sigaction) else {
             continue;
+        };
+        let is_function = now.sa_sigaction != libc::SIG_DFL && now.sa_sigaction != libc::SIG_IGN;
+        let what = match kept.use_as {
+            UseAs::End => "it ends the run again",
+            // Runtimes of other languages need theirs: those of Go and Java find null pointers so.
+            UseAs::Crash if is_function => "a crash may not be told by name",
+            UseAs::Crash => "crashes are told by name again",
+            UseAs::Pipe if is_function => continue,
+            UseAs::Pipe => "it is ignored again",
+        };
+        if kept.use_as != UseAs::Crash || !is_function {
+            // SAFETY: the action was that of the program before.
+            unsafe { libc::sigaction(kept.signal, &raw const kept.action, ptr::null_mut()) };
         }
-        // SAFETY: the action was that of the program before.
-        unsafe { libc::sigaction(kept.signal, &raw const kept.action, ptr::null_mut()) };
         if !kept.is_told.swap(true, Ordering::Relaxed) {
-            let name = kept.name;
-            eprint(&format!("warning: code of a library took over the signal {name}: it ends the run again\n"));
+            eprint(&format!("warning: {who} took over the signal {}{place}: {what}\n", kept.name));
         }
+    }
+}
+
+/// Unblocks what code of a library blocked on this thread.
+pub(super) fn unblock(who: &str, place: &str) {
+    let mut blocked = Vec::new();
+    // SAFETY: the sets are written before they are read; no pointer leads elsewhere.
+    unsafe {
+        let mut now = MaybeUninit::<libc::sigset_t>::zeroed().assume_init();
+        let mut back = MaybeUninit::<libc::sigset_t>::zeroed().assume_init();
+        libc::pthread_sigmask(libc::SIG_BLOCK, ptr::null(), &raw mut now);
+        libc::sigemptyset(&raw mut back);
+        for kept in KEPT.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+            if kept.use_as != UseAs::Pipe && libc::sigismember(&raw const now, kept.signal) == 1 {
+                libc::sigaddset(&raw mut back, kept.signal);
+                blocked.push(kept.name);
+            }
+        }
+        libc::pthread_sigmask(libc::SIG_UNBLOCK, &raw const back, ptr::null_mut());
+    }
+    static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
+    if blocked.is_empty() {
+        return;
+    }
+    let blocked = blocked.join(", ");
+    let line = format!("warning: {who} blocked the signals {blocked}{place}: they are unblocked again\n");
+    let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+    // A check constructs each component, and a run once more.
+    if !told.contains(&line) {
+        eprint(&line);
+        told.push(line);
     }
 }

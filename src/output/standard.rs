@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
-use std::os::fd::{AsFd, AsRawFd};
+use std::mem::MaybeUninit;
+use std::os::fd::{AsFd, AsRawFd, IntoRawFd, RawFd};
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use saoms_api::host::{Visible, format_duration};
@@ -18,6 +19,9 @@ use super::json::json;
 /// Standard output without a buffer; `None` where the system has no descriptor left.
 static STANDARD: LazyLock<Mutex<Option<File>>> =
     LazyLock::new(|| Mutex::new(io::stdout().as_fd().try_clone_to_owned().ok().map(File::from)));
+
+/// A copy of the descriptor of standard error, which code of libraries may close; 0 before there is one.
+static ERRORS: AtomicI32 = AtomicI32::new(0);
 
 /// True once something could not be written to standard output.
 static HAS_FAILED: AtomicBool = AtomicBool::new(false);
@@ -35,13 +39,45 @@ const LOOK: i32 = 100;
 const PIECE: usize = 4096;
 
 /// Keeps standard output for the program: from now on what code of libraries prints there goes to standard error, so
-/// that it is in no report and no JSON.
+/// that it is in no report and no JSON. Keeps standard error, too, should they close it.
 pub(crate) fn keep_from_libraries() {
-    if STANDARD.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
+    if let Ok(copy) = io::stderr().as_fd().try_clone_to_owned() {
+        ERRORS.store(copy.into_raw_fd(), Ordering::SeqCst);
+    }
+    let standard = STANDARD.lock().unwrap_or_else(PoisonError::into_inner);
+    let own = standard.as_ref().map(AsRawFd::as_raw_fd).into_iter().chain([ERRORS.load(Ordering::SeqCst)]);
+    let own = own.filter_map(|descriptor| Some((descriptor, identity(descriptor)?)));
+    KEPT.get_or_init(|| own.collect());
+    if standard.is_some() {
         // SAFETY: no pointers; both descriptors are those that every process begins with. Where standard error is
         // closed nothing changes.
         unsafe { libc::dup2(libc::STDERR_FILENO, libc::STDOUT_FILENO) };
     }
+}
+
+/// The descriptors that are kept, with device and inode.
+static KEPT: OnceLock<Vec<(RawFd, (u64, u64))>> = OnceLock::new();
+
+fn identity(descriptor: RawFd) -> Option<(u64, u64)> {
+    let mut about = MaybeUninit::<libc::stat>::uninit();
+    // SAFETY: there is room for what the call writes, and it is read only if it was written.
+    unsafe {
+        (libc::fstat(descriptor, about.as_mut_ptr()) == 0).then(|| {
+            let about = about.assume_init();
+            (about.st_dev, about.st_ino)
+        })
+    }
+}
+
+/// True if what the program wrote to is closed, or something else by now: code of a library did that. A signal handler
+/// may ask.
+pub(crate) fn has_lost_descriptors() -> bool {
+    KEPT.get().is_some_and(|kept| kept.iter().any(|(descriptor, before)| identity(*descriptor) != Some(*before)))
+}
+
+/// Lets the program end with the exit code of a failure.
+pub(crate) fn fail() {
+    HAS_FAILED.store(true, Ordering::SeqCst);
 }
 
 /// The program's standard output.
@@ -184,13 +220,53 @@ fn quoting_little(line: &str) -> Cow<'_, str> {
 
 /// Writes diagnostics to standard error, piece by piece. They escape what others wrote, and have colours.
 pub(crate) fn eprint_coloured(shown: &(impl Display + ?Sized)) {
-    let mut output = BufWriter::new(io::stderr().lock());
-    // Nobody is left to be told.
-    let _ = write!(output, "{shown}").and_then(|()| output.flush());
+    eprinted(|output| write!(output, "{shown}"));
+}
+
+/// Standard error. Where it cannot be written nobody is left to be told, but the exit code says so.
+fn eprinted(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
+    struct Errors;
+
+    impl Write for Errors {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if write_error(bytes) { Ok(bytes.len()) } else { Err(io::Error::last_os_error()) }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    // One at a time.
+    let _lock = io::stderr().lock();
+    let mut output = BufWriter::new(Errors);
+    let written = write(&mut output).and_then(|()| output.flush());
+    drop(output.into_parts());
+    if written.is_err_and(|error| error.raw_os_error() == Some(libc::EBADF)) {
+        fail();
+    }
+}
+
+/// Writes bytes to standard error, or to the copy of it if it was closed. A signal handler may do so.
+pub(crate) fn write_error(mut bytes: &[u8]) -> bool {
+    let kept = ERRORS.load(Ordering::SeqCst);
+    let mut descriptor = if kept == 0 { libc::STDERR_FILENO } else { kept };
+    while !bytes.is_empty() {
+        // SAFETY: the bytes are readable.
+        let written = unsafe { libc::write(descriptor, bytes.as_ptr().cast(), bytes.len()) };
+        match usize::try_from(written) {
+            Ok(written) => bytes = &bytes[written..],
+            Err(_) => match io::Error::last_os_error().raw_os_error() {
+                Some(libc::EINTR) => {}
+                Some(libc::EBADF) if descriptor != libc::STDERR_FILENO => descriptor = libc::STDERR_FILENO,
+                _ => return false,
+            },
+        }
+    }
+    true
 }
 
 /// Writes data to standard error as JSON, piece by piece.
 pub(crate) fn eprint_json(value: &impl Serialize) {
-    let mut output = BufWriter::new(io::stderr().lock());
-    let _ = json(&mut output, value).and_then(|()| output.flush());
+    eprinted(|output| json(output, value));
 }

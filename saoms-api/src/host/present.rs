@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::ptr;
 use std::sync::atomic::{AtomicPtr, AtomicU8, AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::one_line;
 
@@ -132,12 +132,36 @@ impl Drop for Registered {
 thread_local! {
     /// Without a destructor, so that a signal handler can read it at any time.
     static HERE: Cell<Option<&'static ThreadCall>> = const { Cell::new(None) };
+    /// In a child of `fork`: what its thread did then, and what is done when that returns.
+    static FORKED: Cell<Option<(&'static ThreadCall, Returned)>> = const { Cell::new(None) };
     static SUBJECT: Cell<Option<*const str>> = const { Cell::new(None) };
     static REGISTERED: Cell<Option<Registered>> = const { Cell::new(None) };
 }
 
+/// What a child of `fork` does in place of going on with the program.
+type Returned = fn(&'static Owner, Function) -> !;
+
+/// For a handler that runs after `fork`, in the child: should the call that forked return there, or call back, this
+/// ends the child.
+pub fn forked(returned: Returned) {
+    // Nobody finds the call any more, so that what costs nothing in other processes asks here.
+    if let Some(call) = HERE.take() {
+        FORKED.set(Some((call, returned)));
+    }
+}
+
+#[cold]
+fn end_forked() {
+    if let Some((call, returned)) = FORKED.get()
+        && let Some((owner, function)) = call.read()
+    {
+        returned(owner, function);
+    }
+}
+
 #[cold]
 fn register() -> &'static ThreadCall {
+    end_forked();
     let free = FREE.lock().unwrap_or_else(PoisonError::into_inner).pop();
     let call = free.unwrap_or_else(|| {
         let new: &'static ThreadCall = Box::leak(Box::new(ThreadCall {
@@ -173,8 +197,9 @@ pub fn enter(owner: &'static Owner, function: Function) -> Entered {
 impl Drop for Entered {
     #[inline]
     fn drop(&mut self) {
-        if let Some(call) = HERE.get() {
-            call.set(self.owner, self.function);
+        match HERE.get() {
+            Some(call) => call.set(self.owner, self.function),
+            None => end_forked(),
         }
     }
 }
@@ -204,6 +229,45 @@ pub fn here() -> Option<(&'static Owner, Function)> {
 pub fn everywhere() -> Vec<(u64, Option<(&'static Owner, Function)>)> {
     let all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
     all.iter().map(|call| (call.changes.load(Ordering::Relaxed), call.read())).collect()
+}
+
+/// What a host looks at when code of a library that begins has returned.
+type Look = fn(&'static Owner, Function);
+
+static LOOK: OnceLock<Look> = OnceLock::new();
+
+/// For hosts: calls this function whenever a library was loaded, or something of it was constructed or initialized.
+pub fn look_after(look: Look) {
+    // The first one stays.
+    let _ = LOOK.set(look);
+}
+
+/// A call after which the host looks.
+#[derive(Debug)]
+pub struct LookedAfter(&'static Owner, Function);
+
+/// Lets the host look, once what is given back is dropped.
+pub fn looked_after(owner: &'static Owner, function: Function) -> LookedAfter {
+    LookedAfter(owner, function)
+}
+
+impl Drop for LookedAfter {
+    fn drop(&mut self) {
+        if let Some(look) = LOOK.get() {
+            look(self.0, self.1);
+        }
+    }
+}
+
+/// The libraries whose code is known, the newest first. A signal handler may ask.
+pub fn libraries() -> impl Iterator<Item = &'static str> {
+    let mut code: *const Code = CODE.load(Ordering::Acquire);
+    std::iter::from_fn(move || {
+        // SAFETY: nodes are never freed, nor changed once they are in the list.
+        let node = unsafe { code.as_ref() }?;
+        code = node.next;
+        Some(node.library)
+    })
 }
 
 /// True if this thread ever ran code of a library that it called: then it is a thread of the program.

@@ -3,8 +3,9 @@
 //! Publishing puts a message into its topic once, however many readers there are; a reader collects what is new to it
 //! when its own execution starts. A [state topic](saoms_api::host::TopicKind::State) keeps the newest message of each
 //! publisher and key, so that a reader that comes later gets the present state, and one that reads rarely gets each key
-//! once; a publisher has a bounded number of keys. An [event topic](saoms_api::host::TopicKind::Event) keeps each message until every reader has read it; a
-//! reader that falls behind by more than its queue loses the oldest messages, and gets their number.
+//! once; a publisher has a bounded number of keys. An [event topic](saoms_api::host::TopicKind::Event) keeps each
+//! message until every reader has read it; a reader that falls behind by more than its queue loses the oldest messages,
+//! and gets their number.
 //!
 //! A [`Bus`] has no lock of its own: it belongs to one scheduler, which delivers in batches. It knows neither clock nor
 //! components.

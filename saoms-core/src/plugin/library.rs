@@ -8,7 +8,7 @@ use std::{error, fmt, fs, slice};
 
 use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW, Symbol};
 use saoms_abi::{EntryPoint, PluginTable, VERSION};
-use saoms_api::host::present::{self, Function, Owner, enter};
+use saoms_api::host::present::{self, Function, Owner, enter, looked_after};
 
 use super::copy::PrivateCopy;
 use super::tables::{all, whole};
@@ -19,7 +19,9 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     let unloadable =
         |message: String| PluginError::Unloadable { path: path.to_owned(), package: metadata.package.clone(), message };
     let name: &'static str = path.display().to_string().leak();
-    let _entered = enter(Owner::of("the code", name), Function::Load);
+    let owner = Owner::of("the code", name);
+    let _looked = looked_after(owner, Function::Load);
+    let _entered = enter(owner, Function::Load);
     let library = loaded(path).map_err(unloadable)?;
     let table = {
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.

@@ -1,12 +1,13 @@
 //! What ends a run from outside: signals, and a reader of standard output that goes away.
 
-use std::mem::MaybeUninit;
+use std::mem::{ManuallyDrop, MaybeUninit};
 use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Duration;
 
+use saoms_api::host::contain::contained;
 use saoms_core::schedule::{Handle, stop_hardware};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -38,8 +39,15 @@ impl Signalled {
         let state: Arc<State> = Arc::default();
         let handled = Arc::clone(&state);
         keep_signals(&[(SIGINT, "SIGINT"), (SIGTERM, "SIGTERM"), (SIGHUP, "SIGHUP")]);
-        let spawned = signals.and_then(|mut signals| {
-            let handle = move || signals.forever().for_each(|signal| handled.handle(signal, grace));
+        let spawned = signals.and_then(|signals| {
+            // Never dropped: what it closed then might be closed already, or be something else by now.
+            let mut signals = ManuallyDrop::new(signals);
+            let handle = move || {
+                let handled = contained(|| signals.forever().for_each(|signal| handled.handle(signal, grace)));
+                if handled.is_err() {
+                    cannot_wait();
+                }
+            };
             thread::Builder::new().name("signals".to_owned()).spawn(handle)
         });
         if let Err(error) = spawned {
@@ -88,6 +96,18 @@ impl State {
         // Without it, a second signal ends the process.
         let _ = thread::Builder::new().name("saoms-grace".to_owned()).spawn(give_up);
     }
+}
+
+/// Lets the signals end the process as they do by themselves: what was waited with is closed, by code of a library.
+fn cannot_wait() {
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        if !is_ignored(signal) {
+            // SAFETY: nothing is called for a signal that does what it does by itself.
+            unsafe { libc::signal(signal, libc::SIG_DFL) };
+        }
+    }
+    guard::forget_signals();
+    eprint("warning: Ctrl-C ends the process without a report: code of a library closed what the program waits with\n");
 }
 
 /// Time for hardware to come to rest before the process ends at once.

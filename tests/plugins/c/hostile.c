@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "process.h"
 #include "saoms_author.h"
 
 #define JSON(...) #__VA_ARGS__
@@ -63,6 +64,9 @@ static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void
     if (does(actor, "goes elsewhere") && chdir("/") != 0) {
         return saoms_fail(error, "there is no other folder");
     }
+    if (strncmp(actor->does, "made: ", 6) == 0) {
+        act_on_process(actor->does + 6);
+    }
     *made = actor;
     return SaomsStatus_OK;
 }
@@ -100,6 +104,9 @@ static SaomsStatus initialize(void *component, const SaomsHostHandle *host, Saom
     SaomsTopicView words = {saoms_text("WORDS"), saoms_text("Word"), saoms_text(WORD), 1};
     SaomsTopicView spots = {saoms_text("SPOTS"), saoms_text("Spotted"), saoms_text(SPOTTED), 0};
     uint32_t count = does(actor, "subscribes without end") ? 1000000 : 1;
+    if (strncmp(actor->does, "begins: ", 8) == 0) {
+        act_on_process(actor->does + 8);
+    }
     SaomsStatus status = functions->publish(host->state, &words, &actor->words, error);
     if (status == SaomsStatus_OK) {
         status = functions->publish(host->state, &spots, &actor->spots, error);
@@ -178,6 +185,7 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     if (actor->executions++ != 2) {
         return SaomsStatus_OK;
     }
+    act_on_process(actor->does);
     if (does(actor, "reports deep")) {
         static char path[200001];
         memset(path, '.', sizeof path - 1);

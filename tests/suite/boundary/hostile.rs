@@ -135,7 +135,7 @@ fn a_report_is_written_where_it_was_asked_for() {
 }
 
 /// The command in a process of its own, without a core dump.
-fn ended(does: &str) -> Output {
+pub(super) fn ended(does: &str) -> Output {
     let folder = in_folder(&bad("h.Actor", does, ""));
     let library = c_library_of("hostile", folder.path(), &[]);
     let line = format!(

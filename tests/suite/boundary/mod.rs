@@ -9,6 +9,7 @@ mod hostile;
 mod keeper;
 mod misbehaving;
 mod named;
+mod process;
 mod refused;
 mod run;
 mod tables;

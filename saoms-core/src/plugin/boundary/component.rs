@@ -4,7 +4,7 @@ use std::ptr;
 
 use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, Status};
 use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_findings};
-use saoms_api::host::present::{Function, Owner, enter, subject};
+use saoms_api::host::present::{Function, Owner, enter, looked_after, subject};
 use saoms_api::host::{DynComponent, Invocation, PropertyValue, SmolStr};
 use saoms_api::{CallError, Context, Failure, Saved};
 
@@ -79,6 +79,7 @@ pub(super) unsafe fn construct(
 ) -> Result<*mut c_void, Failure> {
     let views = PropertyViews::of(values);
     let mut instance = ptr::null_mut();
+    let _looked = looked_after(owner, Function::Construct);
     let _entered = enter(owner, Function::Construct);
     // SAFETY: as the caller promises; the rest is lent to this call.
     let (result, findings) = call_with_findings(|findings, error| unsafe {
@@ -122,6 +123,7 @@ impl ImportedComponent {
 
 impl DynComponent for ImportedComponent {
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let _looked = looked_after(self.owner, Function::Initialize);
         self.call(context, Function::Initialize, self.table.initialize)
     }
 

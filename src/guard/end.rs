@@ -1,0 +1,91 @@
+//! The end of the process, or of a thread of the program, by code of a library: a failure, whatever exit code it gives.
+//!
+//! `_exit`, `_Exit`, `quick_exit` and `pthread_exit` are defined here, where the linker finds them before those of the
+//! system when it binds a library. What calls the system itself (`exit_group`) cannot be seen.
+
+use std::ffi::{c_int, c_void};
+use std::mem::transmute;
+use std::ptr;
+use std::sync::atomic::Ordering;
+
+use saoms_api::host::present;
+
+use super::ENDS;
+use super::blame::{Blame, blame, is_program, leave, next, write};
+use crate::Exit;
+
+pub(super) fn install() {
+    // SAFETY: the functions take and give nothing, and may run at the end of the process and after `fork`.
+    unsafe {
+        libc::atexit(exited);
+        libc::pthread_atfork(None, None, Some(forked));
+    }
+}
+
+/// Ends the process, and says whose code did so by which function, unless it is the program itself or a child.
+fn end(code: c_int, by: &str) -> ! {
+    let top = 0_u8;
+    if ENDS.load(Ordering::SeqCst) || !is_program() {
+        leave(code);
+    }
+    match blame(ptr::from_ref(&top) as usize) {
+        Blame::Call(owner, function) => {
+            write(&["error: ", &owner.text, " ended the whole process, by `", by, "` in ", function.name(), "\n"]);
+        }
+        Blame::Thread(library) => {
+            write(&["error: a thread of library `", library, "` ended the whole process, by `", by, "`\n"]);
+        }
+        Blame::Nobody => write(&["error: a thread of a library ended the whole process, by `", by, "`\n"]),
+    }
+    leave(Exit::Failed as c_int)
+}
+
+/// Called at the end of the process by `exit`, which a child of `fork` may call.
+extern "C" fn exited() {
+    if !ENDS.load(Ordering::SeqCst) && is_program() {
+        end(Exit::Failed as c_int, "exit");
+    }
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn _exit(code: c_int) -> ! {
+    end(code, "_exit")
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn _Exit(code: c_int) -> ! {
+    end(code, "_Exit")
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn quick_exit(code: c_int) -> ! {
+    end(code, "quick_exit")
+}
+
+/// A thread of the program that ended in the middle of a call would hold up all others.
+#[unsafe(no_mangle)]
+extern "C" fn pthread_exit(value: *mut c_void) -> ! {
+    if is_program() && present::here().is_some() {
+        end(Exit::Failed as c_int, "pthread_exit");
+    }
+    let next = next(c"pthread_exit");
+    if next.is_null() {
+        end(Exit::Failed as c_int, "pthread_exit");
+    }
+    // SAFETY: the system's function of this name has this type, and ends the thread with the value.
+    unsafe { transmute::<*mut c_void, unsafe extern "C" fn(*mut c_void) -> !>(next)(value) }
+}
+
+/// Called after `fork` in the child, which may call `exec` or `_exit`, but never return to the program.
+extern "C" fn forked() {
+    present::forked(|owner, function| {
+        write(&[
+            "error: ",
+            &owner.text,
+            " forked the program in ",
+            function.name(),
+            ", and the child returned: it ends here; it may only call `exec` or `_exit`\n",
+        ]);
+        leave(Exit::Failed as c_int)
+    });
+}

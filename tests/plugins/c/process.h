@@ -1,0 +1,83 @@
+/* What code of a library can do to the process that it runs in, by name. */
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Of C11, which the headers of C99 leave out. */
+extern void quick_exit(int status);
+
+static void take(int number) { (void)number; }
+
+static void block_signals(void) {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, NULL);
+}
+
+static void *alarm_later(void *nothing) {
+    alarm(1);
+    return nothing;
+}
+
+/* Does it, if it is one of these. */
+static void act_on_process(const char *does) {
+    if (strcmp(does, "_exit") == 0) {
+        _exit(0);
+    } else if (strcmp(does, "_Exit") == 0) {
+        _Exit(0);
+    } else if (strcmp(does, "quick_exit") == 0) {
+        quick_exit(0);
+    } else if (strcmp(does, "fork") == 0) {
+        pid_t child = fork();
+        if (child > 0) {
+            int status = -1;
+            waitpid(child, &status, 0);
+            fprintf(stderr, "the child has ended with %d\n", WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+        }
+    } else if (strcmp(does, "fork and exec") == 0) {
+        int status = -1;
+        pid_t child = fork();
+        if (child == 0) {
+            execl("/nowhere/at/all", "all", (char *)NULL);
+            _exit(7);
+        }
+        waitpid(child, &status, 0);
+        fprintf(stderr, "the child has ended with %d\n", WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+    } else if (strcmp(does, "SIGUSR1") == 0) {
+        raise(SIGUSR1);
+    } else if (strcmp(does, "SIGUSR2 to all") == 0) {
+        kill(getpid(), SIGUSR2);
+    } else if (strcmp(does, "alarm") == 0) {
+        pthread_t thread;
+        pthread_create(&thread, NULL, alarm_later, NULL);
+        pthread_join(thread, NULL);
+        sleep(2);
+    } else if (strcmp(does, "closes 1") == 0) {
+        close(1);
+    } else if (strcmp(does, "closes 2") == 0) {
+        close(2);
+    } else if (strcmp(does, "closes others") == 0 || strcmp(does, "closes all") == 0) {
+        int descriptor;
+        for (descriptor = strcmp(does, "closes all") == 0 ? 0 : 3; descriptor < 1024; descriptor++) {
+            close(descriptor);
+        }
+    } else if (strcmp(does, "blocks signals") == 0) {
+        block_signals();
+    } else if (strcmp(does, "takes SIGSEGV") == 0) {
+        signal(SIGSEGV, take);
+    } else if (strcmp(does, "resets SIGSEGV") == 0) {
+        signal(SIGSEGV, SIG_DFL);
+    } else if (strcmp(does, "resets SIGPIPE") == 0) {
+        signal(SIGPIPE, SIG_DFL);
+    } else if (strcmp(does, "takes SIGINT") == 0) {
+        signal(SIGINT, SIG_IGN);
+    } else if (strcmp(does, "aborts later") == 0) {
+        kill(getpid(), SIGABRT);
+        sleep(1);
+    } else if (strcmp(does, "ends its thread") == 0) {
+        pthread_exit(NULL);
+    }
+}

@@ -1,0 +1,93 @@
+//! What code of libraries does to the process that it runs in: it is told by name, and no exit code says that all went
+//! well where it did not.
+
+use std::os::unix::process::ExitStatusExt;
+
+use super::hostile::ended;
+use crate::support::{stderr, text};
+
+/// The beginning of what is told of component `Bad`.
+fn assert_named(does: &str, expected: &str) -> std::process::Output {
+    let output = ended(does);
+    let told = stderr(&output);
+    let line = told.lines().find(|line| line.contains("component `Bad` of library `") && line.contains(expected));
+    assert!(line.is_some(), "{does}: {expected} is missing in\n{}", text(&output));
+    output
+}
+
+#[test]
+fn an_end_of_the_process_is_a_failure_by_whatever_function() {
+    for by in ["_exit", "_Exit", "quick_exit"] {
+        for (at, function) in [("", "`execute`"), ("made: ", "the constructor"), ("begins: ", "`initialize`")] {
+            let expected = format!("ended the whole process, by `{by}` in {function}");
+            assert_eq!(assert_named(&format!("{at}{by}"), &expected).status.code(), Some(1));
+        }
+    }
+    let output = assert_named("ends its thread", "ended the whole process, by `pthread_exit` in `execute`");
+    assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
+fn a_child_that_returns_is_no_second_program() {
+    let output = assert_named("fork", "forked the program in `execute`, and the child returned: it ends here");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert!(stderr(&output).contains("the child has ended with 1\n"), "{}", text(&output));
+    assert_eq!(text(&output).matches("executions").count(), 1, "one summary: {}", text(&output));
+    let output = ended("fork and exec");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert!(stderr(&output).contains("the child has ended with 7\n"), "{}", text(&output));
+    assert!(!stderr(&output).contains("component `Bad` of library"), "{}", text(&output));
+}
+
+#[test]
+fn a_signal_that_nobody_handles_is_told_and_ends_nothing() {
+    let output = assert_named("SIGUSR1", "sent the signal SIGUSR1 in `execute`: it was ignored");
+    assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{}", text(&output));
+    for (does, expected) in [
+        ("SIGUSR2 to all", "libhostile.so` sent the signal SIGUSR2: it was ignored"),
+        ("alarm", "libhostile.so` let a timer send the signal SIGALRM: it was ignored"),
+    ] {
+        let output = ended(does);
+        assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{}", text(&output));
+        assert!(stderr(&output).contains("warning: code of library `"), "{}", text(&output));
+        assert!(stderr(&output).contains(expected), "{expected} is missing in\n{}", text(&output));
+    }
+}
+
+#[test]
+fn signals_that_a_library_takes_over_or_blocks_at_its_start_are_given_back_by_name() {
+    for (does, expected) in [
+        ("made: takes SIGINT", "took over the signal SIGINT in the constructor: it ends the run again"),
+        ("begins: takes SIGINT", "took over the signal SIGINT in `initialize`: it ends the run again"),
+        ("made: resets SIGSEGV", "took over the signal SIGSEGV in the constructor: crashes are told by name again"),
+        ("made: resets SIGPIPE", "took over the signal SIGPIPE in the constructor: it is ignored again"),
+        ("made: takes SIGSEGV", "took over the signal SIGSEGV in the constructor: a crash may not be told by name"),
+        ("made: blocks signals", "blocked the signals SIGINT, SIGTERM, SIGHUP, SIGSEGV"),
+    ] {
+        let output = assert_named(does, expected);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+        assert_eq!(stderr(&output).matches("component `Bad` of library").count(), 1, "once: {}", text(&output));
+    }
+}
+
+#[test]
+fn closed_descriptors_are_told_on_what_is_left() {
+    for does in ["closes 1", "closes 2"] {
+        let output = ended(does);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+        assert!(text(&output).contains("executions"), "the summary is there: {}", text(&output));
+    }
+    assert_named("begins: closes others", "closed descriptors of the program in `initialize`");
+    let output = ended("closes others");
+    assert!(stderr(&output).contains("libhostile.so` closed descriptors of the program"), "{}", text(&output));
+    for does in ["begins: closes others", "closes others", "closes all"] {
+        assert_eq!(ended(does).status.code(), Some(1), "{does}");
+    }
+}
+
+#[test]
+fn a_crash_that_nobody_is_to_blame_for_ends_with_its_own_signal() {
+    // The stack for signals of a thread of the program is small.
+    let output = ended("aborts later");
+    assert_eq!(output.status.signal(), Some(libc::SIGABRT), "{}", text(&output));
+}
