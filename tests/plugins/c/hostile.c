@@ -59,13 +59,15 @@ __attribute__((destructor)) static void unload(void) { end(); }
 static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void **made, SaomsFindingSink findings,
                              SaomsSink error) {
     Actor *actor = calloc(1, sizeof *actor);
-    (void)findings, (void)error;
     saoms_property_text(values, count, "does", actor->does, sizeof actor->does);
     if (does(actor, "goes elsewhere") && chdir("/") != 0) {
         return saoms_fail(error, "there is no other folder");
     }
     if (strncmp(actor->does, "made: ", 6) == 0) {
         act_on_process(actor->does + 6);
+    }
+    if (does(actor, "finds something and goes on")) {
+        saoms_refuse(findings, error, "does", "is not what a component does");
     }
     *made = actor;
     return SaomsStatus_OK;
@@ -240,7 +242,12 @@ static SaomsStatus serve(void *component, const SaomsHostHandle *host, SaomsByte
     return saoms_fail(error, "serves nobody");
 }
 
-static void destroy(void *component) { free(component); }
+static void destroy(void *component) {
+    if (does(component, "finds something and goes on")) {
+        fprintf(stderr, "what found something is destroyed\n");
+    }
+    free(component);
+}
 
 #define TOPICS JSON([{"topic": "WORDS", "kind": "event", "message": "Word", "optional": true, "schema":) WORD JSON(}, {"topic": "SPOTS", "kind": "state", "message": "Spotted", "optional": true, "schema":) SPOTTED JSON(}])
 #define CALLEE JSON({"name": "callee", "optional": true, "interface": {"name": "h.Callee", "operations": [{"name": "call", "arguments": [], "reply": "uint32"}]}})

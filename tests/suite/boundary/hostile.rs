@@ -124,6 +124,14 @@ fn a_function_that_a_declaration_asks_for_is_there() {
 }
 
 #[test]
+fn a_constructor_that_finds_something_refuses_also_if_it_says_that_it_made_a_component() {
+    let run = run("h.Actor", "finds something and goes on");
+    assert_eq!(run.code, Some(2), "{}", run.text);
+    assert!(run.text.contains("component `Bad`") && run.text.contains("is not what a component does"), "{}", run.text);
+    assert_eq!(run.text.matches("what found something is destroyed").count(), 1, "{}", run.text);
+}
+
+#[test]
 fn hardware_that_is_never_released_holds_up_no_end() {
     assert_goes_on(&run("h.Motor", "hangs in release"), "could not stop its hardware");
 }

@@ -46,8 +46,10 @@ impl ImportedClass {
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynComponent>, Failure> {
         let owner = subject(self.library);
         // SAFETY: `new`'s caller promised that the function keeps the rules.
-        let instance = unsafe { construct(self.construct, owner, values) }?;
-        Ok(Box::new(ImportedComponent { table: self.component, instance, owner, lease: Lease::default() }))
+        let (instance, refused) = unsafe { construct(self.construct, owner, values) }?;
+        let component = ImportedComponent { table: self.component, instance, owner, lease: Lease::default() };
+        refused?;
+        Ok(Box::new(component))
     }
 }
 
@@ -68,7 +70,8 @@ unsafe fn read(table: *const ComponentTable) -> ComponentTable {
     }
 }
 
-/// Constructs a component or a loop of a plugin.
+/// Constructs a component or a loop of a plugin. The inner result refuses what was made, which is the caller's in any
+/// case: the constructor found something and yet says that all is well.
 ///
 /// # Safety
 /// The function keeps the rules of the boundary.
@@ -76,7 +79,7 @@ pub(super) unsafe fn construct(
     construct: Construct,
     owner: &'static Owner,
     values: &[(SmolStr, PropertyValue)],
-) -> Result<*mut c_void, Failure> {
+) -> Result<(*mut c_void, Result<(), Failure>), Failure> {
     let views = PropertyViews::of(values);
     let mut instance = ptr::null_mut();
     let _looked = looked_after(owner, Function::Construct);
@@ -85,12 +88,19 @@ pub(super) unsafe fn construct(
     let (result, findings) = call_with_findings(|findings, error| unsafe {
         construct(views.top.as_ptr(), views.top.len(), &raw mut instance, findings, error)
     });
-    match result {
-        Ok(()) => Ok(instance),
-        Err(failure) => {
-            let findings = findings.into_iter().collect::<Result<_, _>>()?;
-            Err(Failure::with_findings(failure.message().to_owned(), findings))
+    let is_content = findings.is_empty();
+    let with_findings = |message: String| -> Failure {
+        match findings.into_iter().collect() {
+            Ok(findings) => Failure::with_findings(message, findings),
+            Err(unreadable) => unreadable,
         }
+    };
+    match result {
+        Ok(()) if is_content => Ok((instance, Ok(()))),
+        Ok(()) => {
+            Ok((instance, Err(with_findings("the constructor found something, and returned no failure".to_owned()))))
+        }
+        Err(failure) => Err(with_findings(failure.message().to_owned())),
     }
 }
 

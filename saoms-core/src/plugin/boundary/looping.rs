@@ -30,7 +30,10 @@ impl ImportedLoopClass {
     /// The loop refuses the values, or panics.
     pub fn construct(&self, values: &[(SmolStr, PropertyValue)]) -> Result<Box<dyn DynLoop>, Failure> {
         let owner = subject(self.library);
-        // SAFETY: `new`'s caller promised that the functions keep the rules; the loop is given away to this.
-        unsafe { import_loop(construct(self.construct, owner, values)?, self.looping, owner) }
+        // SAFETY: `new`'s caller promised that the functions keep the rules.
+        let (instance, refused) = unsafe { construct(self.construct, owner, values) }?;
+        // SAFETY: the same; the loop is given away to this.
+        let looping = unsafe { import_loop(instance, self.looping, owner) };
+        refused.and(looping)
     }
 }
