@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::ffi::c_void;
 
 use saoms_abi::{FindingSink, ReadError, Sink, Status};
@@ -88,6 +89,19 @@ pub(super) unsafe fn guarded_call(error: Sink, code: impl FnOnce() -> Result<(),
     status
 }
 
+/// The bytes of a text for people that are shown.
+const MOST_SHOWN: usize = 10_000;
+
+/// A text for people of the other side: what is no text is replaced, and what is too long left out.
+pub(super) fn shown(text: &[u8]) -> Cow<'_, str> {
+    let Some((first, more @ [_, ..])) = text.split_at_checked(MOST_SHOWN) else {
+        return String::from_utf8_lossy(text);
+    };
+    let first = String::from_utf8_lossy(first);
+    // A character that was cut in two is left out.
+    format!("{}… ({} more bytes)", first.trim_end_matches(char::REPLACEMENT_CHARACTER), more.len()).into()
+}
+
 /// Runs code of this side that cannot answer with a failure: after a panic the answer is `otherwise`.
 pub(super) fn guarded_value<T>(otherwise: T, code: impl FnOnce() -> T) -> T {
     contained(code).unwrap_or(otherwise)
@@ -101,9 +115,10 @@ pub(super) fn outcome(status: Status, error: &[u8]) -> Result<(), Failure> {
 
 #[cold]
 fn failure(status: Status, error: &[u8]) -> Failure {
-    let message = String::from_utf8_lossy(error);
+    let message = shown(error);
     match (status, message.is_empty()) {
-        (Status::BUSY, _) => CallError::Busy { provider: message.into_owned() }.into(),
+        (Status::BUSY, true) => Failure::new("answered that a component is busy, but not which"),
+        (Status::BUSY, false) => CallError::Busy { provider: message.into_owned() }.into(),
         // What a call of its own answered, which it passes on as it is.
         (Status::NOT_WIRED | Status::NOT_RUNNING | Status::MISMATCH | Status::PROVIDER_FAILED, false) => {
             call_outcome(status, error).map_or_else(Failure::from, |()| Failure::new(message))
@@ -111,13 +126,16 @@ fn failure(status: Status, error: &[u8]) -> Failure {
         (_, false) => Failure::new(message),
         (Status::FAILED, true) => Failure::new("failed without a message"),
         (Status::PANICKED, true) => Failure::new("panicked without a message"),
+        (Status::NOT_WIRED | Status::NOT_RUNNING | Status::MISMATCH | Status::PROVIDER_FAILED, true) => {
+            Failure::new("answered that a call failed, but not why")
+        }
         (Status(other), true) => Failure::new(format!("answered with the unknown status {other}")),
     }
 }
 
 /// The same for a call of a service.
 pub(super) fn call_outcome(status: Status, error: &[u8]) -> Result<(), CallError> {
-    let text = || String::from_utf8_lossy(error).into_owned();
+    let text = || shown(error).into_owned();
     Err(match status {
         Status::OK => return Ok(()),
         Status::NOT_WIRED => CallError::NotWired { reference: text() },

@@ -13,7 +13,7 @@ use crate::host::{Phase, SharedMessage};
 use crate::{Cause, Departed, Failure, Header, Level, Region, Time, Work};
 
 use super::convert::{PropertyViews, read_record, read_report, read_topic, read_value};
-use super::guard::{guarded, guarded_call, guarded_value};
+use super::guard::{guarded, guarded_call, guarded_value, shown};
 use super::lease_cell::host;
 use super::looping::export_loop;
 use super::null::{self, given, place};
@@ -243,7 +243,7 @@ unsafe extern "C" fn log(state: *mut c_void, level: u32, line: Bytes) {
     // SAFETY: callers pass the state of their handle, and lend the line to this call.
     unsafe {
         with_host(state, (), |host| {
-            let line = String::from_utf8_lossy(line.get().unwrap_or_default());
+            let line = shown(line.get().unwrap_or_default());
             match LEVELS.get(level as usize) {
                 Some(level) => host.log(*level, format_args!("{line}")),
                 None => host.console(format_args!("{line}")),

@@ -23,6 +23,10 @@ const RESERVED: [&str; 9] =
 /// Greatest number of parts of a path: nested objects are written and read one within the other.
 const DEEPEST: usize = 64;
 
+/// Greatest length of a path in bytes, and greatest number of paths: a hundred for each of 10,000 robots.
+const LONGEST: usize = 1000;
+const MOST: usize = 1_000_000;
+
 impl Sections {
     /// True if a path has too many parts.
     pub fn is_too_deep(path: &str) -> bool {
@@ -40,28 +44,36 @@ impl Sections {
         Sections { entries: counts.map(|path| ((*path).to_owned(), Entry::Count(0))).collect() }
     }
 
-    /// Sets a value; the last one counts.
-    pub fn set(&mut self, path: &str, value: ReportValue) {
+    /// Sets a value; the last one counts. False if the report has no room for it.
+    #[must_use = "what is left out is told"]
+    pub fn set(&mut self, path: &str, value: ReportValue) -> bool {
         match self.entries.get_mut(path) {
-            Some(entry) => *entry = Entry::Value(value),
-            None => {
-                self.entries.insert(path.to_owned(), Entry::Value(value));
+            Some(entry) => {
+                *entry = Entry::Value(value);
+                true
             }
+            None => self.insert(path, Entry::Value(value)),
         }
     }
 
+    fn insert(&mut self, path: &str, entry: Entry) -> bool {
+        let has_room = path.len() <= LONGEST && self.entries.len() < MOST;
+        if has_room {
+            self.entries.insert(path.to_owned(), entry);
+        }
+        has_room
+    }
+
     /// Adds to a count. A whole number that was [`set`](Sections::set) is counted on from; any other value gives way to
-    /// the count.
-    pub fn add(&mut self, path: &str, more: i64) {
-        let Some(entry) = self.entries.get_mut(path) else {
-            self.entries.insert(path.to_owned(), Entry::Count(more));
-            return;
-        };
+    /// the count. False if the report has no room for it.
+    pub fn add(&mut self, path: &str, more: i64) -> bool {
+        let Some(entry) = self.entries.get_mut(path) else { return self.insert(path, Entry::Count(more)) };
         let before = match entry {
             Entry::Count(count) | Entry::Value(ReportValue::Integer(count)) => *count,
             Entry::Value(_) => 0,
         };
         *entry = Entry::Count(before.saturating_add(more));
+        true
     }
 
     /// The whole number at a path, if there is one.

@@ -60,12 +60,12 @@ submit! {
 #[test]
 fn sections_nest_by_dots() {
     let mut sections = Sections::with_registered_counts();
-    sections.add("parcels.delivered", 2);
-    sections.add("parcels.delivered", 1);
-    sections.set("map.blocks", ReportValue::Integer(121));
-    sections.set("map", ReportValue::Text("airport".to_owned()));
-    sections.set("lost", ReportValue::Integer(1));
-    sections.add("lost", 1);
+    assert!(sections.add("parcels.delivered", 2));
+    assert!(sections.add("parcels.delivered", 1));
+    assert!(sections.set("map.blocks", ReportValue::Integer(121)));
+    assert!(sections.set("map", ReportValue::Text("airport".to_owned())));
+    assert!(sections.set("lost", ReportValue::Integer(1)));
+    assert!(sections.add("lost", 1));
     assert_eq!(
         serde_json::Value::Object(sections.to_json()),
         json!({
@@ -76,4 +76,5 @@ fn sections_nest_by_dots() {
     );
     assert_eq!(sections.integer("parcels.delivered"), Some(3));
     assert_eq!(sections.integer("map"), None);
+    assert!(!sections.add(&"x".repeat(1001), 1), "it is too long");
 }

@@ -232,6 +232,11 @@ static void destroy(void *component) {
     free(component);
 }
 
+static SaomsBytes effect_for_ever(void *looping, uint32_t number) {
+    (void)looping, (void)number;
+    return saoms_text("brightness");
+}
+
 static SaomsBytes effect(void *looping, uint32_t number) {
     (void)looping;
     return number == 0 ? saoms_text("brightness") : saoms_text("");
@@ -328,7 +333,7 @@ SAOMS_EXPORT const SaomsPluginTable *actor_plugin(uint32_t version) {
     static SaomsPluginTable table = {.size = sizeof table, .version = SAOMS_ABI_VERSION, .class_count = 1, .loop_count = 1};
     (void)version;
     /* Used in all cases, so that a compiler says nothing. */
-    (void)component_table, (void)loop_table;
+    (void)component_table, (void)loop_table, (void)effect_for_ever;
     classes[0] = CLASS;
     table.classes = CLASSES;
     table.loops = loops;

@@ -66,6 +66,13 @@ static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void
     if (strncmp(actor->does, "made: ", 6) == 0) {
         act_on_process(actor->does + 6);
     }
+    if (does(actor, "finds without end")) {
+        uint32_t count;
+        for (count = 0; count < 100000; count++) {
+            saoms_refuse(findings, error, "does", "again");
+        }
+        return SaomsStatus_FAILED;
+    }
     if (does(actor, "finds something and goes on")) {
         saoms_refuse(findings, error, "does", "is not what a component does");
     }
@@ -109,7 +116,13 @@ static SaomsStatus initialize(void *component, const SaomsHostHandle *host, Saom
     if (strncmp(actor->does, "begins: ", 8) == 0) {
         act_on_process(actor->does + 8);
     }
-    SaomsStatus status = functions->publish(host->state, &words, &actor->words, error);
+    SaomsStatus status;
+    if (does(actor, "another schema")) {
+        words.schema = saoms_text(SPOTTED);
+    } else if (does(actor, "another kind")) {
+        words.kind = 0;
+    }
+    status = functions->publish(host->state, &words, &actor->words, error);
     if (status == SaomsStatus_OK) {
         status = functions->publish(host->state, &spots, &actor->spots, error);
     }
@@ -147,6 +160,12 @@ static SaomsStatus move_region(Actor *actor, const SaomsHostHandle *host, SaomsS
         status = host->functions->set_region(host->state, actor->sees, &region, error);
     }
     return status;
+}
+
+static const char *long_text(void) {
+    static char text[30001];
+    memset(text, 'x', sizeof text - 1);
+    return text;
 }
 
 static SaomsStatus send_spot(Actor *actor, const SaomsHostHandle *host, uint32_t topic, uint32_t number, uint64_t key,
@@ -193,6 +212,18 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
         memset(path, '.', sizeof path - 1);
         functions->count(host->state, saoms_text(path), 1);
         saoms_log(host, SAOMS_INFO, "has reported");
+    } else if (does(actor, "reports at length")) {
+        functions->count(host->state, saoms_text(long_text()), 1);
+        functions->count(host->state, saoms_text(long_text()), 1);
+    } else if (does(actor, "logs at length")) {
+        functions->log(host->state, SAOMS_WARNING, saoms_text(long_text()));
+    } else if (does(actor, "fails at length")) {
+        return saoms_fail(error, long_text());
+    } else if (does(actor, "is busy with nobody")) {
+        return SaomsStatus_BUSY;
+    } else if (does(actor, "counts down and fails")) {
+        functions->count(host->state, saoms_text("h.count"), INT64_MIN);
+        return saoms_fail(error, "has counted");
     } else if (does(actor, "calls")) {
         /* As a component in C passes a failed call on. */
         return functions->call(host->state, actor->callee, 0, saoms_text(""), reply, error);
@@ -249,13 +280,23 @@ static void destroy(void *component) {
     free(component);
 }
 
+static SaomsStatus save(void *component, SaomsSink saved, SaomsSink error) {
+    (void)component, (void)saved, (void)error;
+    return SaomsStatus_OK;
+}
+
+static SaomsStatus restore(void *component, SaomsBytes saved, SaomsSink error) {
+    (void)component, (void)saved, (void)error;
+    return SaomsStatus_OK;
+}
+
 #define TOPICS JSON([{"topic": "WORDS", "kind": "event", "message": "Word", "optional": true, "schema":) WORD JSON(}, {"topic": "SPOTS", "kind": "state", "message": "Spotted", "optional": true, "schema":) SPOTTED JSON(}])
 #define CALLEE JSON({"name": "callee", "optional": true, "interface": {"name": "h.Callee", "operations": [{"name": "call", "arguments": [], "reply": "uint32"}]}})
 #define MEMBERS JSON("kind": "periodic", "properties": [{"name": "does", "type": "string", "default": "", "live":) TEXT(LIVE) JSON(}], "services": [) CALLEE JSON(], "references": [) CALLEE JSON(], "publishes":) TOPICS JSON(, "subscribes":) TOPICS
 
 SAOMS_METADATA static const char metadata[] =
     JSON({"saoms": "plugin", "abi":) TEXT(SAOMS_ABI_VERSION) JSON(, "package": "hostile", "version": "0.1.0", "entry": "hostile_plugin", "classes": [
-        {"contract": 1, "class": "h.Actor",) MEMBERS JSON(}, {"contract": 1, "class": "h.Motor", "stops": true,) TEXT(SAYS) MEMBERS JSON(}]});
+        {"contract": 1, "class": "h.Actor",) MEMBERS JSON(}, {"contract": 1, "class": "h.Motor", "stops": true,) TEXT(SAYS) MEMBERS JSON(}, {"contract": 1, "class": "h.Saver", "saves": true,) MEMBERS JSON(}]});
 
 static const SaomsComponentTable actor_table = {
     .size = sizeof actor_table, .initialize = initialize, .execute = execute,
@@ -267,12 +308,18 @@ static const SaomsComponentTable motor_table = {
     .shutdown = shutdown, .serve = serve, .destroy = destroy,
 };
 
+static const SaomsComponentTable saver_table = {
+    .size = sizeof saver_table, .initialize = initialize, .execute = execute, .shutdown = shutdown,
+    .serve = serve, .destroy = destroy, .save = save, .restore = restore,
+};
+
 static const SaomsClassTable actors = {.size = sizeof actors, .construct = construct, .component = &actor_table};
 static const SaomsClassTable motors = {.size = sizeof motors, .construct = construct, .component = &motor_table};
+static const SaomsClassTable savers = {.size = sizeof savers, .construct = construct, .component = &saver_table};
 
 SAOMS_EXPORT const SaomsPluginTable *hostile_plugin(uint32_t version) {
-    static const SaomsClassTable *classes[] = {&actors, &motors};
-    static SaomsPluginTable table = {.size = sizeof table, .version = SAOMS_ABI_VERSION, .classes = classes, .class_count = 2};
+    static const SaomsClassTable *classes[] = {&actors, &motors, &savers};
+    static SaomsPluginTable table = {.size = sizeof table, .version = SAOMS_ABI_VERSION, .classes = classes, .class_count = 3};
     (void)version;
     table.metadata = saoms_text(metadata);
     return &table;

@@ -132,6 +132,59 @@ fn a_constructor_that_finds_something_refuses_also_if_it_says_that_it_made_a_com
 }
 
 #[test]
+fn findings_without_end_are_told_up_to_a_bound() {
+    let run = run("h.Actor", "finds without end");
+    assert_eq!(run.code, Some(2), "{}", run.text);
+    assert!(run.text.contains("component `Bad`: found more than 10000 faults: the others"), "{}", run.text);
+}
+
+#[test]
+fn texts_for_people_have_a_bound() {
+    let failed = run("h.Actor", "fails at length");
+    assert_goes_on(&failed, "x… (20000 more bytes)");
+    let logged = run("h.Actor", "logs at length");
+    assert!(logged.code == Some(0) && logged.text.contains("x… (20000 more bytes)"), "{}", logged.text);
+    let reported = run("h.Actor", "reports at length");
+    assert_eq!(reported.code, Some(0), "{}", reported.text);
+    assert_eq!(reported.text.matches("xxx` and more were left out of the report").count(), 1, "{}", reported.text);
+}
+
+#[test]
+fn a_topic_is_used_as_its_class_declares_it() {
+    for (does, expected) in [
+        ("another schema", "event messages `Word` with the schema {\"name\": \"Spotted\""),
+        ("another kind", "state messages `Word` with the schema {\"name\": \"Word\""),
+    ] {
+        let bad = bad("h.Actor", does, "");
+        let good = component("Before", "h.Actor", "");
+        // As the first user of the topic, and as a later one.
+        for run in [run("h.Actor", does), run_with(&(good.clone() + &bad), &[])] {
+            assert_eq!(run.code, Some(1), "{}", run.text);
+            assert!(
+                run.text.contains("component `Bad` of class `h.Actor` could not start: topic `WORDS`"),
+                "{}",
+                run.text
+            );
+            assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
+        }
+    }
+}
+
+#[test]
+fn a_component_that_is_busy_with_nobody_fails() {
+    assert_goes_on(&run("h.Actor", "is busy with nobody"), "answered that a component is busy, but not which");
+}
+
+#[test]
+fn what_a_failed_execution_counted_is_taken_back_however_much_it_was() {
+    let restart = property("restart", "onFailure") + &property("restartBackoff", "1ms");
+    let run = run_with(&bad("h.Saver", "counts down and fails", &restart), &[]);
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    assert_eq!(run.component("Good")["executions"], 10, "{}", run.text);
+    assert!(run.component("Bad")["restarts"].as_u64() > Some(0), "{}", run.text);
+}
+
+#[test]
 fn hardware_that_is_never_released_holds_up_no_end() {
     assert_goes_on(&run("h.Motor", "hangs in release"), "could not stop its hardware");
 }

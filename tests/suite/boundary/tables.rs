@@ -105,6 +105,11 @@ fn null_in_a_loop_is_a_failure_of_its_component() {
         assert!(run.text.contains(expected) && run.text.contains("Bad"), "{does}: {}", run.text);
     }
     assert_eq!(run(&[], "").code, Some(0));
+    let endless = run(&["LOOP_HOLES=.effect=effect_for_ever"], "");
+    assert_eq!(endless.code, Some(2), "{}", endless.text);
+    for expected in ["loop `Step`", "names more than 1000 entries that it changes"] {
+        assert!(endless.text.contains(expected), "{expected} is missing in\n{}", endless.text);
+    }
 }
 
 #[test]

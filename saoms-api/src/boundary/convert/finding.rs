@@ -7,6 +7,9 @@ use crate::host::contain::contained;
 use crate::rule::Severity;
 use crate::{Failure, Finding, Place};
 
+/// Greatest number of findings of one call.
+const MOST_FINDINGS: usize = 10_000;
+
 /// Findings of the other side of the boundary; for one that cannot be read, the error.
 pub type Findings = Vec<Result<Finding, Failure>>;
 
@@ -42,6 +45,11 @@ pub(in crate::boundary) unsafe fn put_findings(sink: FindingSink, findings: &[Fi
 /// # Safety
 /// The view and what it leads to are readable.
 pub(in crate::boundary) unsafe fn take_finding(findings: &mut Findings, view: *const FindingView) {
+    if findings.len() >= MOST_FINDINGS {
+        findings.truncate(MOST_FINDINGS);
+        let text = format!("found more than {MOST_FINDINGS} faults: the others are not told");
+        return findings.push(Ok(Finding::new(Place::default(), text)));
+    }
     // SAFETY: as the caller promises.
     findings.push(contained(|| unsafe { read_finding(given(view, "a finding")?) }).and_then(|read| read));
 }

@@ -25,6 +25,7 @@ pub unsafe fn import_loop(
 ) -> Result<Box<dyn DynLoop>, Failure> {
     let mut imported =
         ImportedLoop { instance, table, owner, effects: &[], lease: Lease::default(), fault: RefCell::default() };
+    let _entered = enter(owner, Function::Construct);
     let mut effects = Vec::new();
     for number in 0.. {
         // SAFETY: as the caller promises; the names stay by the rules.
@@ -32,11 +33,19 @@ pub unsafe fn import_loop(
         if name.is_empty() {
             break;
         }
+        if effects.len() >= MOST_EFFECTS {
+            return Err(Failure::new(format!(
+                "names more than {MOST_EFFECTS} entries that it changes: `effect` has to end with an empty text"
+            )));
+        }
         effects.push(name);
     }
     imported.effects = kept(effects);
     Ok(Box::new(imported))
 }
+
+/// Greatest number of entries that a loop changes.
+const MOST_EFFECTS: usize = 1000;
 
 /// The list as a constant. Loops of one class have the same, so few lists are kept.
 fn kept(list: Vec<&'static str>) -> &'static [&'static str] {

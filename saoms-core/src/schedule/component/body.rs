@@ -54,6 +54,8 @@ pub(crate) struct Part {
     pub(crate) lasting: Lasting,
     /// Bytes in the outbox from code of libraries.
     pub(crate) sent_bytes: usize,
+    /// True once the report had no room for what it contributes.
+    pub(crate) is_report_full: bool,
     /// Number of calls within which its code runs.
     pub(crate) call_depth: u32,
     pub(crate) chance: Chance,
@@ -125,6 +127,7 @@ impl Body {
             kept_bytes: KeptBytes::default(),
             lasting: Lasting::default(),
             sent_bytes: 0,
+            is_report_full: false,
             call_depth: 0,
             chance: Chance::new(0),
             cancelled,

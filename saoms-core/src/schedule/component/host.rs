@@ -11,14 +11,13 @@ use saoms_api::{
 };
 
 use super::body::{KeptBytes, Part, subject};
+use super::declared::TopicUse;
 use crate::bus::TopicId;
 use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
-use crate::report::Sections;
 use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
 use crate::schedule::shared::Shared;
-use saoms_lang::assembly::{ComponentSpec, TaskProperties, Wire};
-use saoms_lang::registry::{ClassDeclaration, ClassTopic, LoopDeclaration};
+use saoms_lang::assembly::{ComponentSpec, Wire};
 use saoms_lang::schema::Schema;
 
 /// The host of a component while its code runs.
@@ -31,7 +30,7 @@ pub(crate) struct ComponentHost<'a> {
 const MOST_TARGETS: usize = (1 << (32 - TARGET_SHIFT)) - 1;
 
 impl ComponentHost<'_> {
-    fn spec(&self) -> &ComponentSpec {
+    pub(super) fn spec(&self) -> &ComponentSpec {
         &self.part.spec
     }
 
@@ -39,41 +38,6 @@ impl ComponentHost<'_> {
     fn wire(&self, reference: u32) -> Option<&Wire> {
         let place = reference & ((1 << TARGET_SHIFT) - 1);
         self.spec().references.get(place as usize)
-    }
-
-    /// Checks that the component may use a topic now, and returns its task settings.
-    fn may_use(&self, topic: &str, use_as: TopicUse) -> Result<Option<&TaskProperties>, Failure> {
-        let verb = use_as.verb();
-        if self.part.publishers.len().max(self.part.subscriptions.len()) >= MAX_HANDLES {
-            return Err(Failure::new(format!(
-                "topic `{topic}`: a component can {verb} at most {MAX_HANDLES} times: keep what it returns"
-            )));
-        }
-        if !self.part.initializing {
-            return Err(Failure::new(format!(
-                "topic `{topic}`: a component can only {verb} in `initialize`; keep what it returns"
-            )));
-        }
-        let task = self.spec().task.as_ref();
-        if task.is_some_and(|task| !task.use_jms) {
-            return Err(Failure::new(format!(
-                "topic `{topic}`: component `{}` has `useJMS` false and can neither publish nor subscribe: set it to true",
-                self.part.name
-            )));
-        }
-        // Only declared topics: the checker and the pictures of a fleet know no others.
-        let spec = self.spec();
-        let of_class = use_as.declared(spec.class.declaration());
-        let of_loops = spec.loops.iter().flat_map(|one| use_as.declared_of_loop(one.class.declaration()));
-        if !of_class.iter().chain(of_loops).any(|declared| declared.name == topic) {
-            let attribute = use_as.attribute();
-            return Err(Failure::new(format!(
-                "topic `{topic}`: neither class `{}` nor a loop of component `{}` declares that it {attribute} it: write `{attribute}(...)` in its `#[class(...)]` or `#[looping(...)]`",
-                spec.class.name(),
-                self.part.name
-            )));
-        }
-        Ok(task)
     }
 
     /// The schema of a topic.
@@ -117,7 +81,7 @@ impl ComponentHost<'_> {
 }
 
 /// Greatest number of publishers, of subscriptions, and of functions that stop hardware of a component.
-const MAX_HANDLES: usize = 1000;
+pub(super) const MAX_HANDLES: usize = 1000;
 /// Greatest number of messages in one execution.
 const MAX_SENT: usize = 1_000_000;
 /// Greatest size of all messages that code of a library sends in one execution, in bytes: four of the longest.
@@ -131,44 +95,6 @@ fn too_much(messages: usize, bytes: usize) -> Failure {
         MAX_SENT_BYTES >> 20,
         bytes >> 20
     ))
-}
-
-/// Use of a topic by a component.
-#[derive(Clone, Copy)]
-enum TopicUse {
-    Publish,
-    Subscribe,
-}
-
-impl TopicUse {
-    const fn verb(self) -> &'static str {
-        match self {
-            TopicUse::Publish => "publish",
-            TopicUse::Subscribe => "subscribe",
-        }
-    }
-
-    /// The attribute that declares the use, which messages take as a verb, too.
-    const fn attribute(self) -> &'static str {
-        match self {
-            TopicUse::Publish => "publishes",
-            TopicUse::Subscribe => "subscribes",
-        }
-    }
-
-    fn declared(self, class: &ClassDeclaration) -> &[ClassTopic] {
-        match self {
-            TopicUse::Publish => &class.publishes,
-            TopicUse::Subscribe => &class.subscribes,
-        }
-    }
-
-    fn declared_of_loop(self, one: &LoopDeclaration) -> &[ClassTopic] {
-        match self {
-            TopicUse::Publish => &one.publishes,
-            TopicUse::Subscribe => &one.subscribes,
-        }
-    }
 }
 
 /// Records carry the time at which the execution began: an execution is one instant, and the clock need not be read.
@@ -225,7 +151,10 @@ impl Host for ComponentHost<'_> {
         let name = self.spec().topic(topic.name);
         let observers = self.shared.observers.of_topic(&name, topic);
         let bus = &mut self.shared.lock().bus;
-        let id = bus.publisher(&name, topic, &self.part.name).map_err(|mismatch| Failure::new(mismatch.to_string()))?;
+        self.is_as_declared(topic, TopicUse::Publish, bus.find(&name).is_none())?;
+        let id = bus
+            .publisher(&name, topic, &self.part.name)
+            .map_err(|mismatch| self.differs(topic, TopicUse::Publish, mismatch))?;
         bus.observe(id, &observers);
         self.part.publishers.push(id);
         Ok((self.part.publishers.len() - 1) as u32)
@@ -240,10 +169,11 @@ impl Host for ComponentHost<'_> {
         };
         let mut engine = self.shared.lock();
         let name = self.spec().topic(topic.name);
+        self.is_as_declared(topic, TopicUse::Subscribe, engine.bus.find(&name).is_none())?;
         let fresh = engine
             .bus
             .subscribe(&name, topic, &self.part.name, task.queue)
-            .map_err(|mismatch| Failure::new(mismatch.to_string()))?;
+            .map_err(|mismatch| self.differs(topic, TopicUse::Subscribe, mismatch))?;
         // An instance that replaces a failed one gets the events that came meanwhile.
         let same = |kept: &crate::bus::TopicReader| engine.bus.topic_of(kept) == engine.bus.topic_of(&fresh);
         let triggers = task.trigger.has(topic.name);
@@ -448,15 +378,19 @@ impl Host for ComponentHost<'_> {
     }
 
     fn report(&mut self, path: &str, value: ReportValue) {
-        if self.may_report(path) {
-            self.shared.sections().set(path, value);
+        if self.may_report(path) && !self.shared.sections().set(path, value) {
+            self.cannot_report(path);
         }
     }
 
     fn count(&mut self, path: &str, more: i64) {
-        if self.may_report(path) {
-            self.shared.sections().add(path, more);
+        if !self.may_report(path) {
+            return;
+        }
+        if self.shared.sections().add(path, more) {
             self.part.lasting.note_count(path, more);
+        } else {
+            self.cannot_report(path);
         }
     }
 
@@ -468,20 +402,5 @@ impl Host for ComponentHost<'_> {
 impl ComponentHost<'_> {
     fn emit(&self, what: Occurrence) {
         self.shared.events.put(RunEvent { time: self.now(), component: Some(Arc::clone(&self.part.name)), what });
-    }
-
-    /// True if the path is not one of the report's own fields, and not too deep.
-    fn may_report(&mut self, path: &str) -> bool {
-        if Sections::is_too_deep(path) {
-            let shown: String = path.chars().take(40).collect();
-            let line = format_args!("`{shown}...` was left out of the report: it is more than 64 parts deep");
-            self.log(Level::Warning, line);
-            return false;
-        }
-        let reserved = Sections::is_reserved(path);
-        if reserved {
-            self.log(Level::Warning, format_args!("`{path}` of the report is the program's own, and stays as it is"));
-        }
-        !reserved
     }
 }

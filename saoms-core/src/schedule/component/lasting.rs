@@ -98,7 +98,10 @@ impl Lasting {
     /// Takes back what was counted since the last save.
     pub(crate) fn take_back(&mut self, sections: &mut Sections) {
         if self.saved.is_some() {
-            self.counted.drain(..).for_each(|(path, more)| sections.add(&path, -more));
+            for (path, more) in self.counted.drain(..) {
+                // It was added, so there is room for it.
+                let _ = sections.add(&path, more.saturating_neg());
+            }
         }
     }
 }

@@ -2,5 +2,6 @@
 
 pub(super) mod body;
 mod call;
+mod declared;
 mod host;
 pub(super) mod lasting;
