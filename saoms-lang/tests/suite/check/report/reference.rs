@@ -26,7 +26,12 @@ const HEAD: &str = "\
 
 These are the diagnostics of `saoms check` and `saoms run`. The meaning of a code never changes. With an error, nothing
 starts; a warning stops nothing. If the SCA Assembly specification has the same rule, its name follows the code.
-`--format json` prints diagnostics as data, with each suggestion as edits.
+
+`--format json` prints diagnostics as data: an object each, with `severity`, `code`, `rule`, `message`, `help`, place
+(`file`, `line`, `column`, `end_line`, `end_column`; ends exclusive), `labels` (other places) and `suggestions`, whose
+`edits` mend it. Where five or more in a file say the same, such as ten uses of a property that is not there, the text
+shows the first with the lines of the others. The data have each, since each place is mended by itself: all but the
+first have `like`, the index of the first, so that a program counts the mistake once.
 
 | codes | about |
 | --- | --- |
