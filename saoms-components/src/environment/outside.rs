@@ -9,7 +9,7 @@ use super::scenario::Before;
 use super::scenario::line::{read_outside, split};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
-use crate::rules::no_work;
+use crate::rules::scenario::no_work;
 use crate::text::{TextFault, bytes};
 
 submit! {

@@ -5,12 +5,12 @@ use std::collections::HashSet;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::hearing::site_of;
-use super::robots::{has_broker, publishers_beside_robots};
 use crate::environment::Environment;
 use crate::master::MasterEnvironment;
 use crate::messages::{ENVIRONMENT, EVENT_LUGGAGE};
 use crate::robot::Robot;
+use crate::rules::hearing::site_of;
+use crate::rules::robots::{has_broker, publishers_beside_robots};
 
 pub(crate) static RULE: FleetRule = FleetRule {
     code: Code {

@@ -6,14 +6,14 @@ use std::ops::Range;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity, nearest};
 use saoms_api::{Finding, Place};
 
-use super::budget::Budget;
-use super::hearing::{events, passed_on, site_of};
-use super::robots::{FleetRobot, are_all_known, has_broker, may_be_others, robots};
 use crate::environment::{Environment, EventSpec, RandomRange, Scenario};
 use crate::messages::{ENVIRONMENT, FAULT};
 use crate::robot::Robot;
+use crate::rules::budget::Budget;
+use crate::rules::hearing::{events, passed_on, site_of};
+use crate::rules::robots::{FleetRobot, are_all_known, has_broker, may_be_others, robots};
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5005",
         name: "unknown-robot",

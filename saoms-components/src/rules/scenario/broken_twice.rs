@@ -5,12 +5,12 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::hearing::{events, passed_on};
-use super::robots::robots;
 use crate::environment::{Environment, EventSpec, Scenario};
 use crate::messages::FAULT;
+use crate::rules::hearing::{events, passed_on};
+use crate::rules::robots::robots;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5015",
         name: "broken-twice",

@@ -5,15 +5,15 @@ use std::collections::HashMap;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::budget::Budget;
-use super::hearing::together;
-use super::map::{LuggageLine, WorldMap, area, by_events, rows};
-use super::robots::unless_elsewhere;
 use crate::environment::{Spanned, Spot};
 use crate::messages::AREA;
+use crate::rules::budget::Budget;
+use crate::rules::hearing::together;
+use crate::rules::map::{LuggageLine, WorldMap, area, by_events, rows};
+use crate::rules::robots::unless_elsewhere;
 use crate::world::World;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5001",
         name: "luggage-place",

@@ -6,15 +6,15 @@ use std::ops::Range;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
-use super::hearing::{events, hearing, passed_on, site_of, together};
-use super::robots::{FleetRobot, may_be_others, publishers_beside_robots, robots, unless_elsewhere};
 use crate::environment::{Environment, EnvironmentProperties, EventSpec, Scenario};
 use crate::master::{MasterEnvironment, MasterRobot};
 use crate::messages::{ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, ROBOT_STATE};
 use crate::robot::{Policy, Robot};
+use crate::rules::hearing::{events, hearing, passed_on, site_of, together};
+use crate::rules::robots::{FleetRobot, may_be_others, publishers_beside_robots, robots, unless_elsewhere};
 use crate::world::World;
 
-pub(super) static RULE: FleetRule = FleetRule {
+pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5008",
         name: "unserved",

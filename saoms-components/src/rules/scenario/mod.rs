@@ -1,0 +1,8 @@
+//! Rules about the events of scenarios.
+
+pub(super) mod broken_twice;
+pub(super) mod early_end;
+pub(super) mod luggage;
+pub(crate) mod no_work;
+pub(super) mod unknown_robot;
+pub(super) mod unserved;
