@@ -8,6 +8,8 @@ use super::{Interest, Observers, Occurrence, RunEvent, RunProgress, SentMessage}
 
 /// Maximum number of events that wait for the observers.
 const CAPACITY: usize = 65_536;
+/// Maximum size of the lines among them, in bytes, beside the last one.
+const MOST_BYTES: usize = 64 << 20;
 
 /// An event or a message on its way to the observers.
 pub(crate) enum Notification {
@@ -33,6 +35,18 @@ impl Notification {
     }
 }
 
+impl Notification {
+    /// Bytes of its line, if a component wrote one.
+    fn size(&self) -> usize {
+        match self {
+            Notification::Event(RunEvent {
+                what: Occurrence::Log { text, .. } | Occurrence::Console { text }, ..
+            }) => text.len(),
+            _ => 0,
+        }
+    }
+}
+
 impl From<RunEvent> for Notification {
     fn from(event: RunEvent) -> Notification {
         Notification::Event(event)
@@ -52,6 +66,8 @@ pub(crate) struct EventQueue {
 #[derive(Default)]
 struct Waiting {
     notifications: VecDeque<Notification>,
+    /// Bytes of their lines.
+    bytes: usize,
     lost: u64,
     reader_sleeps: bool,
     writers_sleep: bool,
@@ -86,8 +102,9 @@ impl EventQueue {
     }
 
     pub(crate) fn put(&self, notification: impl Into<Notification>) {
+        let notification = notification.into();
         let mut waiting = self.lock();
-        while waiting.notifications.len() >= CAPACITY && !waiting.closed {
+        while (waiting.notifications.len() >= CAPACITY || waiting.bytes >= MOST_BYTES) && !waiting.closed {
             if !self.blocks_when_full {
                 waiting.lost += 1;
                 return;
@@ -95,7 +112,8 @@ impl EventQueue {
             waiting.writers_sleep = true;
             waiting = self.emptied.wait(waiting).unwrap_or_else(PoisonError::into_inner);
         }
-        waiting.notifications.push_back(notification.into());
+        waiting.bytes += notification.size();
+        waiting.notifications.push_back(notification);
         if std::mem::take(&mut waiting.reader_sleeps) {
             self.filled.notify_one();
         }
@@ -157,6 +175,7 @@ impl EventQueue {
             };
         }
         std::mem::swap(batch, &mut waiting.notifications);
+        waiting.bytes = 0;
         if std::mem::take(&mut waiting.writers_sleep) {
             self.emptied.notify_all();
         }

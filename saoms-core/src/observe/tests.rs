@@ -56,6 +56,22 @@ fn events_beyond_the_bound_are_counted_and_lost_in_real_time() {
 }
 
 #[test]
+fn long_lines_have_less_room() {
+    let listener = Arc::new(Listener::default());
+    let observers = Observers::new(vec![listener.clone()]);
+    let queue = EventQueue::new(observers.interest(), false);
+    for _ in 0..200 {
+        let what = Occurrence::Log { level: Level::Info, text: "x".repeat(1 << 20) };
+        queue.put(RunEvent { time: Time::START, component: None, what });
+    }
+    queue.close();
+    queue.deliver(&observers, RunProgress::default);
+    let told = listener.told.lock().unwrap();
+    assert_eq!(told.len(), 64 + 1);
+    assert_eq!(told[64], "[0.000 s] 136 events came faster than they could be shown, and are lost");
+}
+
+#[test]
 fn events_beyond_the_bound_wait_in_virtual_time() {
     let listener = Arc::new(Listener::default());
     let observers = Observers::new(vec![listener.clone()]);

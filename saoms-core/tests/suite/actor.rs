@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use saoms_api::{
     CallError, Class, Component, Context, Failure, Level, Message, Properties, Publisher, Subscription,
-    TaskInterfaceReference, Topic, Work, interface,
+    TaskInterfaceReference, Topic, Work, interface, record,
 };
 
 /// Something said aloud.
@@ -234,6 +234,12 @@ impl Ends {
                     context.send(&self.say, Words { text: word.to_string() })?;
                 }
             }
+            "record" => {
+                (0..number()).for_each(|piece| context.symptom(record!(piece_waits: "piece {piece} waits", piece)))
+            }
+            "decide" => (0..number()).for_each(|_| context.decision(record!(stays: "stays"))),
+            "write" => (0..number()).for_each(|line| context.log(Level::Debug, line)),
+            "show" => (0..number()).for_each(|line| context.console(line)),
             "hear" => {
                 let heard: Vec<_> = context.receive(&self.hear).map(|words| words.text.as_str()).collect();
                 context.info(format_args!("hears [{}]", heard.join(", ")));

@@ -1,4 +1,6 @@
-use crate::fleet::{check, of, run, simulated, start};
+use saoms_core::observe::Occurrence;
+
+use crate::fleet::{check, of, outcome, run, simulated, start};
 
 #[test]
 fn events_reach_every_reader_once_and_in_order() {
@@ -183,4 +185,25 @@ fn what_one_execution_sends_is_bounded() {
          Failed after 0.001 s
          - component `A` failed: sends more in one execution than 1000000 messages or 256 MiB: 1000000 messages, 0 MiB so far; send the rest in the next executions (messages of this execution that are not sent: 1000000)",
     );
+}
+
+#[test]
+fn what_one_execution_writes_is_bounded() {
+    let too_much = "component `A` failed: writes more in one execution than 100000 records of the journal or 100000 \
+                    lines of the log: write changes, or the rest in the next executions";
+    for (script, records, lines) in [
+        ("record 100001", 100_000, 0),
+        ("decide 100001", 100_000, 0),
+        // Whether anybody wants the lines or not.
+        ("write 100001", 0, 0),
+        ("show 100001", 0, 100_000),
+        ("record 100001; fail for another reason", 100_000, 0),
+    ] {
+        let (report, diary) = run(&format!("A actor each=[{script}]\nB actor"), simulated(10));
+        assert!(outcome(&report).contains(too_much), "{script}: {}", outcome(&report));
+        assert_eq!(of(&report, "B").executions, 1, "{script}");
+        assert_eq!(report.journal.records, records, "{script}");
+        assert_eq!(diary.count(|event| matches!(event.what, Occurrence::Console { .. })), lines, "{script}");
+    }
+    check("A actor each=[record 100000; write 100000]", 1, "Elapsed after 0.001 s");
 }

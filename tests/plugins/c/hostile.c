@@ -196,6 +196,22 @@ static SaomsStatus publish_keys(Actor *actor, const SaomsHostHandle *host, uint3
     return status;
 }
 
+/* More than one execution may write, whatever it answers. */
+static SaomsStatus write_without_end(Actor *actor, const SaomsHostHandle *host) {
+    SaomsRecordView record = {.text = saoms_text("stays")};
+    uint32_t count;
+    for (count = 0; count < 200000; count++) {
+        if (does(actor, "records without end")) {
+            host->functions->journal(host->state, 0, &record);
+        } else if (does(actor, "names loops without end")) {
+            host->functions->name_loop(host->state, 1, saoms_text("loop"));
+        } else {
+            host->functions->log(host->state, SAOMS_DEBUG, saoms_text("line"));
+        }
+    }
+    return does(actor, "records without end") ? SaomsStatus_BUSY : SaomsStatus_OK;
+}
+
 static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSink error) {
     Actor *actor = component;
     const SaomsHostFunctions *functions = host->functions;
@@ -219,6 +235,8 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
         functions->log(host->state, SAOMS_WARNING, saoms_text(long_text()));
     } else if (does(actor, "fails at length")) {
         return saoms_fail(error, long_text());
+    } else if (strstr(actor->does, "s without end") != NULL && !does(actor, "keys without end")) {
+        return write_without_end(actor, host);
     } else if (does(actor, "is busy with nobody")) {
         return SaomsStatus_BUSY;
     } else if (does(actor, "counts down and fails")) {

@@ -43,6 +43,14 @@ fn what_is_asked_without_end_is_refused() {
 }
 
 #[test]
+fn what_is_written_without_end_in_one_execution_is_a_failure() {
+    for does in ["records without end", "names loops without end", "logs without end"] {
+        let expected = "writes more in one execution than 100000 records of the journal or 100000 lines of the log";
+        assert_goes_on(&run("h.Actor", does), expected);
+    }
+}
+
+#[test]
 fn what_makes_no_sense_is_a_failure_of_its_component() {
     for (does, expected) in [
         ("keeps null", "found null for 10 bytes"),

@@ -154,7 +154,7 @@ impl Body {
             if saved.is_nothing() { Ok(()) } else { instance.restore(saved) }
         });
         self.part.initializing = false;
-        result??;
+        self.part.spent.is_within().and(result)??;
         self.part.has_registered_stop()
     }
 

@@ -7,6 +7,7 @@ use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure};
 
 use super::host::ComponentHost;
 use super::lasting::Lasting;
+use super::spent::Spent;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
@@ -54,6 +55,8 @@ pub(crate) struct Part {
     pub(crate) lasting: Lasting,
     /// Bytes in the outbox from code of libraries.
     pub(crate) sent_bytes: usize,
+    /// What the present code has written.
+    pub(crate) spent: Spent,
     /// True once the report had no room for what it contributes.
     pub(crate) is_report_full: bool,
     /// Number of calls within which its code runs.
@@ -127,6 +130,7 @@ impl Body {
             kept_bytes: KeptBytes::default(),
             lasting: Lasting::default(),
             sent_bytes: 0,
+            spent: Spent::default(),
             is_report_full: false,
             call_depth: 0,
             chance: Chance::new(0),
@@ -150,7 +154,7 @@ impl Body {
     /// Performs a job, and contains panics of the component's code. A failure or a shutdown drops the instance.
     #[inline]
     pub(crate) fn perform(&mut self, shared: &Arc<Shared>, job: Job) -> Result<(), Failure> {
-        self.part.recorder.begin(Cause::default());
+        self.part.begin(Cause::default());
         if job == Job::Shutdown {
             // Before its code runs, which may hang.
             shared.stops.request(&self.part.stops);
@@ -176,6 +180,8 @@ impl Body {
             Job::Start => self.start(shared),
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };
+        // First of all: nobody may write without end and answer that another component is busy.
+        result = self.part.spent.is_within().and(result);
         if let Err(failure) = &result
             && self.part.keeps_instance(job, failure)
         {
@@ -236,9 +242,10 @@ impl Body {
         invocation: &mut Invocation<'_>,
         cause: Cause,
     ) -> Result<Result<(), CallError>, Failure> {
-        self.part.recorder.begin(cause);
+        self.part.begin(cause);
         let before = self.save_touched();
         let result = before.and_then(|()| self.call(shared, |instance, context| instance.serve(invocation, context)));
+        let result = self.part.spent.is_within().and(result);
         self.part.lasting.touch();
         if result.is_err() {
             shared.stops.request(&self.part.stops);
@@ -321,6 +328,13 @@ fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
 }
 
 impl Part {
+    /// Begins an execution, or a call whose caller has this cause.
+    #[inline]
+    fn begin(&mut self, because: Cause) {
+        self.recorder.begin(because);
+        self.spent = Spent::default();
+    }
+
     /// Holds a class that declares it to the registration of a function that stops hardware.
     pub(crate) fn has_registered_stop(&self) -> Result<(), Failure> {
         if self.stops.is_empty() && self.spec.class.declaration().stops {

@@ -82,20 +82,6 @@ impl ComponentHost<'_> {
 
 /// Greatest number of publishers, of subscriptions, and of functions that stop hardware of a component.
 pub(super) const MAX_HANDLES: usize = 1000;
-/// Greatest number of messages in one execution.
-const MAX_SENT: usize = 1_000_000;
-/// Greatest size of all messages that code of a library sends in one execution, in bytes: four of the longest.
-const MAX_SENT_BYTES: usize = 4 * saoms_abi::MAX_BYTES;
-
-#[cold]
-fn too_much(messages: usize, bytes: usize) -> Failure {
-    Failure::new(format!(
-        "sends more in one execution than {MAX_SENT} messages or {} MiB: {messages} messages, {} MiB so far; \
-         send the rest in the next executions",
-        MAX_SENT_BYTES >> 20,
-        bytes >> 20
-    ))
-}
 
 /// Records carry the time at which the execution began: an execution is one instant, and the clock need not be read.
 fn stamp<'a>(shared: &'a Shared, part: &Part) -> Stamp<'a> {
@@ -203,9 +189,7 @@ impl Host for ComponentHost<'_> {
                     message = self.check(topic, message)?;
                     self.part.sent_bytes += message.bytes().len();
                 }
-                if self.part.outbox.len() >= MAX_SENT || self.part.sent_bytes > MAX_SENT_BYTES {
-                    return Err(too_much(self.part.outbox.len(), self.part.sent_bytes));
-                }
+                self.may_send()?;
                 self.part.outbox.push((topic, message));
                 self.part.recorder.acted();
                 Ok(())
@@ -331,7 +315,9 @@ impl Host for ComponentHost<'_> {
     }
 
     fn name_loop(&mut self, place: u32, name: &str) {
-        self.part.recorder.name(place, name);
+        if self.part.spent.has_record() {
+            self.part.recorder.name(place, name);
+        }
     }
 
     fn enter_loop(&mut self, place: Option<u32>) {
@@ -348,6 +334,9 @@ impl Host for ComponentHost<'_> {
     }
 
     fn journal(&mut self, phase: Phase, record: &Record) {
+        if !self.part.spent.has_record() {
+            return;
+        }
         let stamp = stamp(self.shared, self.part);
         let Part { recorder, spec, .. } = &mut *self.part;
         let place = recorder.present().map(usize::from);
@@ -357,6 +346,9 @@ impl Host for ComponentHost<'_> {
     }
 
     fn changed(&mut self, entry: &'static str, before: Value, after: Value) {
+        if !self.part.spent.has_record() {
+            return;
+        }
         let stamp = stamp(self.shared, self.part);
         self.part.recorder.changed(stamp, entry, before, after);
     }
@@ -366,13 +358,13 @@ impl Host for ComponentHost<'_> {
     }
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
-        if self.shared.events.wants(level) {
+        if self.part.spent.has_line() && self.shared.events.wants(level) {
             self.emit(Occurrence::Log { level, text: line.to_string() });
         }
     }
 
     fn console(&mut self, line: fmt::Arguments<'_>) {
-        if self.shared.events.wants_console() {
+        if self.part.spent.has_line() && self.shared.events.wants_console() {
             self.emit(Occurrence::Console { text: line.to_string() });
         }
     }

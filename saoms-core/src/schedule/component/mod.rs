@@ -5,3 +5,4 @@ mod call;
 mod declared;
 mod host;
 pub(super) mod lasting;
+pub(super) mod spent;
