@@ -5,7 +5,8 @@ use std::mem::MaybeUninit;
 use std::ptr;
 use std::sync::OnceLock;
 
-use super::blame::{Blame, blame, write};
+use super::blame::{Blame, blame, is_program, write};
+use super::hardware;
 use super::signals::{UseAs, keep_for};
 
 /// The signals of a crash, with what they mean.
@@ -65,7 +66,7 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
                     let distance = stack_pointer(context).map(|top| top.abs_diff((*info).si_addr() as usize));
                     meaning = if distance.is_some_and(|far| far < NEAR) { OVERFLOW } else { meaning };
                 }
-                write(&["error: ", &owner.text, " crashed in ", function.name(), ": ", meaning, "\n"]);
+                write(&["error: ", &owner.text, " crashed ", function.place(), ": ", meaning, "\n"]);
                 action.sa_sigaction = libc::SIG_DFL;
             }
             Blame::Thread(library) => {
@@ -73,6 +74,9 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
                 action.sa_sigaction = libc::SIG_DFL;
             }
             Blame::Nobody => action = BEFORE[place].get().copied().unwrap_or(action),
+        }
+        if is_program() {
+            hardware::stop();
         }
         libc::sigaction(signal, &raw const action, ptr::null_mut());
         // A fault of the code happens again when it goes on; what was sent has to be sent again.

@@ -1,7 +1,7 @@
 //! The end of the process, or of a thread of the program, by code of a library: a failure, whatever exit code it gives.
 //!
-//! `_exit`, `_Exit`, `quick_exit` and `pthread_exit` are defined here, where the linker finds them before those of the
-//! system when it binds a library. What calls the system itself (`exit_group`) cannot be seen.
+//! `exit`, `_exit`, `_Exit`, `quick_exit` and `pthread_exit` are defined here, where the linker finds them before
+//! those of the system when it binds a library. What calls the system itself (`exit_group`) cannot be seen.
 
 use std::ffi::{c_int, c_void};
 use std::mem::transmute;
@@ -12,6 +12,7 @@ use saoms_api::host::present;
 
 use super::ENDS;
 use super::blame::{Blame, blame, is_program, leave, next, write};
+use super::hardware;
 use crate::Exit;
 
 pub(super) fn install() {
@@ -30,13 +31,14 @@ fn end(code: c_int, by: &str) -> ! {
     }
     match blame(ptr::from_ref(&top) as usize) {
         Blame::Call(owner, function) => {
-            write(&["error: ", &owner.text, " ended the whole process, by `", by, "` in ", function.name(), "\n"]);
+            write(&["error: ", &owner.text, " ended the whole process, by `", by, "` ", function.place(), "\n"]);
         }
         Blame::Thread(library) => {
             write(&["error: a thread of library `", library, "` ended the whole process, by `", by, "`\n"]);
         }
         Blame::Nobody => write(&["error: a thread of a library ended the whole process, by `", by, "`\n"]),
     }
+    hardware::stop();
     leave(Exit::Failed as c_int)
 }
 
@@ -45,6 +47,20 @@ extern "C" fn exited() {
     if !ENDS.load(Ordering::SeqCst) && is_program() {
         end(Exit::Failed as c_int, "exit");
     }
+}
+
+/// Ends the process before what libraries have for its end runs, which could undo what stops hardware.
+#[unsafe(no_mangle)]
+extern "C" fn exit(code: c_int) -> ! {
+    if !ENDS.load(Ordering::SeqCst) && is_program() {
+        end(code, "exit");
+    }
+    let next = next(c"exit");
+    if next.is_null() {
+        leave(code);
+    }
+    // SAFETY: the system's function of this name has this type.
+    unsafe { transmute::<*mut c_void, extern "C" fn(c_int) -> !>(next)(code) }
 }
 
 #[unsafe(no_mangle)]
@@ -82,8 +98,8 @@ extern "C" fn forked() {
         write(&[
             "error: ",
             &owner.text,
-            " forked the program in ",
-            function.name(),
+            " forked the program ",
+            function.place(),
             ", and the child returned: it ends here; it may only call `exec` or `_exit`\n",
         ]);
         leave(Exit::Failed as c_int)

@@ -16,7 +16,7 @@ const LOOK: Duration = Duration::from_millis(250);
 
 /// Begins to watch, on a thread of its own.
 pub(super) fn watch() -> io::Result<()> {
-    thread::Builder::new().name("saoms-hang".to_owned()).spawn(look_for_ever).map(drop)
+    super::started("saoms-hang", look_for_ever)
 }
 
 fn look_for_ever() {
@@ -46,4 +46,9 @@ fn waits(owner: &Owner, function: Function) -> String {
 pub(crate) fn waited_for() -> Option<String> {
     let calls = everywhere().into_iter().filter_map(|(_, call)| call);
     calls.filter(|(_, function)| function.holds_up()).map(|(owner, function)| waits(owner, function)).next()
+}
+
+/// True while a library is loaded: no thread begins then, nor can one wait as long as it likes.
+pub(super) fn is_loading() -> bool {
+    everywhere().into_iter().any(|(_, call)| call.is_some_and(|(_, function)| function == Function::Load))
 }

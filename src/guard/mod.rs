@@ -4,15 +4,17 @@ mod blame;
 mod crash;
 mod end;
 mod hang;
+mod hardware;
 mod signals;
 mod stray;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Once, mpsc};
 use std::time::Duration;
-use std::{process, ptr, thread};
+use std::{io, process, ptr, thread};
 
 pub(crate) use hang::waited_for;
+pub(crate) use hardware::{STOP_PATIENCE, still_moves};
 use saoms_api::host::present::{self, Function, Owner};
 use signals::UseAs;
 pub(crate) use signals::{forget as forget_signals, keep as keep_signals};
@@ -39,15 +41,27 @@ pub(crate) fn install() {
         signals::keep_for(libc::SIGPIPE, "SIGPIPE", UseAs::Pipe);
         present::look_after(look);
         keep_from_libraries();
+        hardware::prepare();
         if let Err(error) = hang::watch() {
             eprint(&format!("warning: nobody watches for code that does not return: {error}\n"));
         }
     });
 }
 
+/// Starts a thread, and waits until its code runs: a thread that starts while a library is loaded waits for that.
+fn started(name: &str, code: impl FnOnce() + Send + 'static) -> io::Result<()> {
+    let (runs, has_begun) = mpsc::channel();
+    let begin = move || {
+        let _ = runs.send(());
+        code();
+    };
+    thread::Builder::new().name(name.to_owned()).spawn(begin)?;
+    has_begun.recv().map_err(io::Error::other)
+}
+
 /// Looks at what code of a library that begins has done to the process.
 fn look(owner: &'static Owner, function: Function) {
-    let place = format!(" in {}", function.name());
+    let place = format!(" {}", function.place());
     signals::unblock(&owner.text, &place);
     signals::take_back(&owner.text, &place);
     tell_lost_descriptors(&owner.text, &place);
@@ -89,6 +103,9 @@ pub(crate) fn exit(code: i32) -> ! {
     }
     ends_by_itself();
     if INSTALLED.is_completed() {
+        if hang::is_loading() {
+            blame::leave(code);
+        }
         let (flushed, all) = mpsc::channel();
         let flush = move || {
             // SAFETY: null stands for all streams.

@@ -57,8 +57,8 @@ extern "C" fn strayed(signal: c_int, info: *mut libc::siginfo_t, _: *mut c_void)
     let blamed = if code == libc::SI_TKILL { blame(ptr::from_ref(&top) as usize) } else { Blame::Nobody };
     match blamed {
         Blame::Call(owner, function) => {
-            let function = function.name();
-            write(&["warning: ", &owner.text, " sent the signal ", name, " in ", function, ": it was ignored\n"]);
+            let place = function.place();
+            write(&["warning: ", &owner.text, " sent the signal ", name, " ", place, ": it was ignored\n"]);
         }
         Blame::Thread(library) => {
             write(&["warning: a thread of library `", library, "` sent the signal ", name, ": it was ignored\n"]);

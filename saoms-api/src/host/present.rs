@@ -20,6 +20,14 @@ pub struct Owner {
 }
 
 impl Owner {
+    /// The subject of a library as a whole.
+    const WHOLE: &str = "library";
+
+    /// The library itself, while it is loaded.
+    pub fn of_library(library: &'static str) -> &'static Owner {
+        Owner::of(Owner::WHOLE, library)
+    }
+
     /// The owner of these names.
     pub fn of(subject: &str, library: &'static str) -> &'static Owner {
         static KNOWN: Mutex<Option<HashMap<(String, &'static str), &'static Owner>>> = Mutex::new(None);
@@ -28,8 +36,11 @@ impl Owner {
         if let Some(owner) = known.get(&(subject.to_owned(), library)) {
             return owner;
         }
-        let subject_shown = if subject.is_empty() { "a component" } else { subject };
-        let text = format!("{subject_shown} of library `{library}`");
+        let text = match subject {
+            Owner::WHOLE => format!("library `{library}`"),
+            "" => format!("a component of library `{library}`"),
+            subject => format!("{subject} of library `{library}`"),
+        };
         let owner: &'static Owner = Box::leak(Box::new(Owner { text: one_line(&text).into_owned() }));
         known.insert((subject.to_owned(), library), owner);
         owner
@@ -54,13 +65,22 @@ macro_rules! functions {
                     $(Function::$function => $text,)*
                 }
             }
+
+            /// When its code did something, as ``in `execute` ``.
+            #[expect(unreachable_patterns, reason = "one of them is told in another way")]
+            pub const fn place(self) -> &'static str {
+                match self {
+                    Function::Load => "while it was loaded",
+                    $(Function::$function => concat!("in ", $text),)*
+                }
+            }
         }
     };
 }
 
 functions! {
     /// The function that gives the tables, and what runs while the library is loaded.
-    Load "its first lines",
+    Load "the static constructors or the entry function",
     /// The constructor of a component or a loop.
     Construct "the constructor",
     /// `initialize`.

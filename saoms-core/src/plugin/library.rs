@@ -19,7 +19,7 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     let unloadable =
         |message: String| PluginError::Unloadable { path: path.to_owned(), package: metadata.package.clone(), message };
     let name: &'static str = path.display().to_string().leak();
-    let owner = Owner::of("the code", name);
+    let owner = Owner::of_library(name);
     let _looked = looked_after(owner, Function::Load);
     let _entered = enter(owner, Function::Load);
     let library = loaded(path).map_err(unloadable)?;

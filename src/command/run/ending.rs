@@ -110,16 +110,13 @@ fn cannot_wait() {
     eprint("warning: Ctrl-C ends the process without a report: code of a library closed what the program waits with\n");
 }
 
-/// Time for hardware to come to rest before the process ends at once.
-const STOP_PATIENCE: Duration = Duration::from_millis(500);
-
 /// Ends the process although something runs, and says what it is. Hardware is stopped before.
 fn end_now() -> ! {
     if let Some(waits) = guard::waited_for() {
         eprint(&format!("error: interrupted while {waits}\n"));
     }
-    for name in stop_hardware(STOP_PATIENCE) {
-        eprint(&format!("error: the hardware of component `{name}` may still move: what stops it has not returned\n"));
+    for name in stop_hardware(guard::STOP_PATIENCE) {
+        eprint(&guard::still_moves(&name));
     }
     guard::exit(Exit::Interrupted as i32)
 }

@@ -54,6 +54,14 @@ static void end(void) {
     }
 }
 
+/* What is done to the process while the library is loaded. */
+#ifndef LOADS
+#define LOADS ""
+#endif
+#ifndef ENTERS
+#define ENTERS ""
+#endif
+__attribute__((constructor)) static void load(void) { act_on_process(LOADS); }
 __attribute__((destructor)) static void unload(void) { end(); }
 
 static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void **made, SaomsFindingSink findings,
@@ -81,7 +89,11 @@ static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void
 }
 
 static SaomsStatus stop(void *state, SaomsSink error) {
-    (void)state, (void)error;
+    (void)error;
+    fprintf(stderr, "the hardware stops\n");
+    while (strstr(state, "hangs in stop") != NULL) {
+        sleep(1);
+    }
     return SaomsStatus_OK;
 }
 
@@ -222,6 +234,9 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     if (actor->executions++ != 2) {
         return SaomsStatus_OK;
     }
+    if (strncmp(actor->does, "hangs in stop, ", 15) == 0) {
+        act_on_process(actor->does + 15);
+    }
     act_on_process(actor->does);
     if (does(actor, "reports deep")) {
         static char path[200001];
@@ -339,6 +354,7 @@ SAOMS_EXPORT const SaomsPluginTable *hostile_plugin(uint32_t version) {
     static const SaomsClassTable *classes[] = {&actors, &motors, &savers};
     static SaomsPluginTable table = {.size = sizeof table, .version = SAOMS_ABI_VERSION, .classes = classes, .class_count = 3};
     (void)version;
+    act_on_process(ENTERS);
     table.metadata = saoms_text(metadata);
     return &table;
 }

@@ -24,7 +24,23 @@ static void *alarm_later(void *nothing) {
 
 /* Does it, if it is one of these. */
 static void act_on_process(const char *does) {
-    if (strcmp(does, "_exit") == 0) {
+    if (strcmp(does, "hangs") == 0) {
+        for (;;) {
+            sleep(1);
+        }
+    } else if (strcmp(does, "crashes") == 0) {
+        raise(SIGSEGV);
+    } else if (strcmp(does, "prints") == 0) {
+        printf("printed by a library\n");
+    } else if (strcmp(does, "aborts") == 0) {
+        abort();
+    } else if (strcmp(does, "exit") == 0) {
+        exit(0);
+    } else if (strcmp(does, "frees twice") == 0) {
+        char *volatile memory = malloc(24);
+        free(memory);
+        free(memory);
+    } else if (strcmp(does, "_exit") == 0) {
         _exit(0);
     } else if (strcmp(does, "_Exit") == 0) {
         _Exit(0);

@@ -2,16 +2,25 @@
 //! signal.
 
 use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::{Child, Stdio};
 
-use super::build::c_library;
+use tempfile::TempDir;
+
+use super::build::{c_library, c_library_of};
 use super::run::{component, in_folder, property};
 use crate::support::command;
 
+type Waiting = (Child, BufReader<std::process::ChildStderr>, String);
+
 /// A command over a fleet whose component hangs, until it says so.
-fn hanging(subcommand: &[&str], at: &str) -> (Child, BufReader<std::process::ChildStderr>, String) {
+fn hanging(subcommand: &[&str], at: &str) -> Waiting {
     let folder = in_folder(&component("Bad", "c.Actor", &(property("at", at) + &property("does", "hang"))));
     let library = c_library(folder.path(), &[]);
+    waiting(subcommand, &folder, &library)
+}
+
+fn waiting(subcommand: &[&str], folder: &TempDir, library: &Path) -> Waiting {
     let mut command = command(subcommand);
     command.current_dir(folder.path()).args(["t.composite", "--plugin"]).arg(library);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
@@ -39,6 +48,19 @@ fn a_check_says_what_it_waits_for() {
             signal(&child, libc::SIGTERM);
             assert_ne!(child.wait().unwrap().code(), Some(0));
         }
+    }
+}
+
+#[test]
+fn a_library_that_hangs_while_it_is_loaded_is_told() {
+    let folder = in_folder(&component("Bad", "h.Actor", ""));
+    for at in ["LOADS", "ENTERS"] {
+        let library = c_library_of("hostile", folder.path(), &[&format!("{at}=\"hangs\"")]);
+        let (mut child, _, line) = waiting(&["run"], &folder, &library);
+        let expected = "warning: the program waits for the static constructors or the entry function of library `";
+        assert!(line.starts_with(expected) && line.contains("libhostile.so`, which has not returned"), "{line}");
+        signal(&child, libc::SIGTERM);
+        assert_ne!(child.wait().unwrap().code(), Some(0));
     }
 }
 

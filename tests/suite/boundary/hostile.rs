@@ -9,7 +9,7 @@ use super::build::c_library_of;
 use super::run::{Run, component, in_folder, property, second};
 use crate::support::{PROGRAM, command, stderr, text};
 
-fn bad(class: &str, does: &str, inside: &str) -> String {
+pub(super) fn bad(class: &str, does: &str, inside: &str) -> String {
     component("Bad", class, &(property("does", does) + inside))
 }
 
@@ -205,8 +205,13 @@ fn a_report_is_written_where_it_was_asked_for() {
 
 /// The command in a process of its own, without a core dump.
 pub(super) fn ended(does: &str) -> Output {
-    let folder = in_folder(&bad("h.Actor", does, ""));
-    let library = c_library_of("hostile", folder.path(), &[]);
+    ended_with(&bad("h.Actor", does, ""), &[])
+}
+
+/// The same with these components and definitions.
+pub(super) fn ended_with(components: &str, definitions: &[&str]) -> Output {
+    let folder = in_folder(components);
+    let library = c_library_of("hostile", folder.path(), definitions);
     let line = format!(
         "ulimit -c 0; exec '{PROGRAM}' run t.composite --virtual --for 950ms --report r.json --plugin '{}'",
         library.display()

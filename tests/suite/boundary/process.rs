@@ -3,8 +3,9 @@
 
 use std::os::unix::process::ExitStatusExt;
 
-use super::hostile::ended;
-use crate::support::{stderr, text};
+use super::hostile::{bad, ended, ended_with};
+use super::run::component;
+use crate::support::{stderr, stdout, text};
 
 /// The beginning of what is told of component `Bad`.
 fn assert_named(does: &str, expected: &str) -> std::process::Output {
@@ -25,6 +26,35 @@ fn an_end_of_the_process_is_a_failure_by_whatever_function() {
     }
     let output = assert_named("ends its thread", "ended the whole process, by `pthread_exit` in `execute`");
     assert_eq!(output.status.code(), Some(1));
+}
+
+/// A run whose library does this to the process while it is loaded.
+fn loaded(definition: &str) -> std::process::Output {
+    ended_with(&bad("h.Actor", "", ""), &[definition])
+}
+
+#[test]
+fn what_a_library_does_while_it_is_loaded_is_told() {
+    for at in ["LOADS", "ENTERS"] {
+        let output = loaded(&format!("{at}=\"crashes\""));
+        let expected = "libhostile.so` crashed while it was loaded: SIGSEGV";
+        assert!(
+            stderr(&output).contains("error: library `") && stderr(&output).contains(expected),
+            "{}",
+            text(&output)
+        );
+        assert_eq!(output.status.signal(), Some(libc::SIGSEGV), "{}", text(&output));
+        for by in ["_exit", "quick_exit"] {
+            let output = loaded(&format!("{at}=\"{by}\""));
+            let expected = format!("libhostile.so` ended the whole process, by `{by}` while it was loaded");
+            assert!(stderr(&output).contains(&expected), "{}", text(&output));
+            assert_eq!(output.status.code(), Some(1), "{}", text(&output));
+        }
+        let output = loaded(&format!("{at}=\"prints\""));
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+        assert!(stderr(&output).contains("printed by a library\n"), "{}", text(&output));
+        assert!(!stdout(&output).contains("printed by a library"), "{}", text(&output));
+    }
 }
 
 #[test]
@@ -90,4 +120,28 @@ fn a_crash_that_nobody_is_to_blame_for_ends_with_its_own_signal() {
     // The stack for signals of a thread of the program is small.
     let output = ended("aborts later");
     assert_eq!(output.status.signal(), Some(libc::SIGABRT), "{}", text(&output));
+}
+
+#[test]
+fn hardware_stops_before_code_of_a_library_ends_the_process() {
+    for (does, signal) in [
+        ("exit", None),
+        ("_exit", None),
+        ("quick_exit", None),
+        ("crashes", Some(libc::SIGSEGV)),
+        ("aborts", Some(libc::SIGABRT)),
+        ("frees twice", Some(libc::SIGABRT)),
+    ] {
+        let motor = component("Motor", "h.Motor", "");
+        let output = ended_with(&(motor + &bad("h.Actor", does, "")), &[]);
+        assert_eq!(stderr(&output).matches("the hardware stops\n").count(), 1, "{does}: {}", text(&output));
+        let line = stderr(&output).find("component `Bad` of library").unwrap();
+        assert!(line < stderr(&output).find("the hardware stops").unwrap(), "{does}: {}", text(&output));
+        assert_eq!((output.status.signal(), output.status.code() == Some(1)), (signal, signal.is_none()), "{does}");
+        // Nobody waits for hardware without end.
+        let output = ended_with(&bad("h.Motor", &format!("hangs in stop, {does}"), ""), &[]);
+        let expected = "error: the hardware of component `Bad` may still move: what stops it has not returned";
+        assert!(stderr(&output).contains(expected), "{does}: {}", text(&output));
+        assert_eq!((output.status.signal(), output.status.code() == Some(1)), (signal, signal.is_none()), "{does}");
+    }
 }
