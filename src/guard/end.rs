@@ -1,7 +1,7 @@
 //! The end of the process, or of a thread of the program, by code of a library: a failure, whatever exit code it gives.
 //!
-//! `exit`, `_exit`, `_Exit`, `quick_exit` and `pthread_exit` are defined here, where the linker finds them before
-//! those of the system when it binds a library. What calls the system itself (`exit_group`) cannot be seen.
+//! `exit`, `_exit`, `_Exit`, `quick_exit`, `pthread_exit` and `pthread_cancel` are defined here, where the linker finds
+//! them before those of the system when it binds a library. What calls the system itself (`exit_group`) cannot be seen.
 
 use std::ffi::{c_int, c_void};
 use std::mem::transmute;
@@ -90,6 +90,21 @@ extern "C" fn pthread_exit(value: *mut c_void) -> ! {
     }
     // SAFETY: the system's function of this name has this type, and ends the thread with the value.
     unsafe { transmute::<*mut c_void, unsafe extern "C" fn(*mut c_void) -> !>(next)(value) }
+}
+
+/// So would one that is cancelled, and the process would end without a word.
+#[unsafe(no_mangle)]
+extern "C" fn pthread_cancel(thread: libc::pthread_t) -> c_int {
+    // SAFETY: the call takes no pointers and never fails.
+    if is_program() && present::here().is_some() && thread == unsafe { libc::pthread_self() } {
+        end(Exit::Failed as c_int, "pthread_cancel");
+    }
+    let next = next(c"pthread_cancel");
+    if next.is_null() {
+        return libc::ENOSYS;
+    }
+    // SAFETY: the system's function of this name has this type.
+    unsafe { transmute::<*mut c_void, extern "C" fn(libc::pthread_t) -> c_int>(next)(thread) }
 }
 
 /// Called after `fork` in the child, which may call `exec` or `_exit`, but never return to the program.

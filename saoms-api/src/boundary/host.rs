@@ -239,11 +239,15 @@ unsafe extern "C" fn listens(state: *mut c_void, level: u32) -> u32 {
     unsafe { with_host(state, 0, |host| u32::from(host.listens(LEVELS.get(level as usize).copied()))) }
 }
 
+/// A line that cannot be read is left out with a warning.
 unsafe extern "C" fn log(state: *mut c_void, level: u32, line: Bytes) {
     // SAFETY: callers pass the state of their handle, and lend the line to this call.
     unsafe {
         with_host(state, (), |host| {
-            let line = shown(line.get().unwrap_or_default());
+            let line = match line.get() {
+                Ok(line) => shown(line),
+                Err(error) => return warn(host, "a line of the log", &error.into()),
+            };
             match LEVELS.get(level as usize) {
                 Some(level) => host.log(*level, format_args!("{line}")),
                 None => host.console(format_args!("{line}")),

@@ -248,6 +248,8 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
         functions->count(host->state, saoms_text(long_text()), 1);
     } else if (does(actor, "logs at length")) {
         functions->log(host->state, SAOMS_WARNING, saoms_text(long_text()));
+    } else if (does(actor, "logs what is not there")) {
+        functions->log(host->state, SAOMS_ERROR, null);
     } else if (does(actor, "fails at length")) {
         return saoms_fail(error, long_text());
     } else if (strstr(actor->does, "s without end") != NULL && !does(actor, "keys without end")) {

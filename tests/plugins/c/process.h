@@ -64,6 +64,17 @@ static void act_on_process(const char *does) {
         fprintf(stderr, "the child has ended with %d\n", WIFEXITED(status) ? WEXITSTATUS(status) : -1);
     } else if (strcmp(does, "SIGUSR1") == 0) {
         raise(SIGUSR1);
+    } else if (strcmp(does, "SIGQUIT") == 0) {
+        raise(SIGQUIT);
+    } else if (strcmp(does, "SIGTSTP") == 0) {
+        raise(SIGTSTP);
+    } else if (strcmp(does, "SIGXCPU") == 0) {
+        raise(SIGXCPU);
+    } else if (strcmp(does, "SIGRTMAX") == 0) {
+        raise(SIGRTMAX);
+    } else if (strcmp(does, "cancels its thread") == 0) {
+        pthread_cancel(pthread_self());
+        sleep(1);
     } else if (strcmp(does, "SIGUSR2 to all") == 0) {
         kill(getpid(), SIGUSR2);
     } else if (strcmp(does, "alarm") == 0) {

@@ -152,6 +152,9 @@ fn texts_for_people_have_a_bound() {
     assert_goes_on(&failed, "x… (20000 more bytes)");
     let logged = run("h.Actor", "logs at length");
     assert!(logged.code == Some(0) && logged.text.contains("x… (20000 more bytes)"), "{}", logged.text);
+    let missing = run("h.Actor", "logs what is not there");
+    let expected = "warning: a line of the log was left out: found null for 10 bytes";
+    assert!(missing.code == Some(0) && missing.text.contains(expected), "{}", missing.text);
     let reported = run("h.Actor", "reports at length");
     assert_eq!(reported.code, Some(0), "{}", reported.text);
     assert_eq!(reported.text.matches("xxx` and more were left out of the report").count(), 1, "{}", reported.text);

@@ -24,6 +24,8 @@ fn an_end_of_the_process_is_a_failure_by_whatever_function() {
             assert_eq!(assert_named(&format!("{at}{by}"), &expected).status.code(), Some(1));
         }
     }
+    let output = assert_named("cancels its thread", "ended the whole process, by `pthread_cancel` in `execute`");
+    assert_eq!(output.status.code(), Some(1));
     let output = assert_named("ends its thread", "ended the whole process, by `pthread_exit` in `execute`");
     assert_eq!(output.status.code(), Some(1));
 }
@@ -71,11 +73,19 @@ fn a_child_that_returns_is_no_second_program() {
 
 #[test]
 fn a_signal_that_nobody_handles_is_told_and_ends_nothing() {
-    let output = assert_named("SIGUSR1", "sent the signal SIGUSR1 in `execute`: it was ignored");
-    assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{}", text(&output));
+    for (does, signal) in [
+        ("SIGUSR1", "SIGUSR1"),
+        ("SIGQUIT", "SIGQUIT"),
+        ("SIGTSTP", "SIGTSTP"),
+        ("SIGXCPU", "SIGXCPU"),
+        ("SIGRTMAX", "SIGRTMIN or a later one"),
+    ] {
+        let output = assert_named(does, &format!("sent the signal {signal} in `execute`: it was ignored"));
+        assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{}", text(&output));
+    }
     for (does, expected) in [
         ("SIGUSR2 to all", "libhostile.so` sent the signal SIGUSR2: it was ignored"),
-        ("alarm", "libhostile.so` let a timer send the signal SIGALRM: it was ignored"),
+        ("alarm", "libhostile.so` let a timer or a limit send the signal SIGALRM: it was ignored"),
     ] {
         let output = ended(does);
         assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{}", text(&output));
