@@ -15,7 +15,7 @@ const CRASHES: [(c_int, &str); 7] = [
     (libc::SIGBUS, "SIGBUS: it accessed memory that does not exist"),
     (libc::SIGILL, "SIGILL: it executed an invalid instruction, as `__builtin_trap` does"),
     (libc::SIGFPE, "SIGFPE: a division by zero"),
-    (libc::SIGABRT, "SIGABRT: it called `abort`"),
+    (libc::SIGABRT, "SIGABRT: it called `abort`, or threw an exception that nobody caught"),
     (libc::SIGTRAP, "SIGTRAP: it executed a breakpoint"),
     (libc::SIGSYS, "SIGSYS: it called the system as it must not"),
 ];

@@ -1,6 +1,6 @@
 use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
-use std::{fmt, mem, ptr};
+use std::{fmt, mem, process, ptr};
 
 use saoms_abi::{Bytes, EntriesHandle, FindingSink, HostHandle, Inbox, MessageView, Sink, Status};
 
@@ -47,14 +47,26 @@ impl Drop for Lease {
     }
 }
 
+/// Ends the process when it is dropped, while something unwinds.
+struct EndsIfUnwound;
+
+impl Drop for EndsIfUnwound {
+    fn drop(&mut self) {
+        process::abort();
+    }
+}
+
 impl Lease {
     /// Runs code of the other side.
     #[inline]
     fn hold(&mut self, code: impl FnOnce(Sink) -> Status) -> Status {
         let lease = self.0;
         lease.holder.store(token(), Ordering::Relaxed);
-        // Nothing unwinds out of functions of the other side.
+        // Nothing unwinds out of functions of the other side, or the process ends here: an exception of another
+        // language cannot be caught, and behind this it would not be known any more whose it was.
+        let ends = EndsIfUnwound;
         let status = code(Sink { state: ptr::from_ref(lease).cast_mut().cast(), put: put_error });
+        mem::forget(ends);
         lease.holder.store(0, Ordering::Relaxed);
         status
     }

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <unwind.h>
 
 /* Of C11, which the headers of C99 leave out. */
 extern void quick_exit(int status);
@@ -33,6 +34,12 @@ static void act_on_process(const char *does) {
     } else if (strcmp(does, "prints") == 0) {
         printf("printed by a library\n");
     } else if (strcmp(does, "aborts") == 0) {
+        abort();
+    } else if (strcmp(does, "throws") == 0) {
+        /* What `throw` in C++ does. */
+        static struct _Unwind_Exception thrown;
+        memcpy(&thrown.exception_class, "GNUCC++", 8);
+        _Unwind_RaiseException(&thrown);
         abort();
     } else if (strcmp(does, "exit") == 0) {
         exit(0);

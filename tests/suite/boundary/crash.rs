@@ -35,7 +35,7 @@ fn a_crash_is_told_with_component_library_and_function() {
         ("bus", libc::SIGBUS, "SIGBUS"),
         ("ill", libc::SIGILL, "SIGILL"),
         ("fpe", libc::SIGFPE, "SIGFPE"),
-        ("abort", libc::SIGABRT, "SIGABRT: it called `abort`"),
+        ("abort", libc::SIGABRT, "SIGABRT: it called `abort`, or threw an exception that nobody caught"),
     ] {
         let output = run("execute", does);
         assert_told(&output, does, " crashed in `execute`: ", expected);

@@ -126,6 +126,14 @@ fn closed_descriptors_are_told_on_what_is_left() {
 }
 
 #[test]
+fn an_exception_of_another_language_is_told_with_its_thrower() {
+    for (at, function) in [("", "`execute`"), ("made: ", "the constructor"), ("begins: ", "`initialize`")] {
+        let output = assert_named(&format!("{at}throws"), &format!("crashed in {function}: SIGABRT"));
+        assert_eq!(output.status.signal(), Some(libc::SIGABRT), "{}", text(&output));
+    }
+}
+
+#[test]
 fn a_crash_that_nobody_is_to_blame_for_ends_with_its_own_signal() {
     // The stack for signals of a thread of the program is small.
     let output = ended("aborts later");
