@@ -518,6 +518,11 @@ typedef struct SaomsComponentTable {
                           const struct SaomsPropertyView *values,
                           size_t value_count,
                           struct SaomsSink error);
+    // Puts what an operator wants to know of the component now, as one JSON object of named values:
+    // `{"battery": 80.5, "block": [3, 1]}`. Asked while nothing else of the component runs, when somebody looks at the
+    // running fleet. It must not wait, and changes nothing. May be null, or beyond the `size` of the table: there is
+    // nothing to tell beyond what the program counts itself.
+    SaomsStatus (*status)(void *component, struct SaomsSink values, struct SaomsSink error);
 } SaomsComponentTable;
 
 // A class: how to make components of it, and their functions.

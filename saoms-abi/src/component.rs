@@ -80,4 +80,9 @@ pub struct ComponentTable {
             error: Sink,
         ) -> Status,
     >,
+    /// Puts what an operator wants to know of the component now, as one JSON object of named values:
+    /// `{"battery": 80.5, "block": [3, 1]}`. Asked while nothing else of the component runs, when somebody looks at the
+    /// running fleet. It must not wait, and changes nothing. May be null, or beyond the `size` of the table: there is
+    /// nothing to tell beyond what the program counts itself.
+    pub status: Option<unsafe extern "C" fn(component: *mut c_void, values: Sink, error: Sink) -> Status>,
 }

@@ -1,6 +1,6 @@
 use crate::derived;
 use crate::host::{Derived, Invocation, LoopRegistration, PropertyValue, SmolStr};
-use crate::{CallError, Context, Failure, Properties, Saved};
+use crate::{CallError, Context, Failure, Properties, ReportValue, Saved};
 
 /// A component of a fleet, written by an author.
 ///
@@ -292,6 +292,34 @@ pub trait Component: Derived + Send + Sized + 'static {
     fn waits_for(&self) -> Option<String> {
         self.base()?.waits_for().ok()?
     }
+
+    /// What an operator wants to know of the component now, as named values: asked between two executions when somebody
+    /// looks at the running fleet (`saoms status`). What the program counts itself (executions, failures, messages) is
+    /// not among them. It is quick, and changes nothing.
+    ///
+    /// ```
+    /// use saoms_api::{Class, Component, Own, ReportValue};
+    ///
+    /// /// Heats up to a temperature.
+    /// #[derive(Class)]
+    /// #[class(name = "example.Heater", periodic)]
+    /// struct Heater {
+    ///     #[property(default = 20.0)]
+    ///     target: f64,
+    ///     measured: f64,
+    /// }
+    ///
+    /// impl Component for Heater {
+    ///     type Properties = Own<Self>;
+    ///
+    ///     fn status(&self) -> Vec<(String, ReportValue)> {
+    ///         ReportValue::named([("target", self.target.into()), ("measured", self.measured.into())])
+    ///     }
+    /// }
+    /// ```
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        self.base().and_then(|base| base.status().ok()).unwrap_or_default()
+    }
 }
 
 /// The declaration of a component, which `#[derive(Class)]` writes.
@@ -338,7 +366,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the
 /// properties, topics, services, references, knowledge and loops of the other one and those that it declares itself;
 /// composites change its loops as those of the other, and rules over fleets take it for one. What it does not write
-/// goes to the other: start, execution, reaction, end, save, restore and `waits_for`. What it writes calls that of the
+/// goes to the other: start, execution, reaction, end, save, restore, `waits_for` and `status`. What it writes calls that of the
 /// other where its work belongs:
 ///
 /// ```
@@ -451,6 +479,11 @@ pub trait DynComponent: Send {
     /// # Errors
     /// A component of a library failed to say it.
     fn waits_for(&self) -> Result<Option<String>, Failure>;
+    /// See [`Component::status`].
+    ///
+    /// # Errors
+    /// A component of a library failed to say it.
+    fn status(&self) -> Result<Vec<(String, ReportValue)>, Failure>;
 }
 
 impl<C: Class> DynComponent for C {
@@ -492,5 +525,9 @@ impl<C: Class> DynComponent for C {
 
     fn waits_for(&self) -> Result<Option<String>, Failure> {
         Ok(Component::waits_for(self))
+    }
+
+    fn status(&self) -> Result<Vec<(String, ReportValue)>, Failure> {
+        Ok(Component::status(self))
     }
 }

@@ -10,3 +10,4 @@ pub mod observe;
 pub mod plugin;
 pub mod report;
 pub mod schedule;
+pub mod status;

@@ -407,6 +407,14 @@ impl Bench {
         self.component.waits_for()
     }
 
+    /// The [status](saoms_api::Component::status) of the component now.
+    ///
+    /// # Errors
+    /// A component of a library failed to say it.
+    pub fn status(&self) -> Result<Vec<(String, ReportValue)>, Failure> {
+        self.component.status()
+    }
+
     /// A value or count of the component in the report.
     pub fn report(&self, path: &str) -> Option<&ReportValue> {
         self.stage.report.iter().rev().find(|(known, _)| known == path).map(|(_, value)| value)

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use saoms_api::host::contain::{contained, install_hook};
 use saoms_api::host::{DynComponent, Invocation, KnowledgeClass, PropertyValue, SmolStr};
-use saoms_api::{CallError, Chance, Context, Failure, Knowledge, LoopClass, Loops, Saved, Value};
+use saoms_api::{CallError, Chance, Context, Failure, Knowledge, LoopClass, Loops, ReportValue, Saved, Value};
 #[cfg(feature = "fleets")]
 use saoms_core::plugin::Plugin;
 use saoms_registry::registry::RegisteredLoop;
@@ -241,5 +241,9 @@ impl<K: Knowledge + Send> DynComponent for Subject<K> {
 
     fn waits_for(&self) -> Result<Option<String>, Failure> {
         Ok(None)
+    }
+
+    fn status(&self) -> Result<Vec<(String, ReportValue)>, Failure> {
+        Ok(Vec::new())
     }
 }

@@ -69,7 +69,7 @@ fn layout() -> String {
         FindingView { place, message, helps, help_count, instead, labels, label_count, severity }
         FindingSink { state, put }
         ReportView { name, kind, bits, text, children, child_count }
-        ComponentTable { size, initialize, execute, shutdown, serve, destroy, save, restore, waits_for, react, update }
+        ComponentTable { size, initialize, execute, shutdown, serve, destroy, save, restore, waits_for, react, update, status }
         LoopClassTable { size, construct, looping }
         LoopTable { size, effect, entries, initialize, monitor, adapt, shutdown, destroy }
         LoopInstance { instance, table }

@@ -4,7 +4,7 @@ use saoms_abi::{Bytes, ClassTable, ComponentTable, FindingSink, HostHandle, Prop
 
 use crate::host::contain::contained;
 use crate::host::{DynComponent, Invocation};
-use crate::{Class, Context, Failure, Properties, Saved};
+use crate::{Class, Context, Failure, Properties, ReportValue, Saved};
 
 use super::context_state::ContextState;
 use super::convert::read_properties;
@@ -56,6 +56,7 @@ impl<C: DynComponent> ExportedComponent<C> {
         save: Some(Self::save),
         restore: Some(Self::restore),
         waits_for: Some(Self::waits_for),
+        status: Some(Self::status),
         react: Some(Self::react),
         update: Some(Self::update),
     };
@@ -147,6 +148,19 @@ impl<C: DynComponent> ExportedComponent<C> {
             guarded(error, || {
                 if let Some(what) = (*this.cast::<Self>()).component.waits_for()? {
                     text.put(what.as_bytes());
+                }
+                Ok(())
+            })
+        }
+    }
+
+    unsafe extern "C" fn status(this: *mut c_void, values: Sink, error: Sink) -> Status {
+        // SAFETY: as in `save`.
+        unsafe {
+            guarded(error, || {
+                let shown = (*this.cast::<Self>()).component.status()?;
+                if !shown.is_empty() {
+                    values.put(ReportValue::Map(shown).to_string().as_bytes());
                 }
                 Ok(())
             })

@@ -105,6 +105,8 @@ functions! {
     Restore "`restore`",
     /// `waits_for`.
     WaitsFor "`waits_for`",
+    /// `status`.
+    Status "`status`",
     /// The function that stops hardware.
     Stop "the function that stops its hardware",
     /// The heartbeat of hardware.

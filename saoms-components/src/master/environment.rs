@@ -1,5 +1,6 @@
 use saoms_api::{
-    Cause, Class, Component, Context, Failure, Header, Level, Message, Publisher, Saved, Subscription, Work,
+    Cause, Class, Component, Context, Failure, Header, Level, Message, Publisher, ReportValue, Saved, Subscription,
+    Work,
 };
 
 use super::event_filter::EventFilter;
@@ -124,6 +125,10 @@ impl Component for MasterEnvironment {
         self.filter = EventFilter::of(memory.known);
         self.open = OpenLuggage::of(memory.open);
         Ok(())
+    }
+
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        self.open.status()
     }
 
     fn waits_for(&self) -> Option<String> {

@@ -1,7 +1,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-use saoms_api::{Field, Time};
+use saoms_api::{Field, ReportValue, Time};
 
 use crate::grid::Block;
 use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, RobotList};
@@ -68,7 +68,30 @@ struct BreakingMemory {
     until: Time,
 }
 
+/// Maximum number of pieces that a status lists.
+const LISTED: usize = 1000;
+
 impl OpenLuggage {
+    /// What an operator wants to know: the open pieces, and which of them no robot has taken.
+    pub(super) fn status(&self) -> Vec<(String, ReportValue)> {
+        let block = |block: Block| ReportValue::List(vec![block.x.into(), block.y.into()]);
+        let piece = |(luggage, piece): (&u32, &Piece)| {
+            ReportValue::Map(ReportValue::named([
+                ("luggage", ReportValue::from(*luggage)),
+                ("from", block(piece.from)),
+                ("to", block(piece.to)),
+                ("waits", piece.waits.into()),
+            ]))
+        };
+        let number = |number: usize| ReportValue::from(i64::try_from(number).unwrap_or(i64::MAX));
+        let waiting = self.pieces.values().filter(|piece| piece.waits).count();
+        ReportValue::named([
+            ("open", number(self.pieces.len())),
+            ("waiting", number(waiting)),
+            ("luggage", ReportValue::List(self.pieces.iter().take(LISTED).map(piece).collect())),
+        ])
+    }
+
     /// The state for a master that goes on.
     pub(super) fn memory(&self) -> OpenMemory {
         let piece = |(luggage, piece): (&u32, &Piece)| {

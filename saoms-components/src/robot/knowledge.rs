@@ -34,6 +34,8 @@ pub struct RobotKnowledge {
     pub(super) elapsed: Duration,
     /// What it did so far, for the report.
     pub(super) tally: Tally,
+    /// Number of the robot that it lets go first, and since when it waits for that.
+    pub(super) yields_to: Option<(u32, Time)>,
     /// Position of the robot.
     #[entry]
     pub block: Block,
@@ -153,6 +155,7 @@ impl RobotKnowledge {
             executed_at: None,
             elapsed: Duration::ZERO,
             tally: Tally::default(),
+            yields_to: None,
             block: charge_block,
             next: charge_block,
             wanted: None,
@@ -194,6 +197,12 @@ impl RobotKnowledge {
             leg: Leg::default(),
             extras: Extras::default(),
         }
+    }
+
+    /// Notes which robot it lets go first in this execution.
+    pub(super) fn yield_to(&mut self, robot: Option<u32>, now: Time) {
+        let before = self.yields_to.filter(|(before, _)| robot == Some(*before));
+        self.yields_to = before.or_else(|| robot.map(|robot| (robot, now)));
     }
 
     /// True if it is at its charger.

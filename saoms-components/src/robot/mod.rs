@@ -28,7 +28,7 @@ mod sayings;
 mod tally;
 mod upkeep;
 
-use saoms_api::{Class, Component, Context, Failure, Loops, Saved};
+use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
@@ -180,6 +180,10 @@ impl Component for Robot {
 
     fn waits_for(&self) -> Option<String> {
         self.knowledge.waits_for()
+    }
+
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        self.knowledge.status()
     }
 }
 

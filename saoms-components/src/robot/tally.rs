@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
-use saoms_api::Context;
+use saoms_api::{Context, ReportValue};
 
 use super::{RobotKnowledge, Trouble, Variables};
+use crate::grid::Block;
 
 /// What a robot did so far.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,6 +38,26 @@ impl RobotKnowledge {
         context.count(&row("waited_ms"), i64::try_from(waited.as_millis()).unwrap_or(i64::MAX));
         context.report(&row("battery"), self.battery.percent());
         context.report(&row("state"), self.state());
+    }
+
+    /// What an operator wants to know of it.
+    pub(super) fn status(&self) -> Vec<(String, ReportValue)> {
+        let block = |block: Block| ReportValue::List(vec![block.x.into(), block.y.into()]);
+        let job = self.job.as_ref().map_or(ReportValue::Null, |job| {
+            let (luggage, from, to) = (job.luggage, job.from, job.to);
+            format!("luggage {luggage} from {from} to {to}").into()
+        });
+        let waits = self.yields_to;
+        ReportValue::named([
+            ("robot", ReportValue::from(self.number)),
+            ("state", self.state().into()),
+            ("block", block(self.block)),
+            ("battery", self.battery.percent().into()),
+            ("job", job),
+            ("waits_for_robot", waits.map_or(ReportValue::Null, |(robot, _)| robot.into())),
+            ("waits_since_s", waits.map_or(ReportValue::Null, |(_, since)| since.as_secs_f64().into())),
+            ("delivered", i64::try_from(self.tally.delivered).unwrap_or(i64::MAX).into()),
+        ])
     }
 
     /// Its state in a word or two.

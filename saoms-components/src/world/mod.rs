@@ -142,6 +142,10 @@ impl Component for World {
         self.restore_state(saved)
     }
 
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        self.counts()
+    }
+
     fn waits_for(&self) -> Option<String> {
         let Some((first, more)) = self.stock.first_open() else { return Some("luggage".to_owned()) };
         let pieces = pieces(first, more);
@@ -170,16 +174,20 @@ impl World {
     fn report_row(&self, context: &mut Context<'_>) {
         // Dots lead into objects.
         let key = context.name().replace('.', "_");
+        context.report(&format!("worlds.{key}"), ReportValue::Map(self.counts()));
+    }
+
+    /// Its counts so far.
+    fn counts(&self) -> Vec<(String, ReportValue)> {
         let number = |number: usize| ReportValue::from(i64::try_from(number).unwrap_or(i64::MAX));
         let (delivered, open, given_up) = self.stock.counts();
-        let row = vec![
-            ("robots".to_owned(), number(self.referee.robots())),
-            ("delivered".to_owned(), number(delivered)),
-            ("open".to_owned(), number(open)),
-            ("given_up".to_owned(), number(given_up)),
-            ("collisions".to_owned(), number(self.collided)),
-        ];
-        context.report(&format!("worlds.{key}"), ReportValue::Map(row));
+        ReportValue::named([
+            ("robots", number(self.referee.robots())),
+            ("delivered", number(delivered)),
+            ("open", number(open)),
+            ("given_up", number(given_up)),
+            ("collisions", number(self.collided)),
+        ])
     }
 
     fn break_down(&mut self, context: &mut Context<'_>, fault: &Fault) {

@@ -10,4 +10,5 @@ mod tests;
 pub use lateness::{Lateness, LatenessSummary};
 pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, RunStatus, Votes};
 pub use sections::Sections;
+pub(crate) use sections::json;
 pub use standstill::{Standstill, Waiting};

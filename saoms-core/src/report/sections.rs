@@ -117,7 +117,8 @@ fn insert(object: &mut Map<String, Value>, path: &str, value: Value) {
     }
 }
 
-fn json(value: &ReportValue) -> Value {
+/// The value as JSON.
+pub(crate) fn json(value: &ReportValue) -> Value {
     match value {
         ReportValue::Null => Value::Null,
         ReportValue::Bool(value) => Value::from(*value),

@@ -4,7 +4,7 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use saoms_api::{Level, Time};
 
@@ -21,6 +21,7 @@ use super::shared::Shared;
 use crate::journal::ComponentName;
 use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;
+use crate::status::FleetStatus;
 use saoms_api::host::contain;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 
@@ -54,6 +55,9 @@ pub struct RunningFleet {
     /// The thread that delivers records of the journal to observers.
     journal: Option<JoinHandle<RecordDelivery>>,
 }
+
+/// Time for which the answers of components are waited for.
+const PATIENCE: Duration = Duration::from_millis(50);
 
 /// A remote control of a fleet. It may be cloned and used from any thread; after the end of the run it does nothing.
 #[derive(Clone)]
@@ -355,6 +359,26 @@ impl Handle {
     /// Queues a note about the fleet as a whole for the observers.
     pub fn note(&self, level: Level, text: String) {
         self.shared.note(level, text);
+    }
+
+    /// A snapshot of the fleet with what each component says of itself. Components are asked between their executions, at
+    /// most ten times a second, and only when somebody wants to know; one that does not answer within 50 ms, because its
+    /// code runs, is shown with what it said before.
+    pub fn status(&self) -> FleetStatus {
+        let shared = &self.shared;
+        let mut engine = shared.lock();
+        if engine.phase == RunPhase::Running && engine.are_outdated() {
+            engine.ask_all();
+            shared.release(engine);
+            engine = shared.lock();
+        }
+        let until = Instant::now() + PATIENCE;
+        while !engine.are_answered() && Instant::now() < until {
+            engine = shared.wait_for_return(engine, until.saturating_duration_since(Instant::now()));
+        }
+        let status = engine.status(&shared.sections(), shared.clock.now());
+        shared.release(engine);
+        status
     }
 
     /// Progress of the run.

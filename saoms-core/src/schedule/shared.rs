@@ -3,7 +3,6 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use saoms_api::Time;
-use saoms_api::extension::RunSummary;
 
 use super::drive::pulse::Pulse;
 use super::engine::Engine;
@@ -15,6 +14,7 @@ use super::stop::Stops;
 use crate::journal::RecordQueue;
 use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunProgress};
 use crate::report::Sections;
+use crate::status::summaries;
 
 /// Everything that the threads of a run share. The lock of the engine is held for bookkeeping alone, never while
 /// component code runs or a thread sleeps.
@@ -169,9 +169,7 @@ impl Shared {
         let time = Time::from_nanos(self.clock.now());
         let periods = self.executions.load(Ordering::Relaxed);
         let sections = self.sections();
-        let count = |path: &str| sections.integer(path).unwrap_or(0);
-        let summaries = RunSummary::linked().into_iter().filter_map(|summary| (summary.progress)(&count));
-        RunProgress { time, periods, summaries: summaries.collect() }
+        RunProgress { time, periods, summaries: summaries(|path| sections.integer(path).unwrap_or(0)) }
     }
 }
 

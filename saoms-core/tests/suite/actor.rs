@@ -6,7 +6,7 @@
 use std::time::{Duration, Instant};
 
 use saoms_api::{
-    CallError, Class, Component, Context, Failure, Level, Message, Properties, Publisher, Subscription,
+    CallError, Class, Component, Context, Failure, Level, Message, Properties, Publisher, ReportValue, Subscription,
     TaskInterfaceReference, Topic, Work, interface, record,
 };
 
@@ -128,6 +128,10 @@ macro_rules! actor {
 
             fn waits_for(&self) -> Option<String> {
                 Some(self.script.waits.clone()).filter(|what| !what.is_empty())
+            }
+
+            fn status(&self) -> Vec<(String, ReportValue)> {
+                ReportValue::named([("waits", self.script.waits.as_str().into())])
             }
         }
 

@@ -23,6 +23,7 @@ mod regions;
 mod services;
 mod standstill;
 mod start;
+mod status;
 mod stop;
 mod tasks;
 mod trace;

@@ -27,7 +27,7 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
     (
         "saoms-core/src",
         "crate::",
-        &["hash", "plugin", "assemble", "bus", "journal", "report", "observe", "fault", "schedule"],
+        &["hash", "plugin", "assemble", "bus", "journal", "report", "status", "observe", "fault", "schedule"],
     ),
 ];
 

@@ -144,4 +144,5 @@ pub use kind::PropertyKind;
 pub use rule::Rule;
 pub(crate) use scalar::trim;
 pub use scalar::{Integer, Scalar, parse_scalar};
+pub(crate) use text::escape;
 pub use text::{ConstText, text};

@@ -125,7 +125,7 @@ const fn digits(mut number: usize) -> ([u8; 20], usize) {
     (digits, length)
 }
 
-const fn escape(byte: u8) -> ([u8; 6], usize) {
+pub(crate) const fn escape(byte: u8) -> ([u8; 6], usize) {
     const DIGITS: &[u8; 16] = b"0123456789abcdef";
     match byte {
         b'"' | b'\\' => ([b'\\', byte, 0, 0, 0, 0], 2),

@@ -143,6 +143,12 @@ impl Component for Busy {
         self.panic_in("waits_for");
         Some("a sample, or two".to_owned())
     }
+
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        self.panic_in("status");
+        let list = ReportValue::List(vec![1.into(), (-0.5).into(), "a \"ü\"\n".into(), ReportValue::Null]);
+        ReportValue::named([("list", list), ("level", 80.0.into()), ("on", true.into())])
+    }
 }
 
 impl Adder for Busy {
@@ -188,6 +194,10 @@ fn played(construct: Construct) -> String {
     }
     let waits_for = busy.waits_for();
     assert_eq!(waits_for, Ok(Some("a sample, or two".to_owned())));
+    let mut status = busy.status().unwrap();
+    // Names of a JSON object have no order.
+    status.sort_by(|one, other| one.0.cmp(&other.0));
+    host.lines.push(format!("{status:?}"));
     results.push(busy.shutdown(&mut Context::new(&mut host, &[])));
     let sent: Vec<_> =
         host.sent.iter().map(|(place, message)| (*place, message.header(), message.key(), message.bytes())).collect();

@@ -5,7 +5,7 @@ mod knowledge;
 mod memory;
 mod robot_list;
 
-use saoms_api::{Class, Component, Context, Failure, Loops, Properties, Saved, Subscription};
+use saoms_api::{Class, Component, Context, Failure, Loops, Properties, ReportValue, Saved, Subscription};
 
 use crate::console::Timestamp;
 use crate::messages::{ROBOT_LIST, RobotList};
@@ -81,6 +81,14 @@ impl Component for MasterRobot {
         let Some(memory) = saved.read::<MasterRobotMemory>()? else { return Ok(()) };
         let loops = self.knowledge.restore(memory);
         self.loops.restore(&mut self.knowledge, &loops)
+    }
+
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        ReportValue::named([
+            ("robots", ReportValue::from(self.knowledge.robots)),
+            ("asleep", self.knowledge.asleep.into()),
+            ("on_shift", self.knowledge.on_shift.into()),
+        ])
     }
 
     fn waits_for(&self) -> Option<String> {

@@ -112,6 +112,11 @@ impl Loop for ClassicCollision {
             context.console(format_args!("{name}: RISK OF COLLISION DETECTED AND AVOIDED!"));
         }
         knowledge.variables.stop_a_period = matches!(decision, ClassicCollisionDecision::Stop { .. });
+        let first = match decision {
+            ClassicCollisionDecision::Stop { robot, .. } => Some(robot),
+            ClassicCollisionDecision::GoOn | ClassicCollisionDecision::GoOnAgain => None,
+        };
+        knowledge.yield_to(first, context.now());
         if let ClassicCollisionDecision::Stop { robot, block } = decision {
             info!(context, "waits: robot {robot} enters {block} first");
         }

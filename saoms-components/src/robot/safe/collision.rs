@@ -82,10 +82,11 @@ impl Loop for SafeCollision {
     fn analyze(
         &mut self,
         knowledge: &mut RobotKnowledge,
-        _context: &mut Context<'_>,
+        context: &mut Context<'_>,
     ) -> Result<Option<SafeCollisionSymptom>, Failure> {
         let RobotKnowledge { traffic, next, .. } = knowledge;
         let taken = traffic.wanted(*next).and_then(|block| Some(Wait { block, robot: traffic.in_the_way(block)? }));
+        knowledge.yield_to(taken.map(|wait| wait.robot), context.now());
         if taken == self.waits {
             return Ok(None);
         }

@@ -6,7 +6,8 @@ use saoms_abi::{Bytes, ClassTable, ComponentTable, Construct, HostHandle, Sink, 
 use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_findings};
 use saoms_api::host::present::{Function, Owner, enter, looked_after, subject};
 use saoms_api::host::{DynComponent, Invocation, PropertyValue, SmolStr};
-use saoms_api::{CallError, Context, Failure, Saved};
+use saoms_api::{CallError, Context, Failure, ReportValue, Saved};
+use serde_json::{Map, Value};
 
 /// A class of a plugin.
 #[derive(Clone, Copy, Debug)]
@@ -28,13 +29,14 @@ impl ImportedClass {
 
     /// True if its components have this function, of those that may be null.
     pub fn has(&self, function: &str) -> bool {
-        let ComponentTable { save, restore, waits_for, react, update, .. } = self.component;
+        let ComponentTable { save, restore, waits_for, react, update, status, .. } = self.component;
         match function {
             "save" => save.is_some(),
             "restore" => restore.is_some(),
             "waits_for" => waits_for.is_some(),
             "react" => react.is_some(),
             "update" => update.is_some(),
+            "status" => status.is_some(),
             _ => false,
         }
     }
@@ -200,6 +202,20 @@ impl DynComponent for ImportedComponent {
             String::from_utf8(bytes).map_err(|_| Failure::new("the text that says what it waits for is not UTF-8"))?;
         Ok(Some(text).filter(|text| !text.is_empty()))
     }
+
+    fn status(&self) -> Result<Vec<(String, ReportValue)>, Failure> {
+        let Some(status) = self.table.status else { return Ok(Vec::new()) };
+        let (instance, mut bytes) = (self.instance, Vec::new());
+        let _entered = enter(self.owner, Function::Status);
+        // SAFETY: as in `save`.
+        call_for_bytes(&mut bytes, |values, error| unsafe { status(instance, values, error) })?;
+        if bytes.is_empty() {
+            return Ok(Vec::new());
+        }
+        let values: Result<Map<String, Value>, _> = serde_json::from_slice(&bytes);
+        let values = values.map_err(|error| Failure::new(format!("its status is not one JSON object: {error}")))?;
+        Ok(values.into_iter().map(|(name, value)| (name, report_value(value))).collect())
+    }
 }
 
 impl Drop for ImportedComponent {
@@ -207,5 +223,21 @@ impl Drop for ImportedComponent {
         let _entered = enter(self.owner, Function::Destroy);
         // SAFETY: the instance is the one that `construct` gave, and is given back once.
         unsafe { (self.table.destroy)(self.instance) }
+    }
+}
+
+/// The value of a status that a library wrote as JSON.
+fn report_value(value: Value) -> ReportValue {
+    match value {
+        Value::Null => ReportValue::Null,
+        Value::Bool(value) => value.into(),
+        Value::Number(number) => {
+            number.as_i64().map_or_else(|| number.as_f64().unwrap_or(f64::NAN).into(), ReportValue::from)
+        }
+        Value::String(text) => text.into(),
+        Value::Array(values) => ReportValue::List(values.into_iter().map(report_value).collect()),
+        Value::Object(values) => {
+            ReportValue::Map(values.into_iter().map(|(name, value)| (name, report_value(value))).collect())
+        }
     }
 }

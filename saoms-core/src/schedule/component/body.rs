@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use saoms_api::host::{DynComponent, Invocation, SharedMessage};
-use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure};
+use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Time};
 
 use super::host::ComponentHost;
 use super::lasting::Lasting;
@@ -11,9 +11,11 @@ use super::spent::Spent;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
+use crate::report::json;
 use crate::schedule::engine::votes::Ballot;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::RegisteredStop;
+use crate::status::Description;
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_lang::assembly::ComponentSpec;
@@ -66,6 +68,8 @@ pub(crate) struct Part {
     pub(crate) vote: Option<Ballot>,
     /// Answer to the question what it waits for.
     pub(crate) waits_for: Option<String>,
+    /// Answer to the question what an operator wants to know.
+    pub(crate) described: Option<Arc<Description>>,
     /// In virtual time, the time at which the present code runs.
     pub(crate) now: u64,
     pub(crate) due: u64,
@@ -102,6 +106,8 @@ pub(crate) enum Job {
     React,
     /// Say what it waits for.
     Ask,
+    /// Say what an operator wants to know.
+    Describe,
     /// Shut down.
     Shutdown,
 }
@@ -137,6 +143,7 @@ impl Body {
             cancelled,
             vote: None,
             waits_for: None,
+            described: None,
             now: 0,
             due: 0,
             execution: 0,
@@ -177,6 +184,7 @@ impl Body {
             Job::Ask => self.call(shared, |instance, _| instance.waits_for()).unwrap_or_else(Err).map(|waits_for| {
                 self.part.waits_for = waits_for;
             }),
+            Job::Describe => self.describe(shared),
             Job::Start => self.start(shared),
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };
@@ -213,6 +221,15 @@ impl Body {
             self.discard();
         }
         result
+    }
+
+    fn describe(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
+        let told = self.call(shared, |instance, _| Ok::<_, Failure>((instance.waits_for()?, instance.status()?)));
+        let (waits_for, values) = told??;
+        let values = values.iter().map(|(name, value)| (name.clone(), json(value))).collect();
+        let at = Time::from_nanos(if shared.clock.is_virtual() { self.part.now } else { shared.clock.now() });
+        self.part.described = Some(Arc::new(Description { at, waits_for, values }));
+        Ok(())
     }
 
     pub(crate) fn construct(&mut self) -> Result<(), Failure> {

@@ -29,11 +29,16 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             engine = wait_for_journal(shared, engine);
             continue;
         }
-        if engine.phase == RunPhase::Running && now >= engine.pause {
-            engine = sleep(shared, engine);
-            continue;
-        }
-        match engine.next(now) {
+        let next = if engine.phase == RunPhase::Running && now >= engine.pause {
+            let Some(question) = engine.next_question() else {
+                engine = sleep(shared, engine);
+                continue;
+            };
+            question
+        } else {
+            engine.next(now)
+        };
+        match next {
             Next::Run(index, job) => {
                 let Some(mut body) = engine.begin(index, job, now) else { continue };
                 engine.roles.running = Some(index);

@@ -3,6 +3,7 @@ use std::sync::{Arc, MutexGuard};
 use saoms_api::Level;
 
 use super::spawn_thread;
+use crate::schedule::component::body::Job;
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::os::sys;
 use crate::schedule::shared::{Shared, relock};
@@ -37,7 +38,8 @@ pub(super) fn work(shared: &Arc<Shared>) {
             slot.waiting = true;
             continue;
         }
-        let Some(job) = engine.job(index, started) else { continue };
+        let question = slot.asked.then_some(Job::Describe);
+        let Some(job) = question.or_else(|| engine.job(index, started)) else { continue };
         let Some(mut body) = engine.begin(index, job, started) else { continue };
         shared.release(engine);
         let result = body.perform(shared, job);

@@ -66,7 +66,7 @@ impl Engine {
                 // At the end of a run no code runs any more that could become free, unless that of another component.
                 body.part.retries_shutdown = self.phase != RunPhase::Stopping || self.out > 1;
             }
-            Job::Ask => {}
+            Job::Ask | Job::Describe => {}
             Job::Start => {
                 let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
                 slot.instances += 1;
@@ -168,6 +168,9 @@ impl Engine {
             return;
         }
         self.note_return();
+        if job == Job::Describe {
+            self.note_answer(index);
+        }
         let slot = &mut self.slots[index as usize];
         if matches!(job, Job::Execute | Job::React) && self.real {
             let slow = ended.saturating_sub(started) > self.budget && !slot.isolation.always;
@@ -197,6 +200,7 @@ impl Engine {
                 let slot = &mut self.slots[index as usize];
                 match job {
                     Job::Execute | Job::React | Job::Shutdown => {}
+                    Job::Describe => slot.described = body.part.described.take(),
                     Job::Ask => slot.waits_for = body.part.waits_for.take(),
                     Job::Start => {
                         body.fit_inboxes();
@@ -210,6 +214,7 @@ impl Engine {
                 match job {
                     Job::Execute | Job::React => self.executed(index, ended),
                     Job::Ask => self.resume(index, ended),
+                    Job::Describe => self.answered(index, ended),
                     Job::Start => self.started(index, ended),
                     Job::Shutdown => self.left(index, ended),
                 }

@@ -11,6 +11,7 @@ mod reaction;
 mod report;
 pub(super) mod slot;
 pub(super) mod standstill;
+mod status;
 pub(super) mod trace;
 pub(super) mod votes;
 
@@ -24,6 +25,7 @@ use self::ending::EndCause;
 use self::queue::Queue;
 use self::slot::{NEVER, Slot, SlotState};
 use self::standstill::StandstillDetector;
+use self::status::Questions;
 use self::trace::{Trace, TraceStep};
 use self::votes::VoteTally;
 use super::component::body::Job;
@@ -86,6 +88,7 @@ pub(crate) struct Engine {
     pub(crate) ended: (u64, u64),
     pub(crate) votes: VoteTally,
     pub(crate) standstill: StandstillDetector,
+    pub(crate) questions: Questions,
     /// Time before which no message from outside is due and no standstill can be found; later effects only delay one.
     pub(crate) look_at: u64,
     /// Latest end of the run.
@@ -173,6 +176,7 @@ impl Engine {
             ended: (0, 0),
             votes: VoteTally::default(),
             standstill: StandstillDetector::default(),
+            questions: Questions::default(),
             look_at: 0,
             limit: settings.limit.map_or(NEVER, nanos),
             pause: 0,
@@ -210,6 +214,9 @@ impl Engine {
                         self.look_at = self.injections.earliest().map_or(quiet, |when| when.min(quiet));
                     }
                     let Some((when, index)) = self.queue.pop_due(now) else {
+                        if let Some(question) = self.next_question() {
+                            return question;
+                        }
                         // Real time passes also where nobody executes: a standstill is told then, too.
                         let look_at = if self.real { self.look_at } else { NEVER };
                         return Next::Wait(self.earliest().unwrap_or(NEVER).min(look_at).min(self.limit));

@@ -35,28 +35,28 @@ impl Engine {
     fn components(&self) -> Vec<ComponentReport> {
         // All components that ever joined the fleet.
         let joined = self.slots.iter().filter(|slot| slot.joined);
-        joined
-            .map(|slot| {
-                let (spec, statistics) = (&slot.spec, &slot.statistics);
-                ComponentReport {
-                    name: spec.path.clone(),
-                    id: spec.task.as_ref().map(|task| task.id.clone()),
-                    class: spec.class.name().to_owned(),
-                    executions: statistics.executions,
-                    missed: statistics.missed,
-                    reactions: statistics.reactions,
-                    late_us: if self.real { statistics.late.summary() } else { LatenessSummary::default() },
-                    deadline_misses: statistics.deadline_misses,
-                    slow: statistics.slow,
-                    busy: statistics.busy,
-                    restarts: slot.restarts,
-                    replaced: slot.statistics.replaced,
-                    failures: statistics.failures,
-                    dropped: statistics.dropped + statistics.unkept,
-                    messages: MessageCounts { sent: statistics.sent, received: statistics.received },
-                }
-            })
-            .collect()
+        joined.map(|slot| self.component_report(slot)).collect()
+    }
+
+    pub(super) fn component_report(&self, slot: &Slot) -> ComponentReport {
+        let (spec, statistics) = (&slot.spec, &slot.statistics);
+        ComponentReport {
+            name: spec.path.clone(),
+            id: spec.task.as_ref().map(|task| task.id.clone()),
+            class: spec.class.name().to_owned(),
+            executions: statistics.executions,
+            missed: statistics.missed,
+            reactions: statistics.reactions,
+            late_us: if self.real { statistics.late.summary() } else { LatenessSummary::default() },
+            deadline_misses: statistics.deadline_misses,
+            slow: statistics.slow,
+            busy: statistics.busy,
+            restarts: slot.restarts,
+            replaced: slot.statistics.replaced,
+            failures: statistics.failures,
+            dropped: statistics.dropped + statistics.unkept,
+            messages: MessageCounts { sent: statistics.sent, received: statistics.received },
+        }
     }
 
     fn votes_report(&self) -> Votes {

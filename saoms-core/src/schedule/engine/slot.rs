@@ -7,6 +7,7 @@ use crate::journal::Ring;
 use crate::report::Lateness;
 use crate::schedule::component::body::Body;
 use crate::schedule::settings::nanos;
+use crate::status::Description;
 use saoms_lang::assembly::{ComponentSpec, Loss, Overrun};
 
 /// A time that never comes.
@@ -63,6 +64,10 @@ pub(crate) struct Slot {
     pub(crate) gave_up: bool,
     /// What it waits for, as it said last when it was asked.
     pub(crate) waits_for: Option<String>,
+    /// True if it was asked for its status and has not answered.
+    pub(crate) asked: bool,
+    /// Its last answer.
+    pub(crate) described: Option<Arc<Description>>,
     pub(crate) statistics: Statistics,
     pub(crate) journal: Ring,
     /// Reason of a stop by its own `overrun`.
@@ -244,6 +249,8 @@ impl Slot {
             sees_work: None,
             gave_up: false,
             waits_for: None,
+            asked: false,
+            described: None,
             statistics: Statistics::default(),
             journal: Ring::default(),
             overrun_failure: None,

@@ -1,0 +1,100 @@
+//! The status of a running fleet, as operators see it.
+
+use saoms_api::Time;
+use saoms_api::extension::RunSummary;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::report::ComponentReport;
+
+/// A snapshot of a running fleet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FleetStatus {
+    /// Time of the run in seconds.
+    pub time_s: f64,
+    /// What the fleet does.
+    pub phase: FleetPhase,
+    /// Summaries of the report's counts so far ([`RunSummary::progress`]).
+    pub summaries: Vec<String>,
+    /// Its components in document order, without those that were removed.
+    pub components: Vec<ComponentStatus>,
+}
+
+/// Phases of a fleet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FleetPhase {
+    /// Its components initialize.
+    Starting,
+    /// Its components execute.
+    Running,
+    /// Its components shut down.
+    Ending,
+    /// The run is over.
+    Ended,
+}
+
+/// A snapshot of a component.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ComponentStatus {
+    /// What its report would say now.
+    #[serde(flatten)]
+    pub report: ComponentReport,
+    /// What it does.
+    pub state: ComponentState,
+    /// Its period in milliseconds; a passive component has none.
+    pub period_ms: Option<f64>,
+    /// Seconds since its present code was called, if that has not returned: long if it hangs. Not in virtual time.
+    pub in_code_s: Option<f64>,
+    /// What it waits for, if it takes no work by itself ([`Component::waits_for`](saoms_api::Component::waits_for)).
+    pub waits_for: Option<String>,
+    /// What it says of itself ([`Component::status`](saoms_api::Component::status)).
+    pub values: Map<String, Value>,
+    /// Time of the run in seconds at which it said so; `null` if it was never asked.
+    pub values_s: Option<f64>,
+}
+
+/// States of a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ComponentState {
+    /// It is not scheduled: nobody has started it yet, or it was stopped.
+    Idle,
+    /// It will be constructed and initialized.
+    Starting,
+    /// It takes part.
+    Running,
+    /// It will be shut down.
+    Leaving,
+    /// It has failed for good.
+    Failed,
+    /// Its code did not return in time, and it was given up.
+    Abandoned,
+}
+
+impl ComponentState {
+    /// The state as a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            ComponentState::Idle => "idle",
+            ComponentState::Starting => "starting",
+            ComponentState::Running => "running",
+            ComponentState::Leaving => "leaving",
+            ComponentState::Failed => "failed",
+            ComponentState::Abandoned => "abandoned",
+        }
+    }
+}
+
+/// What a component said of itself.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Description {
+    pub(crate) at: Time,
+    pub(crate) waits_for: Option<String>,
+    pub(crate) values: Map<String, Value>,
+}
+
+/// The summaries of counts so far.
+pub(crate) fn summaries(count: impl Fn(&str) -> i64) -> Vec<String> {
+    RunSummary::linked().into_iter().filter_map(|summary| (summary.progress)(&count)).collect()
+}
