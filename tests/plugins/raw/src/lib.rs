@@ -276,6 +276,7 @@ static COMPONENT: ComponentTable = ComponentTable {
     save: None,
     restore: None,
     waits_for: None,
+    status: None,
     react: None,
     update: None,
 };
