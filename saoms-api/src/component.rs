@@ -366,8 +366,8 @@ pub trait Component: Derived + Send + Sized + 'static {
 /// A component that is a robot and something more wraps the robot, in a field with `#[extends]`. Its class has the
 /// properties, topics, services, references, knowledge and loops of the other one and those that it declares itself;
 /// composites change its loops as those of the other, and rules over fleets take it for one. What it does not write
-/// goes to the other: start, execution, reaction, end, save, restore, `waits_for` and `status`. What it writes calls that of the
-/// other where its work belongs:
+/// goes to the other: start, execution, reaction, end, save, restore, `waits_for` and `status`. What it writes calls
+/// that of the other where its work belongs:
 ///
 /// ```
 /// use saoms_api::{Class, Component, Context, Failure, Message, Own, Publisher, Topic};

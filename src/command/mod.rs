@@ -3,6 +3,7 @@
 mod check;
 mod completions;
 mod components;
+mod control;
 mod expand;
 mod explain;
 mod fmt;
@@ -51,6 +52,14 @@ enum Command {
     Graph(graph::GraphArguments),
     Why(why::WhyArguments),
     Report(report::ReportArguments),
+    Ps(control::PsArguments),
+    Status(control::StatusArguments),
+    Logs(control::LogsArguments),
+    Send(control::SendArguments),
+    Start(control::StartArguments),
+    Stop(control::StopArguments),
+    Set(control::SetArguments),
+    Down(control::DownArguments),
     New(new::NewArguments),
     Schema(schema::SchemaArguments),
     Lsp(lsp::LspArguments),
@@ -70,6 +79,14 @@ pub(crate) fn execute() -> Exit {
         Command::Graph(arguments) => graph::graph(&arguments),
         Command::Why(arguments) => why::why(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Ps(arguments) => control::ps(&arguments),
+        Command::Status(arguments) => control::status(&arguments),
+        Command::Logs(arguments) => control::logs(&arguments),
+        Command::Send(arguments) => control::send(&arguments),
+        Command::Start(arguments) => control::start(&arguments),
+        Command::Stop(arguments) => control::stop(&arguments),
+        Command::Set(arguments) => control::set(&arguments),
+        Command::Down(arguments) => control::down(&arguments),
         Command::New(arguments) => new::new(&arguments),
         Command::Schema(arguments) => schema::schema(&arguments),
         Command::Lsp(arguments) => lsp::lsp(&arguments),

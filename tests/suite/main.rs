@@ -5,6 +5,7 @@
 mod boundary;
 mod check;
 mod command;
+mod control;
 mod fleets;
 mod lsp;
 mod peers;

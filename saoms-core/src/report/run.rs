@@ -140,6 +140,8 @@ pub enum RunStatus {
     Done,
     /// The time given for the run was over.
     Elapsed,
+    /// An operator ended the run (`saoms down`).
+    Stopped,
     /// Work was given up, whatever ended the run.
     Incomplete,
     /// A component or observer failed for good, whatever ended the run.

@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use saoms_api::rule::nearest;
 use saoms_api::{Level, Time};
 
 use super::change::{self, ChangeError, Changed, SetError, StartError, Takeover};
@@ -70,6 +71,8 @@ pub struct Handle {
 pub struct UnknownComponent {
     name: String,
     passive: bool,
+    /// The path of the most similar one.
+    nearest: Option<String>,
 }
 
 impl fmt::Display for UnknownComponent {
@@ -77,7 +80,8 @@ impl fmt::Display for UnknownComponent {
         if self.passive {
             write!(formatter, "component `{}` is passive: it has no executions that could be scheduled", self.name)
         } else {
-            write!(formatter, "the fleet has no component `{}`", self.name)
+            write!(formatter, "the fleet has no component `{}`", self.name)?;
+            self.nearest.as_ref().map_or(Ok(()), |nearest| write!(formatter, "; did you mean `{nearest}`?"))
         }
     }
 }
@@ -95,6 +99,19 @@ impl RunningFleet {
         assembly: Assembly,
         settings: Settings,
         observers: Vec<Arc<dyn Observer>>,
+    ) -> Result<RunningFleet, StartError> {
+        RunningFleet::start_with(assembly, settings, observers, |_| ())
+    }
+
+    /// The same, with code that gets the remote control before the components initialize, which may take long.
+    ///
+    /// # Errors
+    /// As [`start`](RunningFleet::start).
+    pub fn start_with(
+        assembly: Assembly,
+        settings: Settings,
+        observers: Vec<Arc<dyn Observer>>,
+        before: impl FnOnce(&Handle),
     ) -> Result<RunningFleet, StartError> {
         contain::install_hook();
         let settings = settings.checked();
@@ -128,6 +145,7 @@ impl RunningFleet {
         fleet.journal = spawn_journal(&fleet.handle.shared).map_err(StartError::Thread)?;
         let shared = &fleet.handle.shared;
         drive::spawn(shared).map_err(StartError::Thread)?;
+        before(&fleet.handle);
         change::apply(shared, assembly)?;
         Ok(fleet)
     }
@@ -266,6 +284,15 @@ impl Handle {
         self.shared.end.wake();
     }
 
+    /// Ends the fleet as [`stop`](Handle::stop) does, because an operator wants that: the run is
+    /// [`Stopped`](crate::report::RunStatus::Stopped) then, unless it was asked to stop before.
+    pub fn down(&self) {
+        if !self.shared.stop.load(Ordering::SeqCst) {
+            self.shared.is_down.store(true, Ordering::SeqCst);
+        }
+        self.stop();
+    }
+
     /// Schedules a periodic component. Returns at once; the component initializes as soon as no code runs, and begins
     /// after its delay.
     ///
@@ -361,9 +388,9 @@ impl Handle {
         self.shared.note(level, text);
     }
 
-    /// A snapshot of the fleet with what each component says of itself. Components are asked between their executions, at
-    /// most ten times a second, and only when somebody wants to know; one that does not answer within 50 ms, because its
-    /// code runs, is shown with what it said before.
+    /// A snapshot of the fleet with what each component says of itself. Components are asked between their executions,
+    /// at most ten times a second, and only when somebody wants to know. One that does not answer within 50 ms, because
+    /// its code runs, is shown with what it said before.
     pub fn status(&self) -> FleetStatus {
         let shared = &self.shared;
         let mut engine = shared.lock();
@@ -400,7 +427,11 @@ impl Handle {
         let slot = known.map(|number| &engine.slots[number]).filter(|slot| slot.is_member());
         match (known, slot) {
             (Some(number), Some(slot)) if slot.policy.periodic => Ok(number),
-            _ => Err(UnknownComponent { name: component.to_owned(), passive: slot.is_some() }),
+            _ => {
+                let members = engine.slots.iter().filter(|slot| slot.is_member());
+                let nearest = nearest(component, members.map(|slot| &*slot.name)).map(str::to_owned);
+                Err(UnknownComponent { name: component.to_owned(), passive: slot.is_some(), nearest })
+            }
         }
     }
 }

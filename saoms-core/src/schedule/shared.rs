@@ -43,8 +43,9 @@ pub(super) struct Shared {
     pub(super) pulse: Pulse,
     /// Signals work for the worker threads, or the end of the run.
     pub(super) work: Condvar,
-    /// True if the end was requested.
+    /// True if the end was requested, and whether an operator did so.
     pub(super) stop: AtomicBool,
+    pub(super) is_down: AtomicBool,
     /// The run has ended.
     pub(super) ended: AtomicBool,
     /// Counter of the journal's records.
@@ -84,6 +85,7 @@ impl Shared {
             pulse: Pulse::default(),
             work: Condvar::new(),
             stop: AtomicBool::new(false),
+            is_down: AtomicBool::new(false),
             ended: AtomicBool::new(false),
             records,
             delivering: AtomicUsize::new(0),

@@ -19,8 +19,8 @@ use guard::keep_signals;
 /// The signals that end a run, handled from its first moment on.
 pub(super) struct Signalled(Arc<State>);
 
-#[derive(Default)]
 struct State {
+    grace: Duration,
     has_come: AtomicBool,
     /// True while the fleet starts.
     starts: AtomicBool,
@@ -36,14 +36,15 @@ impl Signalled {
         // Who starts it with `nohup` wants it to outlive the terminal.
         let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
         let signals = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup));
-        let state: Arc<State> = Arc::default();
+        let (has_come, starts) = (AtomicBool::new(false), AtomicBool::new(false));
+        let state = Arc::new(State { grace, has_come, starts, fleet: OnceLock::new() });
         let handled = Arc::clone(&state);
         keep_signals(&[(SIGINT, "SIGINT"), (SIGTERM, "SIGTERM"), (SIGHUP, "SIGHUP")]);
         let spawned = signals.and_then(|signals| {
             // Never dropped: what it closed then might be closed already, or be something else by now.
             let mut signals = ManuallyDrop::new(signals);
             let handle = move || {
-                let handled = contained(|| signals.forever().for_each(|signal| handled.handle(signal, grace)));
+                let handled = contained(|| signals.forever().for_each(|signal| handled.handle(signal)));
                 if handled.is_err() {
                     cannot_wait();
                 }
@@ -69,28 +70,53 @@ impl Signalled {
         }
     }
 
+    /// What an operator ends the run with.
+    pub(super) fn ending(&self) -> OperatorEnd {
+        OperatorEnd(Arc::clone(&self.0))
+    }
+
     /// True if one has come.
     pub(super) fn has_come(&self) -> bool {
         self.0.has_come.load(Ordering::SeqCst)
     }
 }
 
+/// The end of a run by an operator.
+pub(super) struct OperatorEnd(Arc<State>);
+
+impl OperatorEnd {
+    /// Ends every component through its shutdown. A start that does not end within the grace is given up.
+    pub(super) fn down(&self, fleet: &Handle) {
+        limit_patience(self.0.grace);
+        fleet.down();
+        State::give_up(&self.0, Exit::Failed);
+    }
+}
+
 impl State {
-    fn handle(self: &Arc<State>, signal: i32, grace: Duration) {
+    fn handle(self: &Arc<State>, signal: i32) {
         // Of a terminal that is closed, the system and the shell tell one after the other.
         let is_second = self.has_come.swap(true, Ordering::SeqCst) && signal != SIGHUP;
         if is_second || !self.starts.load(Ordering::SeqCst) {
-            end_now();
+            end_now(Exit::Interrupted);
         }
-        limit_patience(grace);
-        if let Some(fleet) = self.fleet.get() {
-            return fleet.stop();
+        limit_patience(self.grace);
+        match self.fleet.get() {
+            Some(fleet) => fleet.stop(),
+            None => self.give_up(Exit::Interrupted),
+        }
+    }
+
+    /// Ends the process after the grace if the fleet still starts.
+    fn give_up(self: &Arc<State>, exit: Exit) {
+        if self.fleet.get().is_some() {
+            return;
         }
         let state = Arc::clone(self);
         let give_up = move || {
-            thread::sleep(grace);
+            thread::sleep(state.grace);
             if state.fleet.get().is_none() {
-                end_now();
+                end_now(exit);
             }
         };
         // Without it, a second signal ends the process.
@@ -111,14 +137,14 @@ fn cannot_wait() {
 }
 
 /// Ends the process although something runs, and says what it is. Hardware is stopped before.
-fn end_now() -> ! {
+fn end_now(exit: Exit) -> ! {
     if let Some(waits) = guard::waited_for() {
         eprint(&format!("error: interrupted while {waits}\n"));
     }
     for name in stop_hardware(guard::STOP_PATIENCE) {
         eprint(&guard::still_moves(&name));
     }
-    guard::exit(Exit::Interrupted as i32)
+    guard::exit(exit as i32)
 }
 
 fn is_ignored(signal: i32) -> bool {

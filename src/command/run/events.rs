@@ -74,6 +74,26 @@ impl Events {
         Ok(Events { lines, languages: languages.collect(), number: 0 })
     }
 
+    /// Lines that operators send one by one.
+    pub(super) fn of_operators(seed: u64) -> Events {
+        let languages = EventLanguage::linked().map(|one| (one.topic.name, (one.new)(seed)));
+        Events { lines: Box::new(io::empty()), languages: languages.collect(), number: 0 }
+    }
+
+    /// Lets the events of a line that an operator sent happen, and gives their number.
+    ///
+    /// # Errors
+    /// What is wrong with the line.
+    pub(super) fn send(&mut self, line: &str, handle: &Handle) -> Result<u64, String> {
+        let line = line.trim();
+        if line.contains(['\n', '\r']) {
+            return Err("found several lines, expected one line, with `;` between events".to_owned());
+        }
+        let count = self.inject(line, handle.progress().time, handle)?;
+        handle.count("events.taken", count);
+        Ok(u64::try_from(count).unwrap_or_default())
+    }
+
     /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same
     /// lines give the same run, unless a signal ends it before; in real time they are read as they come, and the run
     /// lasts at least to their end.

@@ -1,6 +1,7 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
 mod console;
+mod control;
 mod ending;
 mod events;
 mod outputs;
@@ -15,11 +16,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
 use saoms_core::observe::Observer;
 use saoms_core::report::RunStatus;
-use saoms_core::schedule::{ClockKind, RunningFleet, Settings};
+use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::INPUT;
@@ -29,6 +31,7 @@ use crate::arguments::{FleetArguments, Format, duration};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use console::Console;
+use control::Control;
 use ending::{Signalled, end_without_reader};
 use events::Events;
 use outputs::{Output, RunFiles};
@@ -38,7 +41,8 @@ use report_file::ReportFile;
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0    done, also when --for elapsed with work left (the report says so), or when nobody reads what it prints any more
+  0    done, also when --for elapsed or `saoms down` came with work left (the report says so), or when nobody reads what
+       it prints any more
   1    the run failed: a component failed for good, a message was lost, a report, picture or standard output could not be
        written; or it is incomplete: work was given up
   2    the input is wrong: a composite, a value, the command line, a place where no file can be or that is read; nothing
@@ -90,6 +94,16 @@ pub(crate) struct RunArguments {
     /// luggage (3,1) to (3,10)`; an event without a time happens at once. A wrong line is reported and ignored
     #[arg(long, value_name = "FILE")]
     pub(crate) events: Option<PathBuf>,
+
+    /// Go on when all work is done, since more may be sent: until `saoms down`, a signal, or the time of `--for`
+    #[arg(long)]
+    pub(crate) stay: bool,
+
+    /// Let commands such as `saoms status` reach the fleet at this socket, or nowhere (`none`). In real time the usual
+    /// socket is `NAME-PID.sock` in `$XDG_RUNTIME_DIR/saoms`, or `/tmp/saoms-UID` without that folder; in virtual time
+    /// there is none
+    #[arg(long, value_name = "PATH|none")]
+    pub(crate) control: Option<String>,
 
     /// Watch the libraries of plugins: when a library is rebuilt, its components are replaced while the fleet runs
     #[arg(long, conflicts_with = "virtual_time")]
@@ -184,8 +198,19 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
+    let mut notes = Vec::new();
+    let control = match Control::of(arguments, &mut notes) {
+        Ok(control) => control,
+        Err(exit) => return exit,
+    };
+    observers.extend(control.as_ref().map(|control| Arc::clone(&control.log) as Arc<dyn Observer>));
     signals.starts();
-    let fleet = match RunningFleet::start(assembly, settings(arguments), observers) {
+    let mut server = None;
+    let before = |handle: &Handle| {
+        notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
+        server = control.and_then(|control| control.serve(handle, &signals));
+    };
+    let fleet = match RunningFleet::start_with(assembly, settings(arguments), observers, before) {
         Ok(fleet) => fleet,
         Err(error) => {
             let error = error.to_string();
@@ -197,6 +222,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     if needs_reader {
         end_without_reader(fleet.handle());
     }
+    let hold = arguments.stay.then(|| fleet.handle().hold());
     let reload = watched.map(|watched| Reload::start(files, &watched, fleet.handle()));
     if let Some(events) = events {
         events.play(fleet.handle(), arguments.virtual_time, || signals.has_come());
@@ -210,14 +236,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         limit_patience(arguments.grace);
     }
     let outcome = fleet.run_to_end().outcome;
-    drop(reload);
+    drop((hold, reload, server));
     if report.is_some_and(|report| report.output.has_failed())
         || picture.is_some_and(|picture| picture.output.has_failed())
     {
         return Exit::Failed;
     }
     match outcome.status {
-        RunStatus::Done | RunStatus::Elapsed => Exit::Done,
+        RunStatus::Done | RunStatus::Elapsed | RunStatus::Stopped => Exit::Done,
         RunStatus::Incomplete | RunStatus::Failed => Exit::Failed,
         RunStatus::Interrupted if signals.has_come() => Exit::Interrupted,
         // Its reader has seen enough.

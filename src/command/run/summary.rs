@@ -34,6 +34,7 @@ pub(crate) fn outcome(report: &RunReport) -> String {
     let how = match report.outcome.status {
         RunStatus::Done => "done",
         RunStatus::Elapsed => "time limit reached",
+        RunStatus::Stopped => "stopped",
         RunStatus::Incomplete => "incomplete",
         RunStatus::Failed => "failed",
         RunStatus::Interrupted => "interrupted",

@@ -2,7 +2,7 @@
 //! command.
 
 mod alike;
-mod build;
+pub(crate) mod build;
 mod crash;
 mod hang;
 mod hostile;

@@ -69,7 +69,8 @@ fn prepare_thread(shared: &Shared, priority: i32) {
 #[inline]
 fn handle_stop_request(shared: &Shared, engine: &mut Engine, now: u64) {
     if shared.stop.load(Ordering::Relaxed) {
-        engine.begin_stop(EndCause::Interrupted, now);
+        let is_down = shared.is_down.load(Ordering::Relaxed);
+        engine.begin_stop(if is_down { EndCause::Stopped } else { EndCause::Interrupted }, now);
     }
 }
 

@@ -15,6 +15,8 @@ pub(crate) enum EndCause {
     Elapsed,
     /// A stop was requested.
     Interrupted,
+    /// An operator ended the run.
+    Stopped,
     /// No component is left that can run.
     Lost,
     /// Work is left, and nothing can happen any more.

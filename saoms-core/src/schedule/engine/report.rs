@@ -93,6 +93,7 @@ impl Engine {
                 RunStatus::Incomplete
             }
             Some(EndCause::Elapsed) => RunStatus::Elapsed,
+            Some(EndCause::Stopped) => RunStatus::Stopped,
             Some(EndCause::Idle) => {
                 let has_run = self.slots.iter().any(|slot| slot.statistics.executions > 0);
                 let left_out = self.names(|slot| !has_run && slot.is_left_out());

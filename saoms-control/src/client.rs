@@ -1,0 +1,181 @@
+//! The client of the server: HTTP/1.0 over the Unix socket.
+
+use std::fmt;
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
+use std::os::unix::net::UnixStream;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::description::FleetDescription;
+use crate::place::{folder, remove_if_dead};
+
+/// Time for which an answer is waited for.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// The longest head of an answer.
+const LONGEST_HEAD: u64 = 65_536;
+
+/// A client of a running fleet.
+#[derive(Clone, Debug)]
+pub struct Client {
+    socket: PathBuf,
+}
+
+/// Error of a request.
+#[derive(Debug)]
+pub enum ClientError {
+    /// No fleet answers at this socket.
+    NotReached(PathBuf, io::Error),
+    /// The fleet refused it, with this reason.
+    Refused(String),
+    /// The answer cannot be understood.
+    Malformed(String),
+}
+
+impl fmt::Display for ClientError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ClientError::NotReached(path, error) => {
+                write!(formatter, "no fleet answers at `{}`: {error}", path.display())
+            }
+            ClientError::Refused(reason) => formatter.write_str(reason),
+            ClientError::Malformed(what) => write!(formatter, "the answer of the fleet cannot be understood: {what}"),
+        }
+    }
+}
+
+impl std::error::Error for ClientError {}
+
+/// The answer to a request: its body.
+#[derive(Debug)]
+pub struct Response {
+    body: BufReader<UnixStream>,
+}
+
+impl Response {
+    /// The whole body as JSON.
+    ///
+    /// # Errors
+    /// It is none, or does not come in time.
+    pub fn json(mut self) -> Result<Value, ClientError> {
+        let mut bytes = Vec::new();
+        self.body.read_to_end(&mut bytes).map_err(|error| ClientError::Malformed(error.to_string()))?;
+        serde_json::from_slice(&bytes).map_err(|error| ClientError::Malformed(error.to_string()))
+    }
+
+    /// The server-sent events of the body as they come, each with its name (`message` without one) and its data. It
+    /// ends with the fleet.
+    pub fn events(mut self) -> impl Iterator<Item = (String, String)> {
+        // Nothing may happen for long.
+        let _ = self.body.get_ref().set_read_timeout(None);
+        std::iter::from_fn(move || {
+            let (mut name, mut data, mut line) = ("message".to_owned(), None::<String>, String::new());
+            loop {
+                line.clear();
+                if self.body.read_line(&mut line).ok()? == 0 {
+                    return None;
+                }
+                match line.trim_end_matches(['\r', '\n']).split_once(':') {
+                    Some(("event", value)) => name = value.trim_start().to_owned(),
+                    Some(("data", value)) => {
+                        let value = value.strip_prefix(' ').unwrap_or(value);
+                        data = Some(data.map_or_else(|| value.to_owned(), |before| format!("{before}\n{value}")));
+                    }
+                    None if line.trim().is_empty() => {
+                        if let Some(data) = data.take() {
+                            return Some((name, data));
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        })
+    }
+}
+
+impl Client {
+    /// A client of the fleet at this socket.
+    pub fn new(socket: impl Into<PathBuf>) -> Client {
+        Client { socket: socket.into() }
+    }
+
+    /// The path of the socket.
+    pub fn socket(&self) -> &Path {
+        &self.socket
+    }
+
+    /// Sends a request, such as `GET /v1/status`, with a body of text.
+    ///
+    /// # Errors
+    /// The fleet does not answer, or refuses it.
+    pub fn request(&self, method: &str, path: &str, body: &str) -> Result<Response, ClientError> {
+        let unreached = |error| ClientError::NotReached(self.socket.clone(), error);
+        let mut stream = UnixStream::connect(&self.socket).map_err(unreached)?;
+        stream.set_read_timeout(Some(PATIENCE)).map_err(unreached)?;
+        stream.set_write_timeout(Some(PATIENCE)).map_err(unreached)?;
+        let length = body.len();
+        let head = format!(
+            "{method} {path} HTTP/1.0\r\nHost: localhost\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: {length}\r\n\r\n"
+        );
+        stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body.as_bytes())).map_err(unreached)?;
+        let mut answer = BufReader::new(stream);
+        let status = read_head(&mut answer).map_err(|error| ClientError::Malformed(error.to_string()))?;
+        let response = Response { body: answer };
+        match status {
+            200..=299 => Ok(response),
+            _ => {
+                let value = response.json()?;
+                let reason = value["error"].as_str().map(str::to_owned);
+                Err(ClientError::Refused(reason.unwrap_or_else(|| format!("HTTP status {status}"))))
+            }
+        }
+    }
+
+    /// How the fleet introduces itself.
+    ///
+    /// # Errors
+    /// As [`request`](Client::request).
+    pub fn description(&self) -> Result<FleetDescription, ClientError> {
+        let value = self.request("GET", "/v1/fleet", "")?.json()?;
+        serde_json::from_value(value).map_err(|error| ClientError::Malformed(error.to_string()))
+    }
+}
+
+/// Reads the head of an answer, and gives its status.
+fn read_head(answer: &mut BufReader<UnixStream>) -> io::Result<u16> {
+    let mut head = answer.by_ref().take(LONGEST_HEAD);
+    let mut line = String::new();
+    head.read_line(&mut line)?;
+    let status = line.split(' ').nth(1).and_then(|status| status.parse().ok());
+    let status = status.ok_or_else(|| io::Error::new(ErrorKind::InvalidData, "it is no HTTP"))?;
+    loop {
+        line.clear();
+        if head.read_line(&mut line)? == 0 {
+            return Err(io::Error::new(ErrorKind::UnexpectedEof, "it ends too early"));
+        }
+        if line.trim().is_empty() {
+            return Ok(status);
+        }
+    }
+}
+
+/// The user's fleets on this machine that answer, by name and process. Sockets of programs that have ended are removed.
+pub fn running() -> Vec<(Client, FleetDescription)> {
+    let files = std::fs::read_dir(folder()).into_iter().flatten().flatten().map(|entry| entry.path());
+    let sockets = files.filter(|path| path.extension().is_some_and(|extension| extension == "sock"));
+    let mut fleets: Vec<(Client, FleetDescription)> = sockets
+        .filter_map(|path| {
+            let client = Client::new(&path);
+            match client.description() {
+                Ok(description) => Some((client, description)),
+                Err(_) => {
+                    let _ = remove_if_dead(&path);
+                    None
+                }
+            }
+        })
+        .collect();
+    fleets.sort_by(|(_, one), (_, other)| (&one.name, one.pid).cmp(&(&other.name, other.pid)));
+    fleets
+}

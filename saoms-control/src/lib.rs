@@ -1,0 +1,17 @@
+//! Control of running fleets: a server in the program of a fleet, and its client.
+//!
+//! The server speaks HTTP on a Unix socket of the user, with threads of its own: the timer of the fleet never waits for
+//! it. `openapi` describes its routes. Commands such as `saoms status` use the [`Client`]; so does any program that
+//! speaks HTTP, such as `curl --unix-socket`.
+
+mod client;
+mod description;
+mod log;
+mod place;
+mod server;
+
+pub use client::{Client, ClientError, Response, running};
+pub use description::FleetDescription;
+pub use log::{LogLine, LogTail};
+pub use place::{Listener, default_socket};
+pub use server::{ControlServer, ControlledFleet, openapi};

@@ -1,0 +1,109 @@
+//! Where the sockets of running fleets are.
+
+use std::env;
+use std::fs::{self, DirBuilder, Permissions};
+use std::io::{self, ErrorKind};
+use std::os::unix::fs::{DirBuilderExt, FileTypeExt, MetadataExt, PermissionsExt};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::{Path, PathBuf};
+
+/// The folder with the sockets of the user's fleets: `saoms` in `$XDG_RUNTIME_DIR`, which belongs to the user alone, or
+/// else `/tmp/saoms-UID`.
+pub(crate) fn folder() -> PathBuf {
+    match env::var_os("XDG_RUNTIME_DIR").filter(|folder| Path::new(folder).is_dir()) {
+        Some(folder) => Path::new(&folder).join("saoms"),
+        None => PathBuf::from(format!("/tmp/saoms-{}", user())),
+    }
+}
+
+fn user() -> u32 {
+    // SAFETY: it takes nothing and cannot fail.
+    unsafe { libc::geteuid() }
+}
+
+/// The usual socket of a fleet: `NAME-PID.sock` in the folder of the user.
+pub fn default_socket(name: &str, pid: u32) -> PathBuf {
+    let plain = |letter: char| if letter.is_alphanumeric() || "-_.".contains(letter) { letter } else { '_' };
+    // A path of a socket has at most 107 bytes.
+    let name: String = name.chars().map(plain).take(24).collect();
+    folder().join(format!("{}-{pid}.sock", name.trim_start_matches('.')))
+}
+
+/// A socket on which a fleet listens. The file is removed when it is dropped.
+#[derive(Debug)]
+pub struct Listener {
+    pub(crate) socket: UnixListener,
+    pub(crate) file: SocketFile,
+}
+
+/// The file of a socket.
+#[derive(Debug)]
+pub(crate) struct SocketFile {
+    path: PathBuf,
+    /// Device and inode.
+    identity: (u64, u64),
+}
+
+impl Listener {
+    /// Listens on a socket that only the user can use. The file of a program that has ended is replaced.
+    ///
+    /// # Errors
+    /// The folder cannot be made or belongs to somebody else, a program listens there, or the file is no socket.
+    pub fn bind(path: &Path) -> io::Result<Listener> {
+        if let Some(parent) = path.parent().filter(|parent| *parent == folder()) {
+            make_private(parent)?;
+        }
+        let socket = match UnixListener::bind(path) {
+            Err(error) if error.kind() == ErrorKind::AddrInUse => {
+                remove_if_dead(path)?;
+                UnixListener::bind(path)?
+            }
+            bound => bound?,
+        };
+        fs::set_permissions(path, Permissions::from_mode(0o600))?;
+        let metadata = fs::symlink_metadata(path)?;
+        let file = SocketFile { path: path.to_owned(), identity: (metadata.dev(), metadata.ino()) };
+        Ok(Listener { socket, file })
+    }
+
+    /// The path of the socket.
+    pub fn path(&self) -> &Path {
+        &self.file.path
+    }
+}
+
+impl Drop for SocketFile {
+    fn drop(&mut self) {
+        // Another program may have put its own socket there.
+        let is_own = fs::symlink_metadata(&self.path).is_ok_and(|file| (file.dev(), file.ino()) == self.identity);
+        if is_own {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Makes a folder that only the user can use.
+fn make_private(folder: &Path) -> io::Result<()> {
+    match DirBuilder::new().mode(0o700).create(folder) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+        made => return made,
+    }
+    let metadata = fs::symlink_metadata(folder)?;
+    if !metadata.is_dir() || metadata.uid() != user() || metadata.mode() & 0o077 != 0 {
+        let message = format!("the folder `{}` is not the user's alone", folder.display());
+        return Err(io::Error::new(ErrorKind::PermissionDenied, message));
+    }
+    Ok(())
+}
+
+/// Removes a socket on which nobody listens.
+pub(crate) fn remove_if_dead(path: &Path) -> io::Result<()> {
+    if !fs::symlink_metadata(path)?.file_type().is_socket() {
+        return Err(io::Error::new(ErrorKind::AlreadyExists, "there is a file, which is no socket"));
+    }
+    match UnixStream::connect(path) {
+        Ok(_) => Err(io::Error::new(ErrorKind::AddrInUse, "another program listens there")),
+        Err(error) if error.kind() == ErrorKind::ConnectionRefused => fs::remove_file(path),
+        Err(error) => Err(error),
+    }
+}

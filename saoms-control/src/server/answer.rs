@@ -1,0 +1,52 @@
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde_json::json;
+
+/// An error as a client gets it: `{"error": "..."}`.
+#[derive(Debug)]
+pub(super) struct Refusal {
+    status: StatusCode,
+    message: String,
+}
+
+impl Refusal {
+    /// The request cannot be understood, or asks for something that there is not.
+    pub(super) fn unprocessable(message: impl ToString) -> Refusal {
+        Refusal { status: StatusCode::UNPROCESSABLE_ENTITY, message: message.to_string() }
+    }
+
+    /// The server itself failed.
+    pub(super) fn internal(message: impl ToString) -> Refusal {
+        Refusal { status: StatusCode::INTERNAL_SERVER_ERROR, message: message.to_string() }
+    }
+
+    pub(super) fn not_found() -> Refusal {
+        let message = "there is no such route: `GET /v1/openapi.json` describes all".to_owned();
+        Refusal { status: StatusCode::NOT_FOUND, message }
+    }
+}
+
+impl IntoResponse for Refusal {
+    fn into_response(self) -> Response {
+        let body = json!({"error": self.message}).to_string();
+        (self.status, [("content-type", "application/json")], body).into_response()
+    }
+}
+
+/// The result of a route.
+pub(super) type Answer = Result<Response, Refusal>;
+
+/// An answer in JSON.
+pub(super) fn json_text(text: impl Into<axum::body::Body>) -> Answer {
+    Ok(([("content-type", "application/json")], text.into()).into_response())
+}
+
+/// The answer to an order that was accepted.
+pub(super) fn done() -> Answer {
+    json_text("{}")
+}
+
+/// Runs code that may wait for components, beside the thread of the server.
+pub(super) async fn waiting<T: Send + 'static>(code: impl FnOnce() -> T + Send + 'static) -> Result<T, Refusal> {
+    tokio::task::spawn_blocking(code).await.map_err(Refusal::internal)
+}

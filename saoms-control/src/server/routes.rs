@@ -1,0 +1,224 @@
+//! The routes of the server: one table, from which the router and the OpenAPI document are made.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, Path, Query, State};
+use axum::routing::{MethodRouter, get, post, put};
+use saoms_api::host::parse_duration;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::answer::{Answer, Refusal, done, json_text, waiting};
+use super::fleet::ControlledFleet;
+use super::logs;
+
+type Fleet = State<Arc<ControlledFleet>>;
+
+/// The most bytes of the body of a request.
+const LONGEST_BODY: usize = 65_536;
+/// The lines of the log that a client gets unless it says how many.
+const LINES: usize = 100;
+
+/// Time between the order to end and the end.
+const BEFORE_END: Duration = Duration::from_millis(20);
+
+/// A route.
+struct Route {
+    method: &'static str,
+    path: &'static str,
+    /// What it does.
+    doc: &'static str,
+    /// The parameters of its query, with what they are.
+    query: &'static [(&'static str, &'static str)],
+    /// What its body is.
+    body: Option<&'static str>,
+    serve: fn() -> MethodRouter<Arc<ControlledFleet>>,
+}
+
+const ROUTES: &[Route] = &[
+    Route {
+        method: "get",
+        path: "/v1/fleet",
+        doc: "Name, process and composites of the fleet.",
+        query: &[],
+        body: None,
+        serve: || get(describe),
+    },
+    Route {
+        method: "get",
+        path: "/v1/status",
+        doc: "A snapshot of the fleet and of each component, at most 100 ms old.",
+        query: &[],
+        body: None,
+        serve: || get(status),
+    },
+    Route {
+        method: "get",
+        path: "/v1/logs",
+        doc: "The newest lines of the log as a list, or with `follow=true` as server-sent events.",
+        query: &[("lines", "the number of lines"), ("follow", "`true` to get further lines as they come")],
+        body: None,
+        serve: || get(log_lines),
+    },
+    Route {
+        method: "post",
+        path: "/v1/events",
+        doc: "Lets the events of a line happen, in the language of `saoms run --events`.",
+        query: &[],
+        body: Some("a line of events"),
+        serve: || post(send),
+    },
+    Route {
+        method: "post",
+        path: "/v1/components/{component}/start",
+        doc: "Schedules a periodic component.",
+        query: &[("for", "the time after which it is stopped again, such as `10s`")],
+        body: None,
+        serve: || post(start),
+    },
+    Route {
+        method: "post",
+        path: "/v1/components/{component}/stop",
+        doc: "Unschedules a periodic component.",
+        query: &[],
+        body: None,
+        serve: || post(stop),
+    },
+    Route {
+        method: "put",
+        path: "/v1/components/{component}/properties/{property}",
+        doc: "Gives a property that is declared `live` another value.",
+        query: &[],
+        body: Some("the value, as a composite writes it"),
+        serve: || put(set),
+    },
+    Route {
+        method: "post",
+        path: "/v1/down",
+        doc: "Ends the fleet: its components shut down. The answer comes before the end.",
+        query: &[],
+        body: None,
+        serve: || post(down),
+    },
+    Route {
+        method: "get",
+        path: "/v1/openapi.json",
+        doc: "This document.",
+        query: &[],
+        body: None,
+        serve: || get(document),
+    },
+];
+
+/// The router of a fleet.
+pub(super) fn router(fleet: Arc<ControlledFleet>) -> Router {
+    let mut router = Router::new();
+    for route in ROUTES {
+        router = router.route(route.path, (route.serve)());
+    }
+    let router = router.fallback(|| async { Refusal::not_found() });
+    router.layer(DefaultBodyLimit::max(LONGEST_BODY)).with_state(fleet)
+}
+
+/// The OpenAPI document of the server.
+pub fn openapi() -> Value {
+    let mut paths = serde_json::Map::new();
+    for route in ROUTES {
+        let text = json!({"type": "string"});
+        let in_path = route.path.split('/').filter_map(|part| part.strip_prefix('{')?.strip_suffix('}'));
+        let in_path = in_path.map(|name| json!({"name": name, "in": "path", "required": true, "schema": text}));
+        let in_query = route.query.iter();
+        let in_query =
+            in_query.map(|(name, doc)| json!({"name": name, "in": "query", "description": doc, "schema": text}));
+        let mut operation = json!({
+            "summary": route.doc,
+            "parameters": in_path.chain(in_query).collect::<Vec<_>>(),
+            "responses": {
+                "200": {"description": "done"},
+                "422": {"description": "refused: `error` says why"},
+            },
+        });
+        if let Some(body) = route.body {
+            let content = json!({"text/plain": {"schema": text}});
+            operation["requestBody"] = json!({"description": body, "required": true, "content": content});
+        }
+        let path = paths.entry(route.path).or_insert_with(|| json!({}));
+        path[route.method] = operation;
+    }
+    let info = json!({"title": "Control of a SAOMS fleet", "version": env!("CARGO_PKG_VERSION")});
+    json!({"openapi": "3.1.0", "info": info, "paths": paths})
+}
+
+async fn describe(State(fleet): Fleet) -> Answer {
+    json_text(json!(fleet.description).to_string())
+}
+
+async fn status(State(fleet): Fleet) -> Answer {
+    match fleet.cached() {
+        Some(snapshot) => json_text(snapshot),
+        None => json_text(waiting(move || fleet.snapshot()).await?),
+    }
+}
+
+#[derive(Deserialize)]
+struct LogQuery {
+    lines: Option<usize>,
+    #[serde(default)]
+    follow: bool,
+}
+
+async fn log_lines(State(fleet): Fleet, Query(query): Query<LogQuery>) -> Answer {
+    let most = query.lines.unwrap_or(LINES);
+    match query.follow {
+        true => logs::followed(&fleet.log, most),
+        false => logs::newest(&fleet.log, most),
+    }
+}
+
+async fn send(State(fleet): Fleet, line: String) -> Answer {
+    let taken = waiting(move || (fleet.send)(&line)).await?.map_err(Refusal::unprocessable)?;
+    json_text(json!({"events": taken}).to_string())
+}
+
+#[derive(Deserialize)]
+struct StartQuery {
+    #[serde(rename = "for")]
+    duration: Option<String>,
+}
+
+async fn start(State(fleet): Fleet, Path(component): Path<String>, Query(query): Query<StartQuery>) -> Answer {
+    let duration: Option<Duration> =
+        query.duration.as_deref().map(parse_duration).transpose().map_err(Refusal::unprocessable)?;
+    let started = match duration {
+        Some(duration) => fleet.handle.schedule_for(&component, duration),
+        None => fleet.handle.schedule(&component),
+    };
+    started.map_err(Refusal::unprocessable)?;
+    done()
+}
+
+async fn stop(State(fleet): Fleet, Path(component): Path<String>) -> Answer {
+    fleet.handle.unschedule(&component).map_err(Refusal::unprocessable)?;
+    done()
+}
+
+async fn set(State(fleet): Fleet, Path((component, property)): Path<(String, String)>, value: String) -> Answer {
+    let set = move || fleet.handle.set(&component, &property, &value);
+    waiting(set).await?.map_err(Refusal::unprocessable)?;
+    done()
+}
+
+async fn down(State(fleet): Fleet) -> Answer {
+    tokio::spawn(async move {
+        // The answer leaves before.
+        tokio::time::sleep(BEFORE_END).await;
+        (fleet.down)();
+    });
+    done()
+}
+
+async fn document() -> Answer {
+    json_text(openapi().to_string())
+}

@@ -1,0 +1,119 @@
+//! The running fleet that a command is for.
+
+use std::path::Path;
+
+use clap::Args;
+use saoms_api::host::one_line;
+use saoms_api::rule::nearest;
+use saoms_control::{Client, ClientError, FleetDescription, Response, running};
+use serde_json::Value;
+
+use crate::Exit;
+use crate::arguments::Format;
+use crate::output::{eprint, eprint_json, print_json};
+
+/// Options of commands for a running fleet.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct RunningFleetArguments {
+    /// The fleet, where several run on this machine: its name, its process, or the path of its socket. `saoms ps` lists
+    /// them
+    #[arg(long = "fleet", value_name = "NAME")]
+    pub(crate) name: Option<String>,
+
+    /// The format of the answer: for people, or JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub(crate) format: Format,
+}
+
+impl RunningFleetArguments {
+    /// The fleet that is meant. Why there is none is reported.
+    pub(crate) fn client(&self) -> Result<Client, Exit> {
+        if let Some(path) = self.name.as_deref().filter(|name| name.contains('/')) {
+            return Ok(Client::new(Path::new(path)));
+        }
+        let all = running();
+        let is_meant = |one: &FleetDescription| match self.name.as_deref() {
+            None => true,
+            Some(name) => one.name == name || one.pid.to_string() == name || unique(one) == name,
+        };
+        let mut meant = all.iter().filter(|(_, one)| is_meant(one));
+        match (meant.next(), meant.next()) {
+            (Some((client, _)), None) => Ok(client.clone()),
+            (found, _) => Err(self.refuse(&unclear(self.name.as_deref(), found.is_some(), &all), Exit::WrongInput)),
+        }
+    }
+
+    /// Sends a request to the fleet that is meant. What hinders it is reported.
+    pub(crate) fn request(&self, method: &str, path: &str, body: &str) -> Result<Response, Exit> {
+        let client = self.client()?;
+        client.request(method, path, body).map_err(|error| self.refused(&error))
+    }
+
+    /// The answer to a request as JSON.
+    pub(crate) fn ask(&self, method: &str, path: &str, body: &str) -> Result<Value, Exit> {
+        self.request(method, path, body)?.json().map_err(|error| self.refused(&error))
+    }
+
+    fn refused(&self, error: &ClientError) -> Exit {
+        self.refuse(&error.to_string(), Exit::WrongInput)
+    }
+
+    /// Reports what hinders the command.
+    pub(crate) fn refuse(&self, message: &str, exit: Exit) -> Exit {
+        match self.format {
+            Format::Human => eprint(&format!("error: {message}\n")),
+            Format::Json => eprint_json(&serde_json::json!({"error": message})),
+        }
+        exit
+    }
+
+    /// Prints the answer: as JSON, or in these words.
+    pub(crate) fn show(&self, answer: &Value, words: impl FnOnce() -> String) {
+        match self.format {
+            Format::Human => crate::output::print(&words()),
+            Format::Json => print_json(answer),
+        }
+    }
+}
+
+/// The name that no other fleet has.
+pub(crate) fn unique(fleet: &FleetDescription) -> String {
+    format!("{}-{}", fleet.name, fleet.pid)
+}
+
+/// Why it is not clear which fleet is meant.
+fn unclear(name: Option<&str>, has_several: bool, all: &[(Client, FleetDescription)]) -> String {
+    let names: Vec<String> = all.iter().map(|(_, one)| one_line(&unique(one)).into_owned()).collect();
+    let list = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    match (name, &names[..]) {
+        (None, []) => "no fleet runs on this machine\n  = help: start one with `saoms run`".to_owned(),
+        (None, [first, ..]) => {
+            format!("several fleets run on this machine: {list}\n  = help: choose one, as with `--fleet {first}`")
+        }
+        (Some(name), []) => format!("there is no fleet `{name}`: no fleet runs on this machine"),
+        (Some(name), _) if has_several => {
+            let meant = all.iter().filter(|(_, one)| one.name == name).map(|(_, one)| format!("`{}`", unique(one)));
+            let meant = meant.collect::<Vec<_>>().join(", ");
+            format!("several fleets have the name `{name}`: {meant}\n  = help: write the name with its process")
+        }
+        (Some(name), _) => {
+            let known = all.iter().map(|(_, one)| one.name.as_str());
+            match nearest(name, known) {
+                Some(near) => format!("there is no fleet `{name}`; did you mean `{near}`?"),
+                None => format!("there is no fleet `{name}`; the fleets of this machine are {list}"),
+            }
+        }
+    }
+}
+
+/// A name as a part of a path of HTTP.
+pub(crate) fn escape(name: &str) -> String {
+    let mut escaped = String::with_capacity(name.len());
+    for byte in name.bytes() {
+        match byte {
+            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' => escaped.push(char::from(byte)),
+            _ => escaped.push_str(&format!("%{byte:02X}")),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,15 @@
+//! Commands that reach a running fleet: each is a client of the server in the program that runs it.
+
+mod fleet;
+mod logs;
+mod orders;
+mod ps;
+mod status;
+mod table;
+
+pub(super) use logs::{LogsArguments, logs};
+pub(super) use orders::{
+    DownArguments, SendArguments, SetArguments, StartArguments, StopArguments, down, send, set, start, stop,
+};
+pub(super) use ps::{PsArguments, ps};
+pub(super) use status::{StatusArguments, status};

@@ -1,0 +1,155 @@
+//! Orders to a running fleet: `saoms down`, `send`, `start`, `stop` and `set`.
+
+use std::time::Duration;
+
+use clap::Args;
+use saoms_api::host::{format_duration, one_line};
+
+use super::fleet::{RunningFleetArguments, escape};
+use crate::Exit;
+use crate::arguments::duration;
+
+const DOWN_CODES: &str = "\
+Exit codes:
+  0  the fleet ends
+  2  no fleet runs, it is not clear which one is meant, or the command line is wrong";
+
+/// End a running fleet: its components shut down, and its status is `stopped`
+#[derive(Debug, Args)]
+#[command(after_help = DOWN_CODES)]
+pub(crate) struct DownArguments {
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+const SEND_CODES: &str = "\
+Exit codes:
+  0  the event is taken: it happens at the next instant, or at its time
+  2  the line is wrong, no fleet runs, or it is not clear which one is meant";
+
+/// Let an event happen in a running fleet
+#[derive(Debug, Args)]
+#[command(after_help = SEND_CODES)]
+pub(crate) struct SendArguments {
+    /// A line as `saoms run --events` reads it, such as `luggage (3,1) to (3,10)`; without a time it happens at once
+    #[arg(value_name = "LINE", required = true, num_args = 1..)]
+    line: Vec<String>,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+const START_CODES: &str = "\
+Exit codes:
+  0  the component starts, or runs already
+  2  there is no such component, no fleet runs, or it is not clear which one is meant";
+
+/// Start a component of a running fleet
+#[derive(Debug, Args)]
+#[command(after_help = START_CODES)]
+pub(crate) struct StartArguments {
+    /// The path of the component
+    #[arg(value_name = "COMPONENT")]
+    component: String,
+
+    /// Stop it again after this time (a bare number is milliseconds; units us, ms, s, min, h)
+    #[arg(long = "for", value_name = "DURATION", value_parser = duration)]
+    duration: Option<Duration>,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+const STOP_CODES: &str = "\
+Exit codes:
+  0  the component stops, or has stopped already
+  2  there is no such component, no fleet runs, or it is not clear which one is meant";
+
+/// Stop a component of a running fleet
+#[derive(Debug, Args)]
+#[command(after_help = STOP_CODES)]
+pub(crate) struct StopArguments {
+    /// The path of the component
+    #[arg(value_name = "COMPONENT")]
+    component: String,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+const SET_CODES: &str = "\
+Exit codes:
+  0  the component has taken the value
+  2  it is refused: there is no such component or property, the property cannot change while it runs, or the
+     value is wrong; no fleet runs, or it is not clear which one is meant";
+
+/// Give a property of a running component another value: one that its class declares `live`
+#[derive(Debug, Args)]
+#[command(after_help = SET_CODES)]
+pub(crate) struct SetArguments {
+    /// The path of the component
+    #[arg(value_name = "COMPONENT")]
+    component: String,
+
+    /// The property and its value
+    #[arg(value_name = "PROPERTY=VALUE", value_parser = pair)]
+    value: (String, String),
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected `PROPERTY=VALUE`".to_owned()),
+    }
+}
+
+pub(crate) fn down(arguments: &DownArguments) -> Exit {
+    order(&arguments.fleet, "POST", "/v1/down", "", || "the fleet ends\n".to_owned())
+}
+
+pub(crate) fn send(arguments: &SendArguments) -> Exit {
+    let answer = match arguments.fleet.ask("POST", "/v1/events", &arguments.line.join(" ")) {
+        Ok(answer) => answer,
+        Err(exit) => return exit,
+    };
+    let count = answer["events"].as_u64().unwrap_or_default();
+    let plural = if count == 1 { "" } else { "s" };
+    arguments.fleet.show(&answer, || format!("{count} event{plural} taken\n"));
+    Exit::Done
+}
+
+pub(crate) fn start(arguments: &StartArguments) -> Exit {
+    let component = &arguments.component;
+    let until = arguments.duration.map(format_duration);
+    let query = until.as_ref().map(|time| format!("?for={}", escape(time))).unwrap_or_default();
+    let path = format!("/v1/components/{}/start{query}", escape(component));
+    let for_time = until.map(|time| format!(" for {time}")).unwrap_or_default();
+    order(&arguments.fleet, "POST", &path, "", || format!("`{}` starts{for_time}\n", one_line(component)))
+}
+
+pub(crate) fn stop(arguments: &StopArguments) -> Exit {
+    let component = &arguments.component;
+    let path = format!("/v1/components/{}/stop", escape(component));
+    order(&arguments.fleet, "POST", &path, "", || format!("`{}` stops\n", one_line(component)))
+}
+
+pub(crate) fn set(arguments: &SetArguments) -> Exit {
+    let (component, (property, value)) = (&arguments.component, &arguments.value);
+    let path = format!("/v1/components/{}/properties/{}", escape(component), escape(property));
+    let said = || format!("`{}` has {} = {}\n", one_line(component), one_line(property), one_line(value));
+    order(&arguments.fleet, "PUT", &path, value, said)
+}
+
+/// Gives an order, and says that it was taken.
+fn order(fleet: &RunningFleetArguments, method: &str, path: &str, body: &str, said: impl FnOnce() -> String) -> Exit {
+    match fleet.ask(method, path, body) {
+        Ok(answer) => {
+            fleet.show(&answer, said);
+            Exit::Done
+        }
+        Err(exit) => exit,
+    }
+}

@@ -1,0 +1,129 @@
+//! Commands that reach a running fleet, against real processes.
+
+mod hang;
+mod orders;
+mod places;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::{command, stderr, stdout, text};
+
+/// A fleet that runs until it is ended, in a folder of its own, with a folder for sockets that no other test uses.
+pub(super) struct Running {
+    child: Child,
+    folder: TempDir,
+}
+
+impl Running {
+    /// Starts `saoms run` on `fleet.composite` with this text.
+    pub(super) fn start(composite: &str, arguments: &[&str]) -> Running {
+        // The path of a socket has to be short.
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("fleet.composite"), composite).unwrap();
+        Running::start_in(folder, arguments)
+    }
+
+    fn start_in(folder: TempDir, arguments: &[&str]) -> Running {
+        let mut run = command(&[&["run", "fleet.composite"], arguments].concat());
+        run.current_dir(folder.path()).env("XDG_RUNTIME_DIR", folder.path());
+        let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let running = Running { child, folder };
+        // Until it listens.
+        for _ in 0..1000 {
+            if stdout(&running.ask(&["ps", "--format", "json"])).contains("\"pid\"") {
+                return running;
+            }
+            sleep(Duration::from_millis(10));
+        }
+        panic!("the fleet cannot be reached: {}", text(&running.child.wait_with_output().unwrap()));
+    }
+
+    /// The folder in which it runs.
+    pub(super) fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Runs another command beside it.
+    pub(super) fn ask(&self, arguments: &[&str]) -> Output {
+        command(arguments).current_dir(self.folder()).env("XDG_RUNTIME_DIR", self.folder()).output().unwrap()
+    }
+
+    /// What a command says that is taken.
+    #[track_caller]
+    pub(super) fn told(&self, arguments: &[&str]) -> String {
+        let output = self.ask(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output));
+        stdout(&output)
+    }
+
+    /// What a command says that is refused.
+    #[track_caller]
+    pub(super) fn refused(&self, arguments: &[&str]) -> String {
+        let output = self.ask(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", text(&output));
+        stderr(&output)
+    }
+
+    /// A component in `saoms status`.
+    #[track_caller]
+    pub(super) fn component(&self, name: &str) -> Value {
+        let answer: Value = serde_json::from_str(&self.told(&["status", name, "--format", "json"])).unwrap();
+        answer["status"]["components"][0].clone()
+    }
+
+    /// Waits until a component is as it should be.
+    #[track_caller]
+    pub(super) fn until(&self, name: &str, is: impl Fn(&Value) -> bool) -> Value {
+        for _ in 0..500 {
+            let component = self.component(name);
+            if is(&component) {
+                return component;
+            }
+            sleep(Duration::from_millis(20));
+        }
+        panic!("it never comes to that: {}", self.component(name));
+    }
+
+    /// Waits for the end of the run: its exit code and what it printed.
+    pub(super) fn end(self) -> (Option<i32>, String) {
+        let output = self.child.wait_with_output().unwrap();
+        (output.status.code(), text(&output))
+    }
+}
+
+/// A component of a composite.
+pub(super) fn component(name: &str, class: &str, more: &str) -> String {
+    format!(
+        "<component name=\"{name}\"><implementation.java class=\"{class}\"/><property name=\"ID\">{name}</property>\
+         <property name=\"period\">50</property>{more}</component>\n"
+    )
+}
+
+/// A composite of these components.
+pub(super) fn composite(components: &str) -> String {
+    format!(
+        "<composite xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" targetNamespace=\"urn:example\" \
+         name=\"fleet\">\n{components}</composite>\n"
+    )
+}
+
+/// A world, a master and two robots, of which the second one waits to be started. Nothing brings work.
+pub(super) fn fleet() -> String {
+    let world = "<reference name=\"world\" target=\"World\"/>";
+    composite(
+        &[
+            component("World", "saoms.World", ""),
+            component("Master", "saoms.MasterEnvironment", ""),
+            component("Robot1", "saoms.Robot", world),
+            component("Robot2", "saoms.Robot", &format!("{world}<property name=\"runOnStartup\">false</property>")),
+        ]
+        .concat(),
+    )
+}
