@@ -435,6 +435,9 @@ typedef struct SaomsHostFunctions {
     // In `initialize` not 0 if the component takes the place of another one and goes on from what that saved:
     // `restore` comes next, and nothing is to be begun or announced anew.
     uint32_t (*goes_on)(void *state);
+    // Lets an event happen that components of the same site take, at the end of the present execution: a line such as
+    // `fire at=(3,4) size=2 to Hall1`.
+    SaomsStatus (*raise)(void *state, struct SaomsBytes event, struct SaomsSink error);
 } SaomsHostFunctions;
 
 // A message that arrived.

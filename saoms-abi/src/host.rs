@@ -145,6 +145,9 @@ pub struct HostFunctions {
     /// In `initialize` not 0 if the component takes the place of another one and goes on from what that saved:
     /// `restore` comes next, and nothing is to be begun or announced anew.
     pub goes_on: unsafe extern "C" fn(state: *mut c_void) -> u32,
+    /// Lets an event happen that components of the same site take, at the end of the present execution: a line such as
+    /// `fire at=(3,4) size=2 to Hall1`.
+    pub raise: unsafe extern "C" fn(state: *mut c_void, event: Bytes, error: Sink) -> Status,
 }
 
 /// The visitor of a component's loops, called with a name, a class, values and their number.

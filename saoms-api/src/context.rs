@@ -127,6 +127,17 @@ impl<'a> Context<'a> {
         self.host.send(publisher.index(), SharedMessage::new(header, message))
     }
 
+    /// Lets an event happen that components of the same site take: `fire at=(3,4) size=2 to Hall1` (see [`event`]). It
+    /// reaches them as a message at the end of the present execution. One that nobody takes is logged.
+    ///
+    /// # Errors
+    /// The text is no event that a class of the fleet takes, or `to` names a component that does not take it.
+    ///
+    /// [`event`]: crate::event
+    pub fn raise(&mut self, event: &str) -> Result<(), Failure> {
+        self.host.raise(event)
+    }
+
     /// All messages that arrived for this period, oldest first. Asking twice gives the same messages.
     pub fn receive<M: Message>(&self, subscription: &Subscription<M>) -> Messages<'a, M> {
         Messages::new(self.inbox(subscription.index()))

@@ -55,6 +55,7 @@ mod chance;
 mod component;
 mod context;
 mod derived;
+pub mod event;
 pub mod extension;
 mod failure;
 mod field;

@@ -111,23 +111,28 @@ struct Shared<P: ?Sized> {
     header: Header,
     key: Option<u64>,
     place: Option<(i32, i32)>,
+    /// The number of the only component that receives it; `u32::MAX` where all readers of its topic do.
+    to: u32,
     bytes: OnceLock<Vec<u8>>,
     forms: OnceLock<Box<Form>>,
     payload: P,
 }
+
+/// The receiver of a message for all readers of its topic: no component has this number.
+const EVERYONE: u32 = u32::MAX;
 
 impl SharedMessage {
     /// Shares a value.
     pub fn new<M: Message>(header: Header, value: M) -> SharedMessage {
         let (bytes, forms) = (OnceLock::new(), OnceLock::new());
         let (key, place) = (value.key(), value.place());
-        SharedMessage(Arc::new(Shared { header, key, place, bytes, forms, payload: Typed(value) }))
+        SharedMessage(Arc::new(Shared { header, key, place, to: EVERYONE, bytes, forms, payload: Typed(value) }))
     }
 
     /// Takes over a message that arrived as bytes (see [`cdr`]). The schema must have been checked against the topic's.
     pub fn from_bytes(header: Header, key: Option<u64>, bytes: Vec<u8>) -> SharedMessage {
         let (bytes, forms) = (OnceLock::from(bytes), OnceLock::new());
-        SharedMessage(Arc::new(Shared { header, key, place: None, bytes, forms, payload: Arrived }))
+        SharedMessage(Arc::new(Shared { header, key, place: None, to: EVERYONE, bytes, forms, payload: Arrived }))
     }
 
     /// The same message with this key and block, which its bytes say.
@@ -138,6 +143,22 @@ impl SharedMessage {
             (shared.key, shared.place) = (key, place);
         }
         self
+    }
+
+    /// For hosts: the same message for one of the components that read its topic, by the component's number.
+    #[must_use]
+    pub fn only_to(mut self, to: Option<u32>) -> SharedMessage {
+        // Nobody shares a message that was made just now.
+        if let Some(shared) = Arc::get_mut(&mut self.0) {
+            shared.to = to.unwrap_or(EVERYONE);
+        }
+        self
+    }
+
+    /// The number of the only component that receives it; `None` where all readers of its topic do.
+    #[inline]
+    pub fn to(&self) -> Option<u32> {
+        Some(self.0.to).filter(|to| *to != EVERYONE)
     }
 
     /// Column and row of its block, if its type declares a place.

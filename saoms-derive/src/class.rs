@@ -73,6 +73,16 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
             other => ::core::result::Result::Err(::saoms_api::generated::no_service(#class, other)),
         },
     };
+    let takes = handles.takes().map(|(event, topic, _)| {
+        let message =
+            format!("the event `{}` needs an event topic: a state topic keeps its newest message", event.value());
+        quote_spanned! {topic.span()=>
+            const _: () = ::core::assert!(
+                ::core::matches!(#topic.kind(), ::saoms_api::host::TopicKind::Event),
+                #message,
+            );
+        }
+    });
     let loops = match (&declared.loops, &declared.knowledge) {
         (None, _) => handles.extends().iter().map(|(_, base)| loops_of(base)).collect(),
         (Some(loops), Some(knowledge)) => loops.registrations(&properties, knowledge),
@@ -142,6 +152,7 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
             }
 
             #(#presets)*
+            #(#takes)*
             #reserved
 
             ::saoms_api::generated::inventory::submit! { ::saoms_api::host::Registration::of::<#ident>() }
@@ -167,6 +178,12 @@ impl Declared {
         if let (Some(_), Some(knowledge)) = (handles.extends(), &declared.knowledge) {
             let message = "the class has the knowledge and the loops of what it extends";
             return Err(Error::new_spanned(knowledge, message));
+        }
+        let events: Vec<_> = handles.takes().map(|(event, ..)| event).collect();
+        for (place, event) in events.iter().enumerate() {
+            if events[..place].iter().any(|other| other.value() == event.value()) {
+                return Err(Error::new(event.span(), "the class takes this event already"));
+            }
         }
         let place = attributes.first().map_or(input.ident.span(), |attribute| attribute.span());
         if declared.name.is_none() {
@@ -267,6 +284,17 @@ impl Declared {
         for (member, topics) in [("publishes", &self.publishes), ("subscribes", &self.subscribes)] {
             text.plain(&format!(",\"{member}\":"));
             text.list(topics, parts::topic);
+        }
+        if handles.takes().next().is_some() {
+            text.plain(",\"takes\":");
+            text.list(handles.takes(), |text, (event, topic, doc)| {
+                text.plain("{\"event\":");
+                text.string(&event.value());
+                text.plain(",\"topic\":");
+                text.quoted(quote_spanned!(topic.span()=> #topic.name()));
+                text.member("doc", doc);
+                text.plain("}");
+            });
         }
         text.plain(",\"services\":");
         text.list(&self.services, |text, (name, of)| {

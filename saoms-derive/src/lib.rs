@@ -58,8 +58,8 @@ pub fn property_field(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(
     Class,
     attributes(
-        class, extends, publishes, subscribes, reference, properties, property, knowledge, loops, senses, effects,
-        entry
+        class, extends, publishes, subscribes, takes, reference, properties, property, knowledge, loops, senses,
+        effects, entry
     )
 )]
 pub fn class(input: TokenStream) -> TokenStream {
@@ -83,8 +83,8 @@ pub fn knowledge(input: TokenStream) -> TokenStream {
 #[proc_macro_derive(
     LoopClass,
     attributes(
-        looping, extends, publishes, subscribes, reference, properties, property, knowledge, loops, senses, effects,
-        entry
+        looping, extends, publishes, subscribes, takes, reference, properties, property, knowledge, loops, senses,
+        effects, entry
     )
 )]
 pub fn loop_class(input: TokenStream) -> TokenStream {

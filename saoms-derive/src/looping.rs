@@ -30,7 +30,8 @@ struct Declared {
 pub(crate) fn loop_class(input: &DeriveInput) -> Result<TokenStream> {
     no_generics(&input.generics, "a loop")?;
     let handles = Handles::of(input)?;
-    handles.refuse("a loop", |role| matches!(role, Role::Extends | Role::Knowledge | Role::Loops))?;
+    handles
+        .refuse("a loop", |role| matches!(role, Role::Extends | Role::Takes { .. } | Role::Knowledge | Role::Loops))?;
     let declared = Declared::of(input, &handles)?;
     let ident = &input.ident;
     let name = declared.name(input)?;

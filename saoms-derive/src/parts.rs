@@ -78,6 +78,13 @@ pub(crate) fn paths(input: ParseStream<'_>) -> Result<Vec<Path>> {
     Ok(Punctuated::<Path, Token![,]>::parse_terminated(&list)?.into_iter().collect())
 }
 
+/// `("a", "b")`.
+pub(crate) fn texts(input: ParseStream<'_>) -> Result<Vec<String>> {
+    let list;
+    parenthesized!(list in input);
+    Ok(Punctuated::<LitStr, Token![,]>::parse_terminated(&list)?.iter().map(LitStr::value).collect())
+}
+
 /// `("name": Interface)`, with `, optional` and `, many` where it is.
 pub(crate) fn parse_reference(input: ParseStream<'_>, known: &[Reference]) -> Result<Reference> {
     let list;

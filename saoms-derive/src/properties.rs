@@ -3,16 +3,14 @@ use std::collections::HashMap;
 use proc_macro2::TokenStream;
 use quote::{quote, quote_spanned};
 use syn::spanned::Spanned;
-use syn::{
-    Attribute, Data, DeriveInput, Error, Expr, Fields, Ident, LitStr, Result, Token, Type, parenthesized,
-    punctuated::Punctuated,
-};
+use syn::{Attribute, Data, DeriveInput, Error, Expr, Fields, Ident, LitStr, Result, Token, Type};
 
 use crate::case::lower_camel;
 use crate::docs::docs;
 use crate::field::struct_fields;
 use crate::json::{self, Json};
 use crate::literal::{self, Literal};
+use crate::parts::texts;
 use crate::range::Range;
 
 /// A field.
@@ -35,6 +33,8 @@ struct Property<'a> {
     unique: String,
     required_text: bool,
     live: bool,
+    language: String,
+    plays: Vec<String>,
 }
 
 /// `#[derive(Properties)]`.
@@ -253,6 +253,8 @@ impl<'a> Property<'a> {
             unique: String::new(),
             required_text: false,
             live: false,
+            language: String::new(),
+            plays: Vec::new(),
         };
         for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("property")) {
             attribute.parse_nested_meta(|meta| {
@@ -267,13 +269,14 @@ impl<'a> Property<'a> {
                     let expression: Expr = meta.value()?.parse()?;
                     let text = Literal::of(&expression)?.text();
                     property.default = Some((expression, text));
+                } else if meta.path.is_ident("language") {
+                    property.language = text()?;
                 } else if meta.path.is_ident("range") {
                     property.range = Some(Range::of(&meta.value()?.parse()?)?);
                 } else if meta.path.is_ident("allowed") {
-                    let list;
-                    parenthesized!(list in meta.input);
-                    let texts = Punctuated::<LitStr, Token![,]>::parse_terminated(&list)?;
-                    property.allowed = texts.iter().map(LitStr::value).collect();
+                    property.allowed = texts(meta.input)?;
+                } else if meta.path.is_ident("plays") {
+                    property.plays = texts(meta.input)?;
                 } else if meta.path.is_ident("required_text") {
                     property.required_text = true;
                 } else if meta.path.is_ident("live") {
@@ -281,11 +284,14 @@ impl<'a> Property<'a> {
                 } else {
                     return Err(meta.error(
                         "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`, \
-                         `live`, `flatten`",
+                         `live`, `language`, `plays`, `flatten`",
                     ));
                 }
                 Ok(())
             })?;
+        }
+        if property.language.is_empty() && !property.plays.is_empty() {
+            return Err(Error::new_spanned(field, "`plays` needs the `language` whose events are played"));
         }
         property.default_fits()?;
         Ok(property)
@@ -475,6 +481,11 @@ impl<'a> Property<'a> {
         }
         text.text(flag(",\"many\":true", quote!(#shape.many)));
         text.member("unique", &property.unique);
+        text.member("language", &property.language);
+        if !property.plays.is_empty() {
+            text.plain(",\"plays\":");
+            text.list(&property.plays, |text, word| text.string(word));
+        }
         text.text(quote!(#shape.details));
         text.plain("}");
     }

@@ -3,6 +3,7 @@
 //! It is built from texts alone, which linked crates and libraries bring. What reads composites uses it, and what tests
 //! a single component.
 
+pub mod event;
 pub mod registry;
 pub mod schema;
 

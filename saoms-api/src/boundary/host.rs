@@ -169,6 +169,11 @@ unsafe extern "C" fn departed(state: *mut c_void, subscription: u32, place: usiz
     }
 }
 
+unsafe extern "C" fn raise(state: *mut c_void, event: Bytes, error: Sink) -> Status {
+    // SAFETY: callers pass the state of their handle, and lend the text to this call.
+    unsafe { guarded(error, || host(state)?.raise(event.get_text()?)) }
+}
+
 unsafe extern "C" fn goes_on(state: *mut c_void) -> u32 {
     // SAFETY: callers pass the state of their handle.
     unsafe { with_host(state, 0, |host| u32::from(host.goes_on())) }
@@ -379,6 +384,7 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     set_region,
     departed,
     goes_on,
+    raise,
 };
 
 /// A time of the other side.

@@ -256,6 +256,11 @@ impl Host for RemoteHost<'_> {
         (number, unsafe { bytes.get() }.unwrap_or_default())
     }
 
+    fn raise(&mut self, event: &str) -> Result<(), Failure> {
+        let mut error = Buffer::default();
+        outcome(get!(self.raise, Bytes::text(event), sink(&mut error)), &error.bytes)
+    }
+
     fn goes_on(&self) -> bool {
         get!(self.goes_on) != 0
     }

@@ -1,19 +1,22 @@
+use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::Time;
+use crate::event::Events;
 use crate::host::TopicDeclaration;
 
 /// A language of events from outside the fleet: `saoms run --events` reads lines of it.
 ///
-/// Each event becomes a message on the topic of the language.
+/// Each event of the language becomes a message on its topic. Its lines can have the events that classes take, too.
 #[derive(Clone, Copy, Debug)]
 pub struct EventLanguage {
     /// The topic of the messages.
     pub topic: TopicDeclaration<'static>,
     /// Codes of findings that do not hold for a run with such events: that nothing brings work.
     pub settles: &'static [&'static str],
-    /// Makes a reader for one run, with the seed of the run.
-    pub new: fn(seed: u64) -> Box<dyn EventReader>,
+    /// Makes a reader for one run, with the seed of the run and the events that classes of the fleet take.
+    pub new: fn(seed: u64, events: Arc<Events>) -> Box<dyn EventReader>,
 }
 
 inventory::collect!(EventLanguage);
@@ -39,10 +42,19 @@ pub trait EventReader: Send {
 pub struct TimedMessage {
     /// Time at which it takes effect; `None` is the next instant.
     pub at: Option<Time>,
-    /// The message in CDR (see [`crate::host::cdr`]).
-    pub bytes: Vec<u8>,
+    /// The message.
+    pub content: EventContent,
     /// Description in the words of the language.
     pub text: String,
+}
+
+/// The content of a message from outside.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EventContent {
+    /// A message on the topic of the language, in CDR (see [`crate::host::cdr`]).
+    Bytes(Vec<u8>),
+    /// An event that classes take: its text is an [`EventCall`](crate::event::EventCall).
+    Raised,
 }
 
 /// A fault of a line of events.
@@ -57,3 +69,50 @@ pub struct LineFault {
     /// Advice.
     pub help: Option<String>,
 }
+
+impl LineFault {
+    /// A fault without advice.
+    pub fn new(bytes: Range<usize>, message: impl Into<String>) -> LineFault {
+        LineFault { bytes, message: message.into(), instead: None, help: None }
+    }
+
+    /// Adds the suggested replacement.
+    #[must_use]
+    pub fn instead(self, meant: impl Into<String>) -> LineFault {
+        LineFault { instead: Some(meant.into()), ..self }
+    }
+
+    /// Adds advice.
+    #[must_use]
+    pub fn help(self, text: impl Into<String>) -> LineFault {
+        LineFault { help: Some(text.into()), ..self }
+    }
+
+    /// The same fault at another place.
+    #[must_use]
+    pub fn at(self, bytes: Range<usize>) -> LineFault {
+        LineFault { bytes, ..self }
+    }
+
+    /// The same fault, in a text that starts so many bytes before this one.
+    #[must_use]
+    pub fn moved(self, by: usize) -> LineFault {
+        LineFault { bytes: self.bytes.start + by..self.bytes.end + by, ..self }
+    }
+}
+
+impl fmt::Display for LineFault {
+    /// The fault without its place, in one line.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.message)?;
+        if let Some(instead) = &self.instead {
+            write!(formatter, "; did you mean `{instead}`?")?;
+        }
+        match &self.help {
+            Some(help) => write!(formatter, "; {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for LineFault {}

@@ -1,16 +1,24 @@
 use std::ops::Range;
 
-/// The language of the text in a property, as editors complete it.
+use crate::Finding;
+use crate::event::{EventCall, Events};
+
+/// The language of the text in a property. A class names it at the property: `#[property(language = "scenario")]`.
 ///
-/// The checker needs none of this: the class judges the text when it is constructed.
+/// The checker asks the language before the constructor of the class, since the language alone is given the events that
+/// other classes take.
 #[derive(Clone, Copy, Debug)]
 pub struct PropertyLanguage {
-    /// The class with the property; classes that extend it have the property, too.
-    pub class: &'static str,
-    /// The name of the property.
-    pub property: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// Words of the language: no event has one of them as its name.
+    pub words: &'static [&'static str],
+    /// Judges the texts of a property.
+    pub check: fn(&PropertyTexts<'_>) -> JudgedTexts,
     /// The texts that can stand at a place of the property.
     pub complete: fn(&PropertyText<'_>) -> Vec<Completion>,
+    /// The meaning of the word at a place.
+    pub explain: fn(&PropertyText<'_>) -> Option<Explanation>,
 }
 
 inventory::collect!(PropertyLanguage);
@@ -20,6 +28,42 @@ impl PropertyLanguage {
     pub fn linked() -> impl Iterator<Item = &'static PropertyLanguage> {
         inventory::iter::<PropertyLanguage>()
     }
+
+    /// The language of this name, if one is linked into this program.
+    pub fn named(name: &str) -> Option<&'static PropertyLanguage> {
+        PropertyLanguage::linked().find(|language| language.name == name)
+    }
+}
+
+/// The texts of a property, with what is known about the fleet around it.
+#[derive(Clone, Copy, Debug)]
+pub struct PropertyTexts<'a> {
+    /// The name of the property.
+    pub property: &'a str,
+    /// Its values.
+    pub texts: &'a [&'a str],
+    /// The words of the language whose events the class plays itself.
+    pub plays: &'a [String],
+    /// The events that classes take.
+    pub events: &'a Events,
+}
+
+/// The judgement of a language.
+#[derive(Clone, Debug, Default)]
+pub struct JudgedTexts {
+    /// All that is wrong, as findings about the property.
+    pub findings: Vec<Finding>,
+    /// The events of classes that the texts have.
+    pub raised: Vec<RaisedEvent>,
+}
+
+/// An event of a class, in a text of a property.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RaisedEvent {
+    /// Index of the text.
+    pub text: usize,
+    /// The event, with its places in the text.
+    pub call: EventCall,
 }
 
 /// A property's text with the place of the cursor.
@@ -29,8 +73,21 @@ pub struct PropertyText<'a> {
     pub text: &'a str,
     /// The byte at which the cursor stands.
     pub at: usize,
+    /// The words of the language whose events the class plays itself.
+    pub plays: &'a [String],
+    /// The events that classes take.
+    pub events: &'a Events,
     /// The names of the components of a class in the composite; of replicas, the name of the first.
     pub components: &'a dyn Fn(&str) -> Vec<String>,
+}
+
+/// The meaning of a word of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Explanation {
+    /// The meaning, in Markdown.
+    pub text: String,
+    /// The bytes of the word in the property's text.
+    pub bytes: Range<usize>,
 }
 
 /// A text that can stand at the cursor.

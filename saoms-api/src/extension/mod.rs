@@ -5,7 +5,7 @@
 //!
 //! - [`RunSummary`]: the counts of a report and their meaning, in reports and on the console,
 //! - [`RunPicture`]: a picture of a run (`saoms run --paths`),
-//! - [`PropertyLanguage`]: the language of a property's text, in editors,
+//! - [`PropertyLanguage`]: the language of a property's text, for the checker and editors,
 //! - [`EventLanguage`]: the language of events from outside a running fleet (`saoms run --events`).
 //!
 //! Extensions are linked in, together with the classes they belong to. The libraries of plugins cannot bring any.
@@ -18,7 +18,9 @@ mod summary;
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
-pub use events::{EventLanguage, EventReader, LineFault, TimedMessage};
-pub use language::{Completion, CompletionKind, PropertyLanguage, PropertyText};
+pub use events::{EventContent, EventLanguage, EventReader, LineFault, TimedMessage};
+pub use language::{
+    Completion, CompletionKind, Explanation, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, RaisedEvent,
+};
 pub use picture::{PictureRegistration, RunPicture};
 pub use summary::{Counts, RunSummary};

@@ -86,6 +86,13 @@ pub trait Host {
     /// # Errors
     /// As there.
     fn send(&mut self, publisher: u32, message: SharedMessage) -> Result<(), Failure>;
+    /// See [`Context::raise`](crate::Context::raise).
+    ///
+    /// # Errors
+    /// As there; this host takes no events.
+    fn raise(&mut self, event: &str) -> Result<(), Failure> {
+        Err(Failure::new(format!("the event `{event}` reaches nobody: this host passes on no events")))
+    }
     /// See [`Context::reference`](crate::Context::reference).
     ///
     /// # Errors

@@ -1,5 +1,7 @@
 //! Events outside the fleet, played from a scenario.
 
+#[cfg(test)]
+mod class_events_tests;
 mod memory;
 mod outside;
 mod player;
@@ -36,8 +38,10 @@ pub struct EnvironmentProperties {
     /// (3,10)`, `then 500ms luggage (10,8) to (1,8)` (after the line before), `at 3s landing 4`, `at 3s takeoff 4`, `at
     /// 9s breakdown Robot002`; repeated events: `from 10s every 5s 100 times luggage random to random`. Two values with
     /// `..` between them are a range from which a value is drawn: `every 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`.
+    /// Events that components of other classes take have the fields of their messages: `at 5s fire at=(3,4) size=1..3`.
     /// `;` ends a line, too, and `#` starts a comment. Without a scenario nothing happens. A long scenario can be in a
     /// file: `file="scenario.txt"`.
+    #[property(language = "scenario", plays("luggage", "landing", "takeoff", "breakdown", "end"))]
     pub(crate) scenario: Vec<String>,
 }
 
@@ -240,6 +244,11 @@ impl Environment {
                 };
                 tell(context, record);
                 context.send(&self.events, event.into())
+            }
+            Some(ScenarioEvent::Raised(event)) => {
+                context.console(format_args!("Environment: Test{test}: New event: {event}."));
+                info!(context, "{event}");
+                context.raise(&event)
             }
             Some(ScenarioEvent::End) => Ok(()),
             Some(ScenarioEvent::Breakdown(robot)) => {

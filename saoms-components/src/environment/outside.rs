@@ -1,12 +1,15 @@
 //! Scenario lines from outside a running fleet (`saoms run --events`).
 
-use saoms_api::extension::{EventLanguage, EventReader, LineFault, TimedMessage, submit};
+use std::sync::Arc;
+
+use saoms_api::event::Events;
+use saoms_api::extension::{EventContent, EventLanguage, EventReader, LineFault, TimedMessage, submit};
 use saoms_api::host::cdr;
 use saoms_api::{Chance, Time};
 
 use super::player::draw;
-use super::scenario::Before;
 use super::scenario::line::{read_outside, split};
+use super::scenario::{Before, Vocabulary};
 use super::{EventSpec, Line, ScenarioEvent, Spot};
 use crate::messages::{ENVIRONMENT, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault};
 use crate::rules::scenario::no_work;
@@ -16,7 +19,7 @@ submit! {
     EventLanguage {
         topic: ENVIRONMENT.declaration(),
         settles: &[no_work::RULE.code.id],
-        new: |seed| Box::new(Reader::new(seed)),
+        new: |seed, events| Box::new(Reader::new(seed, events)),
     }
 }
 
@@ -26,8 +29,10 @@ const FIRST_LUGGAGE: u32 = 1_000_001;
 const MOST: usize = 100_000;
 
 /// A reader of scenario lines, without knowledge of the area.
-struct Reader {
+pub(super) struct Reader {
     chance: Chance,
+    /// The events that classes take.
+    events: Arc<Events>,
     luggage: u32,
     /// The time of the last event of the line before.
     last: Time,
@@ -35,14 +40,14 @@ struct Reader {
 }
 
 impl Reader {
-    fn new(seed: u64) -> Reader {
+    pub(super) fn new(seed: u64, events: Arc<Events>) -> Reader {
         let chance = Chance::for_component(seed, "(outside)");
-        Reader { chance, luggage: FIRST_LUGGAGE, last: Time::START, before: Before::Start }
+        Reader { chance, events, luggage: FIRST_LUGGAGE, last: Time::START, before: Before::Start }
     }
 
     /// Reads one event of the line.
     fn part(&mut self, text: &str, now: Time) -> Result<Vec<TimedMessage>, TextFault> {
-        let (line, is_now) = read_outside(text, self.before)?;
+        let (line, is_now) = read_outside(text, self.before, Vocabulary::with(&self.events))?;
         self.before = Before::Event;
         place_is_known(&line)?;
         if line.times.is_none() && line.until.is_none() {
@@ -63,8 +68,8 @@ impl Reader {
             let event = draw(&line.event, &mut chance, None).ok_or_else(|| {
                 TextFault::new(line.bytes.clone(), "found no two free blocks for the luggage of this line")
             })?;
-            let (message, text) = self.message(&event);
-            messages.push(TimedMessage { at: (!is_now).then_some(at), bytes: cdr::encode(&message), text });
+            let (content, text) = self.message(event);
+            messages.push(TimedMessage { at: (!is_now).then_some(at), content, text });
             self.last = at;
             if line.times.is_some_and(|times| messages.len() as u64 >= times) {
                 break;
@@ -75,10 +80,10 @@ impl Reader {
     }
 
     /// The message of an event, and the scenario line that says it, without its time.
-    fn message(&mut self, event: &ScenarioEvent) -> (EnvironmentEvent, String) {
-        match event {
+    fn message(&mut self, event: ScenarioEvent) -> (EventContent, String) {
+        let (message, text): (EnvironmentEvent, String) = match event {
             ScenarioEvent::Luggage { from, to } => {
-                let request = EventLuggage::request(self.luggage, *from, *to);
+                let request = EventLuggage::request(self.luggage, from, to);
                 self.luggage = self.luggage.saturating_add(1);
                 (request.into(), format!("luggage {from} to {to}"))
             }
@@ -87,11 +92,14 @@ impl Reader {
                     ExceptionalKind::Landing => "landing",
                     ExceptionalKind::Takeoff => "takeoff",
                 };
-                (event.clone().into(), format!("{kind} {}", event.pieces))
+                let text = format!("{kind} {}", event.pieces);
+                (event.into(), text)
             }
-            ScenarioEvent::Breakdown(robot) => (Fault::breakdown(*robot).into(), format!("breakdown {robot}")),
+            ScenarioEvent::Breakdown(robot) => (Fault::breakdown(robot).into(), format!("breakdown {robot}")),
             ScenarioEvent::End => (EnvironmentEvent::default(), "end".to_owned()),
-        }
+            ScenarioEvent::Raised(event) => return (EventContent::Raised, event),
+        };
+        (EventContent::Bytes(cdr::encode(&message)), text)
     }
 }
 
@@ -113,11 +121,8 @@ impl EventReader for Reader {
         let mut messages = Vec::new();
         for part in split(line) {
             let offset = bytes(line, part).start;
-            messages.extend(self.part(part, now).map_err(|fault| LineFault {
-                bytes: fault.bytes.start + offset..fault.bytes.end + offset,
-                message: fault.message,
-                instead: fault.instead,
-                help: fault.help,
+            messages.extend(self.part(part, now).map_err(|TextFault { bytes, message, instead, help }| {
+                LineFault { bytes, message, instead, help }.moved(offset)
             })?);
         }
         Ok(messages)
@@ -132,7 +137,7 @@ mod tests {
 
     /// The events of lines that come one after the other at 7 s, or what is wrong with a line.
     fn events(lines: &[&str]) -> Vec<String> {
-        let mut reader = Reader::new(1);
+        let mut reader = Reader::new(1, Arc::default());
         let mut shown = Vec::new();
         for line in lines {
             match reader.read(line, Time::START + Duration::from_secs(7)) {
@@ -175,9 +180,12 @@ mod tests {
     #[test]
     fn luggage_has_numbers_of_its_own_and_chance_follows_from_the_seed() {
         let line = "at 1s 2 times luggage (1,0)..(10,10) to (1,0)..(10,10)";
-        let read = |seed| Reader::new(seed).read(line, Time::START).unwrap();
-        let first: EnvironmentEvent = cdr::decode(&read(1)[0].bytes).unwrap();
-        let second: EnvironmentEvent = cdr::decode(&read(1)[1].bytes).unwrap();
+        let read = |seed| Reader::new(seed, Arc::default()).read(line, Time::START).unwrap();
+        let event = |place: usize| -> EnvironmentEvent {
+            let EventContent::Bytes(bytes) = &read(1)[place].content else { panic!("it is of the language") };
+            cdr::decode(bytes).unwrap()
+        };
+        let (first, second) = (event(0), event(1));
         assert_eq!((first.luggage[0].luggage, second.luggage[0].luggage), (1_000_001, 1_000_002));
         assert_eq!(read(1), read(1));
         assert_ne!(read(1), read(2));

@@ -22,6 +22,8 @@ pub enum ScenarioEvent {
     Exceptional(ExceptionalEvent),
     /// The robot with this number breaks down.
     Breakdown(u32),
+    /// An event that other classes take, as a line with single values.
+    Raised(String),
     /// No event: the scenario lasts until this time.
     End,
 }
@@ -154,6 +156,7 @@ pub(super) fn draw(event: &EventSpec, chance: &mut Chance, area: Option<&Map>) -
         EventSpec::Landing(pieces) => exceptional(ExceptionalKind::Landing, pieces.draw(chance)),
         EventSpec::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),
         EventSpec::Breakdown(robot) => Some(ScenarioEvent::Breakdown(robot.value.draw(chance))),
+        EventSpec::Raised(call) => Some(ScenarioEvent::Raised(call.drawn(chance))),
         EventSpec::End => Some(ScenarioEvent::End),
     }
 }

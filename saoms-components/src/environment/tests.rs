@@ -89,7 +89,7 @@ fn chance_draws_within_the_ends_and_by_the_seed_alone() {
                 assert!((1000..=2100).contains(&(at - last)) || (0..=400).contains(&(at - last)), "{at}");
                 last = *at;
             }
-            ScenarioEvent::End => unreachable!("no line says so"),
+            ScenarioEvent::End | ScenarioEvent::Raised(_) => unreachable!("no line says so"),
             ScenarioEvent::Breakdown(robot) => {
                 assert!((1..=3).contains(robot) && (30_000..=60_100).contains(at))
             }

@@ -158,6 +158,18 @@ impl Bus {
         subscription.triggers.is_some()
     }
 
+    /// Notes that a message of a topic is for one of its readers alone.
+    #[cold]
+    pub fn note_addressed(&mut self, topic: TopicId) {
+        self.topics[topic.0 as usize].is_addressed = true;
+    }
+
+    /// True if messages of the reader's topic may be for other readers alone.
+    #[inline]
+    pub fn is_addressed(&self, subscription: &TopicReader) -> bool {
+        self.topics[subscription.topic.0 as usize].is_addressed
+    }
+
     /// True if there are messages that a reader has not collected.
     pub fn has_news(&self, subscription: &TopicReader) -> bool {
         self.topics[subscription.topic.0 as usize].has_news(&subscription.reader)

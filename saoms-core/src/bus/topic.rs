@@ -17,6 +17,8 @@ pub(super) struct BusTopic {
     pub(super) users: usize,
     /// The numbers of the components that its messages trigger.
     pub(super) triggers: Vec<u32>,
+    /// True once a message was for one of its readers alone.
+    pub(super) is_addressed: bool,
     /// The numbers of the observers outside the fleet that want its messages.
     pub(super) observers: Option<Arc<[u32]>>,
     message: String,
@@ -50,6 +52,7 @@ impl BusTopic {
             name,
             users: 1,
             triggers: Vec::new(),
+            is_addressed: false,
             observers: None,
             message: declared.message.to_owned(),
             schema: declared.schema.to_owned(),

@@ -6,6 +6,7 @@ use std::sync::atomic::Ordering;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use saoms_api::event::EventCall;
 use saoms_api::rule::nearest;
 use saoms_api::{Level, Time};
 
@@ -19,6 +20,7 @@ use super::os::clock::Clock;
 use super::os::realtime;
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
+use super::takers::{RaiseError, Takers};
 use crate::journal::ComponentName;
 use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;
@@ -369,6 +371,21 @@ impl Handle {
     /// The fleet has no such topic, the message does not fit its schema, or the run ends.
     pub fn inject(&self, injection: Injection) -> Result<(), InjectError> {
         inject::inject(&self.shared, injection)
+    }
+
+    /// The components that take events at present.
+    pub fn takers(&self) -> Arc<Takers> {
+        self.shared.takers()
+    }
+
+    /// Lets an event of a class happen, which reaches components of a site: at its time, as an [injected
+    /// message](Handle::inject). `text` describes it in the journal.
+    ///
+    /// # Errors
+    /// The event is wrong, as [`Takers::messages`] says, or the run ends.
+    pub fn raise(&self, site: &str, call: &EventCall, at: Option<Time>, text: String) -> Result<(), RaiseError> {
+        let messages = self.takers().messages(site, call).map_err(RaiseError::Wrong)?;
+        if inject::raise(&self.shared, messages, at, text) { Ok(()) } else { Err(RaiseError::Ending) }
     }
 
     /// Keeps the run from ending for want of work until the returned value is dropped: more messages may come from

@@ -6,15 +6,16 @@ use std::sync::Arc;
 
 use saoms_api::host::SharedMessage;
 use saoms_api::rule::nearest;
-use saoms_api::{Cause, Header, Time};
+use saoms_api::{Cause, Header, Level, Time};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
 use super::engine::{Engine, RunPhase};
 use super::shared::Shared;
+use super::takers::EventMessage;
 use crate::bus::TopicId;
 use crate::journal::JournalEntry;
-use crate::observe::{Notification, SentMessage};
+use crate::observe::{Notification, Occurrence, SentMessage};
 
 /// The number of the sender of messages from outside.
 pub(super) const OUTSIDE: u32 = u32::MAX;
@@ -111,6 +112,11 @@ enum Due {
         place: Option<(i32, i32)>,
         text: String,
     },
+    /// The messages of an event.
+    Event {
+        messages: Vec<EventMessage>,
+        text: String,
+    },
     /// A message that a fault holds up.
     Late {
         topic: TopicId,
@@ -176,13 +182,26 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
         }
     };
     let (key, place) = (schema.key(&bytes), schema.place(&bytes));
+    add(shared, at, Due::Message { topic: id, bytes, key, place, text });
+    Ok(())
+}
+
+/// Queues the messages of an event, which were checked.
+pub(super) fn raise(shared: &Shared, messages: Vec<EventMessage>, at: Option<Time>, text: String) -> bool {
+    let is_ending = matches!(shared.lock().phase, RunPhase::Stopping | RunPhase::Ended);
+    if !is_ending {
+        add(shared, at, Due::Event { messages, text });
+    }
+    !is_ending
+}
+
+fn add(shared: &Shared, at: Option<Time>, due: Due) {
     let mut engine = shared.lock();
     let when = at.map_or(0, Time::as_nanos).max(shared.clock.now());
-    engine.injections.add(when, Due::Message { topic: id, bytes, key, place, text });
+    engine.injections.add(when, due);
     engine.look_at = engine.look_at.min(when);
     engine.wake |= when < engine.roles.asleep_until;
     shared.release(engine);
-    Ok(())
 }
 
 impl Engine {
@@ -196,7 +215,12 @@ impl Engine {
             match entry.remove() {
                 Due::Message { topic, bytes, key, place, text } => {
                     // In real time the timer may be late; the message has the time at which it was due.
-                    self.deliver_injection(when, topic, (bytes, key, place), text);
+                    let cause = self.record_outside(when, OUTSIDE_NAME, text);
+                    self.deliver_injection(when, cause, topic, (bytes, key, place), None);
+                    delivered = true;
+                }
+                Due::Event { messages, text } => {
+                    self.deliver_event(when, messages, text);
                     delivered = true;
                 }
                 Due::Late { topic, message } => self.publish(topic, message, now),
@@ -204,24 +228,45 @@ impl Engine {
             }
         }
         if delivered {
-            let periods = self.slots.iter().filter(|slot| slot.is_member()).map(|slot| slot.policy.period);
-            let settled = now.saturating_add(periods.max().unwrap_or(0).saturating_mul(SETTLING));
-            self.injections.add(settled, Due::Settled);
-            self.look_at = self.look_at.min(settled);
+            self.settle(now);
+        }
+    }
+
+    /// Keeps the run from ending for want of work until the effects of an event have reached all components.
+    #[cold]
+    pub(super) fn settle(&mut self, now: u64) {
+        let periods = self.slots.iter().filter(|slot| slot.is_member()).map(|slot| slot.policy.period);
+        let settled = now.saturating_add(periods.max().unwrap_or(0).saturating_mul(SETTLING));
+        self.injections.add(settled, Due::Settled);
+        self.look_at = self.look_at.min(settled);
+    }
+
+    fn deliver_event(&mut self, time: u64, messages: Vec<EventMessage>, text: String) {
+        let cause = self.record_outside(time, OUTSIDE_NAME, text.clone());
+        let mut is_heard = false;
+        for EventMessage { topic, to, bytes, marks } in messages {
+            // A component that is not scheduled reads no topic.
+            let Some(topic) = self.bus.find(&topic) else { continue };
+            is_heard = true;
+            self.deliver_injection(time, cause, topic, (bytes, marks.0, marks.1), to);
+        }
+        if !is_heard {
+            let text = format!("the event `{text}` reaches nobody: no component that takes it is scheduled");
+            self.note(time, Occurrence::Note { level: Level::Warning, text });
         }
     }
 
     fn deliver_injection(
         &mut self,
         time: u64,
+        cause: Cause,
         topic: TopicId,
         (bytes, key, place): (Vec<u8>, Option<u64>, Option<(i32, i32)>),
-        text: String,
+        to: Option<u32>,
     ) {
         let name = Arc::clone(self.bus.name(topic));
-        let cause = self.record_outside(time, text);
         let header = Header { sender: OUTSIDE, sent: Time::from_nanos(time), cause };
-        let message = SharedMessage::from_bytes(header, None, bytes).of(key, place);
+        let message = SharedMessage::from_bytes(header, None, bytes).of(key, place).only_to(to);
         if let Some(trace) = &mut self.trace {
             trace.message(time, OUTSIDE, self.bus.name_hash(topic), &message);
         }
@@ -233,10 +278,11 @@ impl Engine {
         self.publish(topic, message, time);
     }
 
-    pub(super) fn record_outside(&mut self, time: u64, text: String) -> Cause {
+    /// Writes an event to the journal, as the root of what follows from it.
+    pub(super) fn record_outside(&mut self, time: u64, by: &str, text: String) -> Cause {
         // Components draw the numbers of their records from the same counter.
         let id = Cause(self.record_ids.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
-        let entry = JournalEntry::from_outside(id, Time::from_nanos(time), OUTSIDE_NAME, text);
+        let entry = JournalEntry::from_outside(id, Time::from_nanos(time), by, text);
         if let Some(records) = &self.records {
             records.put_outside(entry.clone());
         }

@@ -20,6 +20,7 @@ mod os;
 mod settings;
 mod shared;
 mod stop;
+mod takers;
 #[cfg(test)]
 mod tests;
 
@@ -29,3 +30,4 @@ pub use inject::{InjectError, InjectedContent, Injection};
 pub use os::realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
 pub use stop::stop_hardware;
+pub use takers::{EventMessage, RaiseError, Takers};

@@ -11,6 +11,7 @@ use super::os::clock::Clock;
 use super::os::sys::Gate;
 use super::settings::Settings;
 use super::stop::Stops;
+use super::takers::Takers;
 use crate::journal::RecordQueue;
 use crate::observe::{EventQueue, Observer, Observers, Occurrence, RunEvent, RunProgress};
 use crate::report::Sections;
@@ -137,6 +138,24 @@ impl Shared {
             self.end.wait(ticket, None);
         }
         self.events.close();
+    }
+
+    /// The components that take events at present.
+    pub(super) fn takers(&self) -> Arc<Takers> {
+        let (members, changes) = {
+            let engine = self.lock();
+            if let Some(known) = &engine.takers.0 {
+                return Arc::clone(known);
+            }
+            let members = engine.slots.iter().zip(0..).filter(|(slot, _)| slot.is_member());
+            (members.map(|(slot, number)| (number, Arc::clone(&slot.spec))).collect::<Vec<_>>(), engine.takers.1)
+        };
+        let takers = Arc::new(Takers::of(members.into_iter()));
+        let mut engine = self.lock();
+        if engine.takers.1 == changes {
+            engine.takers.0 = Some(Arc::clone(&takers));
+        }
+        takers
     }
 
     pub(super) fn sections(&self) -> MutexGuard<'_, Sections> {

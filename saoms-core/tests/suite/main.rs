@@ -8,6 +8,7 @@ mod busy;
 mod change;
 mod chaos;
 mod endings;
+mod events;
 mod failures;
 mod fault;
 mod fleet;

@@ -113,7 +113,7 @@ impl Handles<'_> {
                 Role::Publishes(topic) => quote_spanned! {topic.span()=>
                     self.#ident = ::saoms_api::Context::publish(context, &#topic)?;
                 },
-                Role::Subscribes(topic) => quote_spanned! {topic.span()=>
+                Role::Subscribes(topic) | Role::Takes { topic, .. } => quote_spanned! {topic.span()=>
                     self.#ident = ::saoms_api::Context::subscribe(context, &#topic)?;
                 },
                 Role::Reference { name, .. } => quote_spanned! {of.span()=>

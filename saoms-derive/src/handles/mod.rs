@@ -41,7 +41,7 @@ impl<'a> Handles<'a> {
             }
             match (&field.ident, role) {
                 (Some(ident), role) => {
-                    let role = role.map_or(Ok(Role::Plain), |role| Role::of(role, ident, &field.ty))?;
+                    let role = role.map_or(Ok(Role::Plain), |role| Role::of(role, field, ident))?;
                     handles.all.push(Handle { field, ident, role });
                 }
                 (None, Some(role)) => {
@@ -108,7 +108,15 @@ impl<'a> Handles<'a> {
 
     pub(crate) fn subscribes(&self) -> impl Iterator<Item = &Path> {
         self.all.iter().filter_map(|handle| match &handle.role {
-            Role::Subscribes(topic) => Some(topic),
+            Role::Subscribes(topic) | Role::Takes { topic, .. } => Some(topic),
+            _ => None,
+        })
+    }
+
+    /// The events that fields take: name, topic and meaning of each.
+    pub(crate) fn takes(&self) -> impl Iterator<Item = (&LitStr, &Path, &str)> {
+        self.all.iter().filter_map(|handle| match &handle.role {
+            Role::Takes { event, topic, doc } => Some((event, topic, doc.as_str())),
             _ => None,
         })
     }

@@ -2,9 +2,10 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use syn::{Attribute, Error, GenericArgument, Ident, LitStr, Meta, Path, PathArguments, Result, Token, Type};
+use syn::{Attribute, Error, Field, GenericArgument, Ident, LitStr, Meta, Path, PathArguments, Result, Token, Type};
 
 use crate::case::lower_camel;
+use crate::docs::docs;
 
 /// What a field is.
 pub(crate) enum Role {
@@ -12,6 +13,8 @@ pub(crate) enum Role {
     Publishes(Path),
     /// `#[subscribes(COUNT)]`
     Subscribes(Path),
+    /// `#[takes("fire", FIRE)]`: a subscription to the topic by which the event comes.
+    Takes { event: LitStr, topic: Path, doc: String },
     /// `#[reference]`, `#[reference("gps", optional)]`
     Reference { name: LitStr, optional: bool },
     /// `#[senses]`, `#[senses("chargeAt")]`
@@ -46,7 +49,7 @@ pub(crate) struct OwnEntry {
 
 /// The attributes of fields, beside those of `#[derive(Class)]` and `#[derive(LoopClass)]` themselves.
 const ROLES: &[&str] = &[
-    "publishes", "subscribes", "reference", "senses", "effects", "entry", "properties", "property", "extends",
+    "publishes", "subscribes", "takes", "reference", "senses", "effects", "entry", "properties", "property", "extends",
     "knowledge", "loops",
 ];
 
@@ -56,11 +59,16 @@ pub(super) fn role_name(attribute: &Attribute) -> Option<&'static str> {
 }
 
 impl Role {
-    pub(super) fn of(attribute: &Attribute, ident: &Ident, of: &Type) -> Result<Role> {
+    pub(super) fn of(attribute: &Attribute, field: &Field, ident: &Ident) -> Result<Role> {
+        let of = &field.ty;
         let path_only = |role: Role| attribute.meta.require_path_only().map(|_| role);
         match role_name(attribute).unwrap_or_default() {
             "publishes" => Ok(Role::Publishes(attribute.parse_args()?)),
             "subscribes" => Ok(Role::Subscribes(attribute.parse_args()?)),
+            "takes" => {
+                let (event, topic) = attribute.parse_args_with(taken)?;
+                Ok(Role::Takes { event, topic, doc: docs(&field.attrs) })
+            }
             "reference" => {
                 let (name, optional) = match attribute.meta {
                     Meta::Path(_) => (None, false),
@@ -129,6 +137,19 @@ fn entry_name(attribute: &Attribute, ident: &Ident) -> Result<LitStr> {
         Meta::Path(_) => Ok(named_as(ident)),
         _ => attribute.parse_args(),
     }
+}
+
+/// `("fire", FIRE)`.
+fn taken(input: syn::parse::ParseStream<'_>) -> Result<(LitStr, Path)> {
+    let event: LitStr = input.parse()?;
+    let name = event.value();
+    let is_sign = |sign: char| sign.is_ascii_alphanumeric() || matches!(sign, '_' | '-');
+    if !name.starts_with(|sign: char| sign.is_ascii_alphabetic()) || !name.chars().all(is_sign) {
+        let message = "the name of an event is a letter, then letters, digits, `_` and `-`";
+        return Err(Error::new(event.span(), message));
+    }
+    input.parse::<Token![,]>()?;
+    Ok((event, input.parse()?))
 }
 
 /// `("gps")`, `(optional)`, `("gps", optional)`.

@@ -188,6 +188,8 @@ codes! {
     READER_FASTER = "S4014" Note "reader-faster" [OfWiring]: "A topic is read more often than it is published. Reported by `saoms check --wiring`.";
     TRIGGER = "S4015" Error "trigger": "A `trigger` names a topic whose messages cannot trigger the component.";
     MINIMUM_UNUSED = "S4016" Warning "minimum-unused" [OutlivesExpansion, WithoutEffect]: "A `minimum` has no effect: no topic triggers the component.";
+    EVENT_MISMATCH = "S4017" Error "event-mismatch": "Two classes take an event of one name with different fields, or its name is a word of a language.";
+    EVENT_UNTAKEN = "S4018" Warning "event-untaken" [OutlivesExpansion, WithoutEffect, AbsentComponent]: "A text has an event that no component takes.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";

@@ -35,6 +35,9 @@ pub struct ClassDeclaration {
     /// The topics it subscribes to.
     #[serde(default)]
     pub subscribes: Vec<ClassTopic>,
+    /// The events that it takes from outside the fleet.
+    #[serde(default)]
+    pub takes: Vec<TakenEvent>,
     /// The services it implements; [`ClassDeclaration::offers`] also has what the host serves for it.
     #[serde(default)]
     pub services: Vec<ServiceDeclaration>,
@@ -126,6 +129,11 @@ pub struct PropertyDeclaration {
     pub many: bool,
     /// The word that it shares with all properties of the fleet that must not have its value, too.
     pub unique: Option<String>,
+    /// The language of its text (see [`PropertyLanguage`](saoms_api::extension::PropertyLanguage)).
+    pub language: Option<String>,
+    /// The words of the language whose events the class plays itself.
+    #[serde(default)]
+    pub plays: Vec<String>,
     /// The properties of a complex one.
     #[serde(default)]
     pub properties: Vec<PropertyDeclaration>,
@@ -214,6 +222,18 @@ pub struct ClassTopic {
     /// True if its publishers need no reader.
     #[serde(default)]
     pub optional: bool,
+}
+
+/// An event that a class takes from outside the fleet.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct TakenEvent {
+    /// Its name.
+    pub event: String,
+    /// The topic, among those to which the class subscribes, by whose messages it comes.
+    pub topic: String,
+    /// Its meaning.
+    #[serde(default)]
+    pub doc: String,
 }
 
 /// A service.

@@ -46,6 +46,9 @@ pub(super) fn inherit(class: &mut ClassDeclaration, base: ClassDeclaration) -> R
             return refuse(format!("has another topic `{other}`"));
         }
     }
+    if let Some(other) = add(&mut class.takes, base.takes, |taken| &taken.event) {
+        return refuse(format!("takes another event `{other}`"));
+    }
     if let Some(other) = add(&mut class.references, base.references, |reference| &reference.name) {
         return refuse(format!("has another reference `{other}`"));
     }

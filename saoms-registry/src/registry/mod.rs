@@ -20,13 +20,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use saoms_api::event::Events;
 use saoms_api::host::{LoopRegistration, Registration};
 use saoms_api::rule::{Code, FleetRule};
 
 pub use class::{Provider, RegisteredClass};
 pub use declaration::{
     Alias, ClassDeclaration, ClassKind, ClassTopic, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
-    ServiceDeclaration,
+    ServiceDeclaration, TakenEvent,
 };
 pub use declaration::{inner_type, type_name, type_words};
 pub use error::{Holder, RegistryError};
@@ -244,6 +245,12 @@ impl Registry {
     /// All classes under all their names, sorted by name.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<RegisteredClass>> {
         self.classes.values()
+    }
+
+    /// The events that classes take.
+    pub fn events(&self) -> Events {
+        let classes = self.classes.values().filter(|class| !class.is_alias());
+        Events::of(classes.flat_map(|class| class.declaration.events()))
     }
 
     /// The number of names.

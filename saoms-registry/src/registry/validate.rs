@@ -2,12 +2,13 @@
 //!
 //! The derives exclude most of them; a declaration written by hand, as that of a plugin in C, can have all.
 
-use saoms_api::host::RESERVED;
+use saoms_api::event::is_event_name;
+use saoms_api::host::{RESERVED, TopicKind};
 use std::collections::HashSet;
 
 use saoms_api::host::declaration::PropertyKind;
 
-use super::{ClassDeclaration, ClassTopic, DeclaredEntry, LoopDeclaration, PropertyDeclaration, simple};
+use super::{ClassDeclaration, ClassTopic, DeclaredEntry, LoopDeclaration, PropertyDeclaration, TakenEvent, simple};
 use crate::schema::Schema;
 
 /// The first contradiction.
@@ -27,6 +28,7 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
     unique("published topic", class.publishes.iter().map(|topic| topic.name.as_str()))?;
     unique("subscribed topic", class.subscribes.iter().map(|topic| topic.name.as_str()))?;
     schemas(class.publishes.iter().chain(&class.subscribes))?;
+    events(class)?;
     loops(class)?;
     for alias in &class.also {
         if alias.name.trim().is_empty() {
@@ -38,6 +40,25 @@ pub(super) fn class(class: &ClassDeclaration) -> Result<(), String> {
             };
             let checked = property.check(value).map(|_| ());
             checked.map_err(|message| format!("`{}` presets `{name}`: {message}", alias.name))?;
+        }
+    }
+    Ok(())
+}
+
+/// Checks the events that it takes.
+fn events(class: &ClassDeclaration) -> Result<(), String> {
+    unique("event under `takes`", class.takes.iter().map(|taken| taken.event.as_str()))?;
+    for TakenEvent { event, topic, .. } in &class.takes {
+        if !is_event_name(event) {
+            return Err(format!("the event `{event}` needs a letter, then letters, digits, `_` and `-` as its name"));
+        }
+        let Some(found) = class.subscribes.iter().find(|known| known.name == *topic) else {
+            return Err(format!(
+                "the event `{event}` comes by the topic `{topic}`, to which the class does not subscribe"
+            ));
+        };
+        if found.kind != TopicKind::Event {
+            return Err(format!("the event `{event}` needs an event topic, but `{topic}` is a state topic"));
         }
     }
     Ok(())

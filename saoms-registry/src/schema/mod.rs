@@ -76,6 +76,12 @@ enum Number {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SchemaError(String);
 
+impl SchemaError {
+    pub(crate) fn new(message: String) -> SchemaError {
+        SchemaError(message)
+    }
+}
+
 impl fmt::Display for SchemaError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(&self.0)

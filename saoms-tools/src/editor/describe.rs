@@ -26,6 +26,7 @@ pub(crate) fn class(class: &RegisteredClass) -> String {
     list(&mut text, "Properties", own.map(|one| one.name.as_str()));
     list(&mut text, "Publishes", declaration.publishes.iter().map(|one| one.name.as_str()));
     list(&mut text, "Subscribes to", declaration.subscribes.iter().map(|one| one.name.as_str()));
+    list(&mut text, "Takes the events", declaration.takes.iter().map(|one| one.event.as_str()));
     list(&mut text, "Services", declaration.offers().map(|one| one.name.as_str()));
     list(&mut text, "References", declaration.references.iter().map(|one| one.name.as_str()));
     for (value, names) in declaration.loops.all() {

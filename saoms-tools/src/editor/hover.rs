@@ -6,6 +6,7 @@ use saoms_lang::diagnostic::codes;
 use saoms_lang::load::vocabulary::{Holds, other, own_attributes};
 use saoms_lang::syntax::{Element, ElementId};
 
+use super::complete::language;
 use super::complete::names::declared;
 use super::complete::table;
 use super::describe;
@@ -184,6 +185,11 @@ fn value_of_property(
         if let Some(topic) = topics.iter().find(|one| one.declaration.name == file.text[at.clone()]) {
             return Some((describe::topic(topic.declaration), at));
         }
+    }
+    if let Some(language) = language::of_property(scene, 0, element.id())
+        && let Some(found) = language::explain(&language, scene, value.clone(), byte)
+    {
+        return Some(found);
     }
     Some((property(scene, element.parent()?.id(), name)?, value))
 }

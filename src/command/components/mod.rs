@@ -9,6 +9,7 @@ use std::path::Path;
 
 use clap::Args;
 use saoms_api::Properties;
+use saoms_api::event::{Event, EventField};
 use saoms_lang::assembly::TaskProperties;
 use saoms_lang::registry::{
     ClassTopic, InterfaceDeclaration, PropertyDeclaration, RegisteredClass, RegisteredLoop, RegisteredRule, Registry,
@@ -115,6 +116,19 @@ fn listed(classes: &[&RegisteredClass], loops: &[&RegisteredLoop], rules: &[Regi
     text
 }
 
+/// An event with its meaning and its fields.
+fn event_lines(event: &Event) -> String {
+    let mut text = format!("  {}\n", event.sample());
+    for line in wrapped(&event.doc, 96) {
+        let _ = writeln!(text, "      {line}");
+    }
+    for EventField { name, of } in &event.fields {
+        let optional = if of.is_optional() { ", optional" } else { "" };
+        let _ = writeln!(text, "      {name}: {}{optional}", of.expected());
+    }
+    text
+}
+
 fn first_sentence(doc: &str) -> String {
     let words: Vec<&str> = doc.split_whitespace().collect();
     let end = words.iter().position(|word| word.ends_with('.')).map_or(words.len(), |last| last + 1);
@@ -149,6 +163,7 @@ fn described(class: &RegisteredClass) -> String {
     }
     section(&mut text, "Publishes", declaration.publishes.iter().map(topic_line).collect());
     section(&mut text, "Subscribes to", declaration.subscribes.iter().map(topic_line).collect());
+    section(&mut text, "Takes the events", declaration.events().map(|event| event_lines(&event)).collect());
     let services = declaration.offers().map(|service| interface_lines(&service.name, "", &service.interface));
     section(&mut text, "Services", services.collect());
     let references = declaration.references.iter().map(|reference| {

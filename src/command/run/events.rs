@@ -5,15 +5,17 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use saoms_api::extension::{EventLanguage, EventReader, LineFault};
+use saoms_api::event::EventCall;
+use saoms_api::extension::{EventContent, EventLanguage, EventReader, LineFault, TimedMessage};
 use saoms_api::host::is_invisible;
 use saoms_api::rule::nearest;
 use saoms_api::{Level, Time};
-use saoms_core::schedule::{Handle, Hold, InjectError, InjectedContent, Injection};
+use saoms_core::schedule::{Handle, Hold, InjectError, InjectedContent, Injection, RaiseError};
 
 use crate::output::wait_for_input;
 
@@ -43,6 +45,8 @@ const LONGEST: usize = 65_536;
 /// Lines of events that are not read yet.
 pub(super) struct Events {
     lines: Box<dyn BufRead + Send>,
+    seed: u64,
+    /// The topic of each language and its reader, from the first line on.
     languages: Vec<(&'static str, Box<dyn EventReader>)>,
     /// The number of the line that was read last, from 1.
     number: usize,
@@ -70,14 +74,12 @@ impl Events {
             }
             Box::new(lines)
         };
-        let languages = EventLanguage::linked().map(|one| (one.topic.name, (one.new)(seed)));
-        Ok(Events { lines, languages: languages.collect(), number: 0 })
+        Ok(Events { lines, seed, languages: Vec::new(), number: 0 })
     }
 
     /// Lines that operators send one by one.
     pub(super) fn of_operators(seed: u64) -> Events {
-        let languages = EventLanguage::linked().map(|one| (one.topic.name, (one.new)(seed)));
-        Events { lines: Box::new(io::empty()), languages: languages.collect(), number: 0 }
+        Events { lines: Box::new(io::empty()), seed, languages: Vec::new(), number: 0 }
     }
 
     /// Lets the events of a line that an operator sent happen, and gives their number.
@@ -160,30 +162,59 @@ impl Events {
         }
     }
 
-    /// Injects the messages of a line, and counts them. A site may stand before the event: `North: at 3s ...`.
+    /// Lets the events of a line happen, and counts them. A site may stand before the event: `North: at 3s ...`.
     fn inject(&mut self, line: &str, now: Time, handle: &Handle) -> Result<i64, String> {
-        let (site, event) = line.split_once(':').map_or(("", line), |(site, event)| (site.trim(), event));
+        let (site, event) = site_of(line);
+        let before = line.len() - event.len();
+        if self.languages.is_empty() {
+            let known = handle.takers();
+            let reader = |one: &EventLanguage| (one.topic.name, (one.new)(self.seed, Arc::clone(known.events())));
+            self.languages = EventLanguage::linked().map(reader).collect();
+        }
         let mut problem = None;
         for (topic, reader) in &mut self.languages {
             match reader.read(event, now) {
                 Ok(messages) => {
                     let count = i64::try_from(messages.len()).unwrap_or(i64::MAX);
-                    let on_bus = if site.is_empty() { (*topic).to_owned() } else { format!("{site}/{topic}") };
                     for message in messages {
-                        let content = InjectedContent::Bytes(message.bytes);
-                        let injection =
-                            Injection { topic: on_bus.clone(), content, at: message.at, text: message.text };
-                        handle.inject(injection).map_err(|error| refused(site, topic, &error))?;
+                        happen(message, (site, topic), handle)?;
                     }
                     return Ok(count);
                 }
                 Err(fault) => problem = problem.or(Some(fault)),
             }
         }
-        let before = line.len() - event.len();
-        let shifted = |one: LineFault| LineFault { bytes: one.bytes.start + before..one.bytes.end + before, ..one };
         let none = || "no class of this program takes events".to_owned();
-        Err(problem.map_or_else(none, |one| shown(line, &shifted(one))))
+        Err(problem.map_or_else(none, |one| shown(line, &one.moved(before))))
+    }
+}
+
+/// The site before an event, and the rest of the line.
+fn site_of(line: &str) -> (&str, &str) {
+    // A colon may be part of a value, too.
+    match line.split_once(':') {
+        Some((site, event)) if !site.contains(['=', '"']) => (site.trim(), event),
+        _ => ("", line),
+    }
+}
+
+/// Lets one event happen.
+fn happen(message: TimedMessage, (site, topic): (&str, &str), handle: &Handle) -> Result<(), String> {
+    let TimedMessage { at, content, text } = message;
+    match content {
+        EventContent::Bytes(bytes) => {
+            let on_bus = if site.is_empty() { topic.to_owned() } else { format!("{site}/{topic}") };
+            let injection = Injection { topic: on_bus, content: InjectedContent::Bytes(bytes), at, text };
+            handle.inject(injection).map_err(|error| refused(site, topic, &error))
+        }
+        EventContent::Raised => {
+            let raised = EventCall::read(&text).map_err(RaiseError::Wrong);
+            let raised = raised.and_then(|call| handle.raise(site, &call, at, text.clone()));
+            raised.map_err(|error| match error {
+                RaiseError::Wrong(fault) => shown(&text, &fault),
+                RaiseError::Ending => error.to_string(),
+            })
+        }
     }
 }
 
@@ -259,7 +290,7 @@ mod tests {
     fn lines_that_are_too_long_are_read_to_their_end() {
         let text = format!("one\n{}\nthree", "x".repeat(3 * LONGEST));
         let lines = Box::new(io::Cursor::new(text));
-        let mut events = Events { lines, languages: Vec::new(), number: 0 };
+        let mut events = Events { lines, seed: 0, languages: Vec::new(), number: 0 };
         let (mut line, mut lengths) = (Vec::new(), Vec::new());
         while events.next(&mut line).unwrap() {
             lengths.push(line.len());

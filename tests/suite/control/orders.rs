@@ -70,6 +70,18 @@ fn components_start_and_stop() {
 }
 
 #[test]
+fn events_of_classes_are_sent() {
+    let library = crate::plugins::library("saoms_sprinkler");
+    let text = crate::support::project("plugins/sprinkler/fleet.composite");
+    let running = Running::start(&text, &["--stay", "--plugin", library.to_str().unwrap()]);
+    assert_eq!(running.told(&["send", "fire at=(7,7) size=1 to Hall2"]), "1 event taken\n");
+    let wrong = running.refused(&["send", "fire at=(7,7) sise=1 to Hall2"]);
+    assert!(wrong.contains("has no field `sise`") && wrong.contains("did you mean `size`?"), "{wrong}");
+    running.told(&["down"]);
+    assert_eq!(running.end().0, Some(0));
+}
+
+#[test]
 fn the_log_is_followed_to_the_end_of_the_fleet() {
     let running = Running::start(&fleet(), &["--stay"]);
     running.until("Robot1", |robot| robot["values"]["state"] == "free");

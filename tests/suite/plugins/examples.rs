@@ -12,6 +12,7 @@ use saoms_drive as _;
 use saoms_flights as _;
 use saoms_hello as _;
 use saoms_own_loops as _;
+use saoms_sprinkler as _;
 use saoms_testkit::{Fleet, Run};
 use serde_json::Value;
 
@@ -106,12 +107,42 @@ fn the_wheels_that_wear_out_are_loaded() {
 }
 
 #[test]
+fn the_sprinklers_are_loaded_and_take_fires_from_outside() {
+    let (report, linked) = loaded_and_linked("sprinkler", 60);
+    assert_eq!((&report["fires"]["out"], linked.log_of("Hall2").len()), (&4.into(), 3), "{report:#}");
+    let run = |events: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("events.txt");
+        fs::write(&file, events).unwrap();
+        let report = folder.path().join("report.json");
+        let library = library("saoms_sprinkler");
+        let plugin = ["--plugin", library.to_str().unwrap(), "--events", file.to_str().unwrap()];
+        let run = ["run", "plugins/sprinkler/fleet.composite", "--virtual", "--for", "1min", "--report"];
+        let run = saoms(&[&run[..], &[report.to_str().unwrap()], &plugin].concat());
+        assert!(run.status.success(), "{}", text(&run));
+        let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
+        (report, text(&run))
+    };
+    let (report, told) = run("fire at=(1,1) size=1\nat 3s 2 times fire at=(0,0)..(3,3) size=1..2 fuel=OIL to Hall1\n\
+        fire at=(1,1) sise=1\nfire at=(1,1) size=1 to Hall3\n");
+    assert_eq!((&report["events"]["taken"], &report["events"]["ignored"]), (&3.into(), &2.into()), "{told}");
+    assert_eq!(report["fires"]["out"], 8, "{told}");
+    for said in [
+        "line 3 of the events is ignored: event `fire` has no field `sise`; did you mean `size`?",
+        "line 4 of the events is ignored: no component `Hall3` takes the event `fire`; did you mean `Hall1`?",
+    ] {
+        assert!(told.contains(said), "{told}");
+    }
+}
+
+#[test]
 fn what_the_examples_offer_is_listed_without_running_them() {
     for (package, name, expected) in [
         ("saoms_camera", "camera.Robot", "extends saoms.Robot"),
         ("saoms_camera", "camera.Robot", "CAMERATOPIC (state topic of CameraPicture)"),
         ("saoms_camera", "camera.Robot", "CollisionMS          saoms.CollisionMS"),
         ("saoms_flights", "flights.MasterEnvironment", "extends saoms.MasterEnvironment"),
+        ("saoms_sprinkler", "sprinkler.Hall", "Takes the events\n  fire at=(1,1) size=1\n"),
         ("saoms_drive", "drive.Drive", "hardware: saoms.Hardware"),
         ("saoms_battery_saver", "saver.BatterySaver", "floor: "),
     ] {

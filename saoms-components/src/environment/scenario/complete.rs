@@ -1,17 +1,19 @@
 //! Completion of scenarios in editors.
 
-use saoms_api::extension::{Completion, CompletionKind, DURATION_UNITS, PropertyLanguage, PropertyText, submit};
+use std::ops::Range;
 
+use saoms_api::event::Event;
+use saoms_api::extension::{Completion, CompletionKind, DURATION_UNITS, PropertyText};
+
+use super::event::KINDS;
 use super::{Continuation, continuations};
-
-submit! { PropertyLanguage { class: "saoms.Environment", property: "scenario", complete } }
 
 /// Class of the components that can break down.
 const ROBOT: &str = "saoms.Robot";
 
 /// Completions for the cursor in a scenario.
-fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
-    let PropertyText { text, at, components } = *scenario;
+pub(super) fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
+    let PropertyText { text, at, plays, events, components } = *scenario;
     let line = text[..at].rfind(['\n', '\r', ';']).map_or(0, |found| found + 1);
     let before = &text[line..at];
     if before.contains('#') {
@@ -25,8 +27,21 @@ fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
     let end = end + usize::from(before[start..].starts_with('(') && text[end..].starts_with(')'));
     let word = line + start..end;
     let value = |label: &str| Completion::new(label, CompletionKind::Value, &word);
+    let is_event = |word: &str| before[..start].split_whitespace().any(|one| one == word);
+    if let Some(event) = events.iter().find(|event| is_event(&event.name)) {
+        return of_event(event, &before[..start], (&before[start..], word), components);
+    }
     let mut all = Vec::new();
-    for (one, rank) in continuations(&before[..start]).into_iter().zip(0..) {
+    let next = continuations(&before[..start]);
+    if KINDS.iter().any(|kind| next.contains(&Continuation::Word(kind))) {
+        let event = |one: &Event| Completion::new(&one.name, CompletionKind::Keyword, &word).detail(&one.doc);
+        all.extend(events.iter().map(event));
+    }
+    let is_played = |one: &Continuation| match one {
+        Continuation::Word(name) => !KINDS.contains(name) || plays.iter().any(|one| one == name),
+        _ => true,
+    };
+    for (one, rank) in next.into_iter().filter(is_played).zip(0..) {
         match one {
             Continuation::Word(name) => {
                 let one = Completion::new(name, CompletionKind::Keyword, &word);
@@ -56,6 +71,39 @@ fn complete(scenario: &PropertyText<'_>) -> Vec<Completion> {
     all
 }
 
+/// Completions behind the name of an event that classes take; `typed` is the present word, with its bytes.
+fn of_event(
+    event: &Event,
+    before: &str,
+    (typed, word): (&str, Range<usize>),
+    components: &dyn Fn(&str) -> Vec<String>,
+) -> Vec<Completion> {
+    let given = before.split_whitespace().skip_while(|one| *one != event.name).skip(1);
+    let fields = || event.fields.iter();
+    if let Some((name, _)) = typed.split_once('=') {
+        let choices = fields().filter(|field| field.name == name).flat_map(|field| field.of.choices());
+        let range = word.start + name.len() + 1..word.end;
+        return choices.map(|one| Completion::new(one, CompletionKind::Value, &range)).collect();
+    }
+    if given.clone().any(|one| one == "to") {
+        if given.last() != Some("to") {
+            return Vec::new();
+        }
+        let names = event.classes.iter().flat_map(|class| components(class));
+        return names.map(|name| Completion::new(name, CompletionKind::Component, &word)).collect();
+    }
+    let is_given = |name: &str| given.clone().any(|one| one.split('=').next() == Some(name));
+    let left = fields().filter(|field| !is_given(&field.name));
+    let mut all: Vec<Completion> = left
+        .map(|field| {
+            let one = Completion::new(format!("{}={}", field.name, field.of.sample()), CompletionKind::Value, &word);
+            one.detail(field.of.expected()).rank(if field.of.is_optional() { 6 } else { 4 })
+        })
+        .collect();
+    all.push(Completion::new("to", CompletionKind::Keyword, &word).detail("the only component that takes it").rank(7));
+    all
+}
+
 /// Byte position at which the last word of a line begins.
 fn word_start(line: &str) -> usize {
     // A block is one word, even if it contains blanks.
@@ -68,7 +116,7 @@ fn word_start(line: &str) -> usize {
     }
 }
 
-fn meaning(word: &str) -> &'static str {
+pub(super) fn meaning(word: &str) -> &'static str {
     match word {
         "at" => "once, at a time from the start",
         "from" => "again and again, from a time on",

@@ -1,8 +1,11 @@
+use saoms_api::event::{EventCall, is_event_name};
+use saoms_api::extension::LineFault;
 use saoms_api::rule::nearest;
 
 use super::line::drawn;
 use super::random::{RandomRange, Spot};
 use super::tokenizer::{DOTS, Tokenizer};
+use super::vocabulary::Vocabulary;
 use super::{EventSpec, Spanned};
 use crate::grid::Block;
 use crate::text::TextFault;
@@ -13,9 +16,51 @@ const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..1
 
 const RANDOM: &str = "random";
 
-/// Reads an event.
-pub(super) fn read(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
-    Ok(match words.one_of(&KINDS, "`luggage`, `landing`, `takeoff`, `breakdown` or `end`")? {
+/// Reads an event, which ends the line.
+pub(super) fn read(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Result<EventSpec, TextFault> {
+    let name = words.peek().unwrap_or_default();
+    let event = match KINDS.contains(&name) {
+        true if !vocabulary.plays(name) => {
+            let message = format!("found `{name}`, which this class does not play");
+            return Err(words.fault(name, message).help(format!("it plays {}", vocabulary.expected())));
+        }
+        true => own(words)?,
+        false => return of_class(words, vocabulary),
+    };
+    match words.peek() {
+        Some(more) => Err(words.wrong(more, "the end of the line, or `;` before the next event")),
+        None => Ok(event),
+    }
+}
+
+/// Reads an event that other classes take: the rest of the line.
+fn of_class(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Result<EventSpec, TextFault> {
+    let expected = vocabulary.expected();
+    let name = words.next(&expected)?;
+    let unknown = |words: &Tokenizer<'_>| words.wrong(name, &expected).instead(nearest(name, vocabulary.names()));
+    let rest = words.rest(name);
+    let start = words.bytes(name).start;
+    let call = match vocabulary.events() {
+        None if !is_event_name(name) => return Err(unknown(words)),
+        // Whether there is such an event is not known here: what cannot be one is another mistake.
+        None => EventCall::read(rest).map_err(|_| unknown(words))?,
+        Some(events) => {
+            let Some(event) = events.get(name) else { return Err(unknown(words)) };
+            let call = EventCall::read(rest).and_then(|call| event.check(&call).map(|()| call));
+            call.map_err(|fault| text_fault(fault.moved(start)))?
+        }
+    };
+    words.skip_rest();
+    Ok(EventSpec::Raised(call.moved(start)))
+}
+
+fn text_fault(LineFault { bytes, message, instead, help }: LineFault) -> TextFault {
+    TextFault { bytes, message, instead, help }
+}
+
+/// Reads an event of the language itself.
+fn own(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
+    Ok(match words.one_of(&KINDS, "an event")? {
         "luggage" => {
             let from = spot(words)?;
             words.one_of(&["to"], "`to` and the block to bring it to")?;

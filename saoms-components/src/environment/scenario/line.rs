@@ -5,6 +5,7 @@ use saoms_api::rule::nearest;
 
 use super::random::RandomRange;
 use super::tokenizer::Tokenizer;
+use super::vocabulary::Vocabulary;
 use super::{Before, Line, event, meant};
 use crate::text::TextFault;
 
@@ -22,15 +23,27 @@ const REPEATED: &str =
 
 /// The non-empty lines of a text, without comments. Lines end at a line end or `;`.
 pub(in crate::environment) fn split(text: &str) -> impl Iterator<Item = &str> {
-    let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default());
-    lines.flat_map(parts).filter(|line| !line.trim().is_empty())
+    text.lines().map(without_comment).flat_map(parts).filter(|line| !line.trim().is_empty())
 }
 
-/// The parts of a text between `;`. One between the numbers of a block is a slip, and ends nothing.
+/// The line up to `#`, which may stand in quotes.
+fn without_comment(line: &str) -> &str {
+    let mut is_quoted = false;
+    let start = line.find(|sign: char| {
+        is_quoted ^= sign == '"';
+        sign == '#' && !is_quoted
+    });
+    &line[..start.unwrap_or(line.len())]
+}
+
+/// The parts of a text between `;`. One between the numbers of a block is a slip, and ends nothing; nor does one in
+/// quotes.
 fn parts(line: &str) -> impl Iterator<Item = &str> {
-    let mut open = false;
+    let (mut open, mut is_quoted) = (false, false);
     line.split(move |sign: char| {
+        is_quoted ^= sign == '"';
         match sign {
+            _ if is_quoted => return false,
             '(' => open = true,
             ';' if open => return false,
             sign if !sign.is_ascii_digit() && sign != ' ' => open = false,
@@ -41,31 +54,32 @@ fn parts(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Reads a line that may start with its event: the event happens now then, and the flag is true.
-pub(in crate::environment) fn read_outside(line: &str, before: Before) -> Result<(Line, bool), TextFault> {
+pub(in crate::environment) fn read_outside(
+    line: &str,
+    before: Before,
+    vocabulary: Vocabulary<'_>,
+) -> Result<(Line, bool), TextFault> {
     let mut words = Tokenizer::of(line, line);
     let first = words.peek().unwrap_or_default();
     if STARTS.contains(&first) {
-        return read_line(line, line, before).map(|line| (line, false));
+        return read_line(line, line, before, vocabulary).map(|line| (line, false));
     }
-    if !event::KINDS.contains(&first) {
-        let near = nearest(first, event::KINDS.into_iter().chain(STARTS));
+    if vocabulary.names().all(|name| name != first) {
+        let near = nearest(first, vocabulary.names().chain(STARTS));
         let expected = "an event, `at`, `from` or `then` at the start of a line";
         return Err(words.wrong(first, expected).instead(near));
     }
     let bytes = words.bytes(first);
-    let event = event::read(&mut words)?;
-    if let Some(more) = words.peek() {
-        return Err(words.wrong(more, "the end of the line, or `;` before the next event"));
-    }
+    let event = event::read(&mut words, vocabulary)?;
     let (time, every) = (RandomRange::fixed(Duration::ZERO), RandomRange::fixed(Duration::ZERO));
     let line = Line { text: 0, time, follows: false, every, times: Some(1), until: None, event, bytes };
     Ok((line, true))
 }
 
 /// Reads a line of the text of a scenario.
-pub(super) fn read(text: &str, line: &str, before: Before) -> Result<Line, TextFault> {
-    read_line(text, line, before).map_err(|fault| {
-        let Some(site) = site(line) else { return meant::proposed(text, line, before, fault) };
+pub(super) fn read(text: &str, line: &str, before: Before, vocabulary: Vocabulary<'_>) -> Result<Line, TextFault> {
+    read_line(text, line, before, vocabulary).map_err(|fault| {
+        let Some(site) = site(line) else { return meant::proposed(text, line, (before, vocabulary), fault) };
         let message = format!("found the site `{site}`, which stands only before events from outside (`--events`)");
         let fault = Tokenizer::of(text, line).fault(site, message);
         fault.help("remove it: the events of a scenario are for the site in which its environment is")
@@ -81,7 +95,7 @@ fn site(line: &str) -> Option<&str> {
     (!is_word).then(|| &line[start..=before.len()])
 }
 
-pub(super) fn read_line(text: &str, line: &str, before: Before) -> Result<Line, TextFault> {
+pub(super) fn read_line(text: &str, line: &str, before: Before, vocabulary: Vocabulary<'_>) -> Result<Line, TextFault> {
     let mut words = Tokenizer::of(text, line);
     let start = words.next("`at`, `from` or `then`")?;
     if !STARTS.contains(&start) {
@@ -90,7 +104,7 @@ pub(super) fn read_line(text: &str, line: &str, before: Before) -> Result<Line, 
             _ => nearest(start, STARTS),
         };
         let fault = words.wrong(start, "`at`, `from` or `then` at the start of a line").instead(near);
-        if event::KINDS.contains(&start) {
+        if vocabulary.names().any(|name| name == start) {
             return Err(fault.help(format!("write the time first, as in `at 6s {start} ...`")));
         }
         return Err(fault.help("write a line such as `at 6s luggage (3,1) to (3,10)` or `then 500ms landing 4`"));
@@ -134,10 +148,7 @@ pub(super) fn read_line(text: &str, line: &str, before: Before) -> Result<Line, 
         return Err(words.wrong(other, "`times` after the number of times").instead(Some("times")));
     }
     let bytes = words.bytes(first);
-    let event = event::read(&mut words)?;
-    if let Some(more) = words.peek() {
-        return Err(words.wrong(more, "the end of the line, or `;` before the next event"));
-    }
+    let event = event::read(&mut words, vocabulary)?;
     let times = if every.is_none() { Some(given.unwrap_or(1)) } else { given };
     let every = every.unwrap_or(RandomRange::fixed(Duration::ZERO));
     Ok(Line { text: 0, time, follows: start == "then", every, times, until, event, bytes })

@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use super::vocabulary::Vocabulary;
 use super::{Before, line};
 use crate::text::TextFault;
 
@@ -26,7 +27,12 @@ const OTHER_WORDS: [(&str, &str); 14] = [
 ];
 
 /// The fault with a proposal, if it has none and one makes sense.
-pub(super) fn proposed(text: &str, part: &str, before: Before, fault: TextFault) -> TextFault {
+pub(super) fn proposed(
+    text: &str,
+    part: &str,
+    (before, vocabulary): (Before, Vocabulary<'_>),
+    fault: TextFault,
+) -> TextFault {
     let start = crate::text::bytes(text, part).start;
     let Some(bytes) = within(&fault.bytes, start, part.len()).filter(|_| fault.instead.is_none()) else { return fault };
     let (word, behind) = (&part[bytes.clone()], &part[bytes.end..]);
@@ -36,7 +42,7 @@ pub(super) fn proposed(text: &str, part: &str, before: Before, fault: TextFault)
         let end = meant.find(['#', ';']);
         let (meant, rest) = end.map_or((meant.as_str(), behind), |end| (&meant[..end], ""));
         let changed = format!("{}{meant}{rest}", &part[..bytes.start]);
-        match line::read_line(&changed, &changed, before) {
+        match line::read_line(&changed, &changed, before, vocabulary) {
             _ if changed.trim().is_empty() => is_comment,
             Ok(_) => true,
             Err(next) => next.bytes.start > bytes.start && next.bytes.start >= bytes.start + meant.len(),

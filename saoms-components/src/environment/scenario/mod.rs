@@ -3,18 +3,22 @@
 mod complete;
 mod continuation;
 mod event;
+mod language;
 pub(super) mod line;
 mod meant;
 mod random;
 mod tokenizer;
+mod vocabulary;
 
 use std::ops::Range;
 use std::time::Duration;
 
 use saoms_api::Finding;
+use saoms_api::event::EventCall;
 
 pub use continuation::{Continuation, continuations};
 pub use random::{RandomRange, Spot};
+pub(in crate::environment) use vocabulary::Vocabulary;
 
 use crate::text::TextFault;
 
@@ -71,6 +75,8 @@ pub enum EventSpec {
     Takeoff(RandomRange<u32>),
     /// A breakdown of the robot with this number, given as a number or as a name that ends with it.
     Breakdown(Spanned<RandomRange<u32>>),
+    /// An event that other classes take.
+    Raised(EventCall),
     /// No event: the run lasts until this time.
     End,
 }
@@ -116,7 +122,8 @@ impl Scenario {
     /// Reads a scenario from its lines, given in any number of texts.
     ///
     /// # Errors
-    /// Everything that is wrong with it, as findings about the property `scenario`.
+    /// Everything that is wrong with it, as findings about the property `scenario`. Which events classes take is not
+    /// known here: a line that has the form of one is taken for one.
     pub fn read<S: AsRef<str>>(texts: &[S]) -> Result<Scenario, Vec<Finding>> {
         let (scenario, findings) = Scenario::read_partly(texts);
         if findings.is_empty() { Ok(scenario) } else { Err(findings) }
@@ -124,22 +131,27 @@ impl Scenario {
 
     /// The correct lines, and findings about the wrong ones. After [`MOST_WRONG`] wrong lines reading stops.
     pub(crate) fn read_partly<S: AsRef<str>>(texts: &[S]) -> (Scenario, Vec<Finding>) {
+        Scenario::read_with("scenario", texts, Vocabulary::ANY)
+    }
+
+    /// The same for another property, with the events that are known.
+    fn read_with<S: AsRef<str>>(property: &str, texts: &[S], vocabulary: Vocabulary<'_>) -> (Scenario, Vec<Finding>) {
         let (mut lines, mut findings): (Vec<Line>, Vec<Finding>) = (Vec::new(), Vec::new());
         // What `then` counts from. A wrong line counts as one with a last event.
         let mut before = Before::Start;
         for (place, text) in texts.iter().enumerate() {
             if let Some(fault) = table(text.as_ref()).or_else(|| TextFault::of_file_name(text.as_ref())) {
-                findings.push(fault.finding("scenario", place));
+                findings.push(fault.finding(property, place));
                 continue;
             }
             for part in line::split(text.as_ref()) {
-                let read = line::read(text.as_ref(), part, before);
+                let read = line::read(text.as_ref(), part, before, vocabulary);
                 let is_endless = read.as_ref().is_ok_and(|line| line.times.is_none() && line.until.is_none());
                 before = if is_endless { Before::Endless } else { Before::Event };
                 match read {
                     Ok(line) => lines.push(Line { text: place, ..line }),
                     Err(_) if findings.len() == MOST_WRONG => return (Scenario { lines }, findings),
-                    Err(fault) => findings.push(fault.finding("scenario", place)),
+                    Err(fault) => findings.push(fault.finding(property, place)),
                 }
             }
         }

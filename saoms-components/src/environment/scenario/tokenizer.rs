@@ -67,6 +67,16 @@ impl<'a> Tokenizer<'a> {
             .ok_or_else(|| self.wrong(word, expected).instead(nearest(word, known.iter().copied())))
     }
 
+    /// The rest of the line from a word on.
+    pub(super) fn rest(&self, word: &str) -> &'a str {
+        &self.line[bytes(self.line, word).start..]
+    }
+
+    /// Takes all words that are left.
+    pub(super) fn skip_rest(&mut self) {
+        self.at = self.words.len();
+    }
+
     /// Byte range of a word in the text.
     pub(super) fn bytes(&self, word: &str) -> Range<usize> {
         bytes(self.text, word)

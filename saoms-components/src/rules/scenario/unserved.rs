@@ -101,7 +101,7 @@ impl FirstEvents {
             Some((line.text, line.bytes.clone()))
         };
         FirstEvents {
-            events: first(|one| *one != EventSpec::End),
+            events: first(|one| !matches!(one, EventSpec::Raised(_) | EventSpec::End)),
             luggage: first(|one| matches!(one, EventSpec::Luggage { .. })),
             airplanes: first(|one| matches!(one, EventSpec::Landing(_) | EventSpec::Takeoff(_))),
         }

@@ -12,6 +12,7 @@ use saoms_lang::assembly::ComponentSpec;
 use smol_str::SmolStr;
 
 use crate::schedule::engine::RunPhase;
+use crate::schedule::inject::OUTSIDE_NAME;
 use crate::schedule::shared::Shared;
 
 /// Maximum time that a new value waits for running code.
@@ -139,7 +140,7 @@ pub(crate) fn set(shared: &Arc<Shared>, component: &str, property: &str, text: &
         body.part.spec = Arc::clone(&changed);
         engine.slots[number as usize].spec = changed;
         let now = shared.clock.now();
-        engine.record_outside(now, format!("set {component} {property}={text}"));
+        engine.record_outside(now, OUTSIDE_NAME, format!("set {component} {property}={text}"));
     }
     engine.return_unchanged(number, body, shared.clock.now());
     shared.release(engine);

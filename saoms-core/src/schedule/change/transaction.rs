@@ -310,6 +310,7 @@ impl<'a> Change<'a> {
                 engine.forget(number);
             }
         }
+        engine.takers = (None, engine.takers.1 + 1);
         engine.end_if_done(now);
         self.shared.release(engine);
         drop(outgoing);

@@ -50,6 +50,8 @@ pub(crate) struct Part {
     /// Subscriptions of a failed instance, for the instance that replaces it.
     pub(crate) kept: Vec<TopicReader>,
     pub(crate) outbox: Vec<(TopicId, SharedMessage)>,
+    /// True if there is an event in the outbox.
+    pub(crate) has_raised: bool,
     /// Bytes that the present code keeps once it has finished, and the newest ones that are kept.
     pub(crate) bytes_to_keep: Option<KeptBytes>,
     pub(crate) kept_bytes: KeptBytes,
@@ -132,6 +134,7 @@ impl Body {
             has_departed: false,
             kept: Vec::new(),
             outbox: Vec::new(),
+            has_raised: false,
             bytes_to_keep: None,
             kept_bytes: KeptBytes::default(),
             lasting: Lasting::default(),

@@ -2,12 +2,14 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::event::EventCall;
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
 use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
 use saoms_api::{
-    CallError, Cause, Chance, Departed, Failure, Level, Record, Region, ReportValue, StopFunction, Time, Value, Work,
+    CallError, Cause, Chance, Departed, Failure, Header, Level, Record, Region, ReportValue, StopFunction, Time, Value,
+    Work,
 };
 
 use super::body::{KeptBytes, Part, subject};
@@ -17,6 +19,7 @@ use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
 use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
 use crate::schedule::shared::Shared;
+use crate::schedule::takers::EventMessage;
 use saoms_lang::assembly::{ComponentSpec, Wire};
 use saoms_lang::schema::Schema;
 
@@ -82,6 +85,8 @@ impl ComponentHost<'_> {
 
 /// Greatest number of publishers, of subscriptions, and of functions that stop hardware of a component.
 pub(super) const MAX_HANDLES: usize = 1000;
+/// Greatest length of an event, in bytes.
+const MAX_EVENT: usize = 65_536;
 
 /// Records carry the time at which the execution began: an execution is one instant, and the clock need not be read.
 fn stamp<'a>(shared: &'a Shared, part: &Part) -> Stamp<'a> {
@@ -198,6 +203,46 @@ impl Host for ComponentHost<'_> {
                 "this publisher belongs to no topic: keep what `Context::publish` returned in `initialize`",
             )),
         }
+    }
+
+    #[cold]
+    fn raise(&mut self, event: &str) -> Result<(), Failure> {
+        if event.len() > MAX_EVENT {
+            return Err(Failure::new(format!("an event of {} bytes is longer than {MAX_EVENT}", event.len())));
+        }
+        if !self.part.spent.has_record() {
+            return self.part.spent.is_within();
+        }
+        let refused = |fault: &dyn fmt::Display| Failure::new(format!("event `{event}`: {fault}"));
+        let call = EventCall::read(event).map_err(|fault| refused(&fault))?;
+        let takers = self.shared.takers();
+        let messages = match takers.take(&self.spec().site, &call.name.text) {
+            true => takers.messages(&self.spec().site, &call).map_err(|fault| refused(&fault))?,
+            false => Vec::new(),
+        };
+        let sent = Time::from_nanos(self.part.due);
+        let mut cause = None;
+        for EventMessage { topic, to, bytes, marks: (key, place) } in messages {
+            let mut engine = self.shared.lock();
+            // A component that is not scheduled reads no topic.
+            let Some(topic) = engine.bus.find(&topic) else { continue };
+            let now = self.part.now;
+            let cause = *cause.get_or_insert_with(|| engine.record_outside(now, &self.part.name, event.to_owned()));
+            drop(engine);
+            self.part.sent_bytes += bytes.len();
+            self.may_send()?;
+            let header = Header { sender: self.part.index, sent, cause };
+            let message = SharedMessage::from_bytes(header, None, bytes).of(key, place).only_to(to);
+            self.part.outbox.push((topic, message));
+        }
+        if cause.is_some() {
+            self.part.has_raised = true;
+            self.part.recorder.acted();
+        } else if self.part.spent.has_line() {
+            let text = format!("the event `{event}` reaches nobody: no component that takes it runs in this site");
+            self.emit(Occurrence::Log { level: Level::Warning, text });
+        }
+        Ok(())
     }
 
     fn reference(&mut self, name: &str, interface: &str) -> Result<u32, Failure> {

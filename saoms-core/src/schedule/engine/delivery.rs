@@ -46,6 +46,9 @@ impl Engine {
         }
         part.sent_bytes = 0;
         self.standstill.note_effect(now);
+        if std::mem::take(&mut part.has_raised) && self.phase == RunPhase::Running {
+            self.settle(now);
+        }
         self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
         for (topic, message) in part.outbox.drain(..) {
             if let Some(trace) = &mut self.trace {
@@ -69,12 +72,15 @@ impl Engine {
     /// Puts a message into its topic, and triggers the components that react to it.
     #[inline]
     pub(crate) fn publish(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
-        let sender = message.header().sender;
+        let (sender, to) = (message.header().sender, message.to());
+        if to.is_some() {
+            self.bus.note_addressed(topic);
+        }
         if !self.bus.publish(topic, message) {
             return self.unkept(sender, topic, now);
         }
         if !self.bus.triggers(topic).is_empty() {
-            self.trigger_all(topic, now);
+            self.trigger_all(topic, to, now);
         }
     }
 

@@ -137,6 +137,9 @@ impl Engine {
             } else {
                 self.bus.collect(subscription, inbox)
             };
+            if self.bus.is_addressed(subscription) {
+                inbox.retain(|message| message.to().is_none_or(|to| to == index));
+            }
             slot.statistics.received += inbox.len() as u64;
             if missing > 0 {
                 let (topic, _, before) = lost.unwrap_or((self.bus.topic_of(subscription), place, 0));

@@ -32,6 +32,7 @@ use super::component::body::Job;
 use super::inject::Injections;
 use super::settings::{ClockKind, Settings, nanos};
 use super::stop::Stops;
+use super::takers::Takers;
 use crate::bus::Bus;
 use crate::fault::Faults;
 use crate::journal::{OutsideRing, RecordQueue};
@@ -78,6 +79,8 @@ pub(crate) struct Engine {
     /// Counter of the journal's records.
     pub(crate) record_ids: Arc<AtomicU64>,
     pub(crate) faults: Faults,
+    /// The takers of events since the last change of the fleet, once somebody asked for them; the number of changes.
+    pub(crate) takers: (Option<Arc<Takers>>, u64),
     /// The number of each component, by its path.
     pub(crate) numbers: HashMap<Arc<str>, u32>,
     /// The component of a change that failed in a call, before the change was committed.
@@ -169,6 +172,7 @@ impl Engine {
             with_hardware: Vec::new(),
             record_ids: Arc::default(),
             faults: settings.faults.clone(),
+            takers: (None, 0),
             numbers: HashMap::new(),
             held_failure: None,
             cause: None,

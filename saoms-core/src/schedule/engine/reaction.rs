@@ -6,11 +6,14 @@ use crate::bus::TopicId;
 use crate::schedule::component::body::{Body, Job};
 
 impl Engine {
-    /// Triggers all components that react to messages of a topic.
+    /// Triggers all components that react to messages of a topic, or the one that a message is for.
     #[cold]
-    pub(super) fn trigger_all(&mut self, topic: TopicId, now: u64) {
+    pub(super) fn trigger_all(&mut self, topic: TopicId, to: Option<u32>, now: u64) {
         for place in 0..self.bus.triggers(topic).len() {
-            self.trigger(self.bus.triggers(topic)[place], now);
+            let index = self.bus.triggers(topic)[place];
+            if to.is_none_or(|to| to == index) {
+                self.trigger(index, now);
+            }
         }
     }
 

@@ -32,6 +32,9 @@ impl Trace {
 
     pub(crate) fn message(&mut self, time: u64, component: u32, topic: u64, message: &SharedMessage) {
         self.effect(time, component, topic);
+        if let Some(to) = message.to() {
+            self.hash = fold(self.hash, u64::from(to));
+        }
         message.encode_into(&mut self.bytes);
         let (words, rest) = self.bytes.as_chunks::<8>();
         for word in words {

@@ -12,6 +12,7 @@ use crate::check::options::Options;
 use crate::check::properties::findings::{Subject, diagnostic};
 use crate::check::properties::unread;
 use crate::check::report::Report;
+use crate::check::rules::languages::Languages;
 use crate::check::tasks::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
@@ -129,6 +130,7 @@ pub(crate) fn check_all(
     report: &mut Report<'_>,
 ) {
     saoms_api::host::contain::install_hook();
+    let languages = Languages::of(fleet);
     let mut unloadable = BTreeSet::new();
     // A library that cannot be loaded is told once, and has nothing to do with values.
     let mut loads =
@@ -149,7 +151,11 @@ pub(crate) fn check_all(
     for (member, check, of) in all().filter(|(_, check, _)| check.is_sound()) {
         report.about(member);
         let (subject, class) = (check.subject(member), of.class);
-        if is_asked(class.origin(), class.is_only_read()) && loads(class.origin(), class.load(), subject, report) {
+        let found = languages.judge(member, subject, &class.declaration().properties, report);
+        if !found.is_empty() {
+            findings(&found, subject, class.name(), repeated, report);
+        } else if is_asked(class.origin(), class.is_only_read()) && loads(class.origin(), class.load(), subject, report)
+        {
             judge(|| dropped(class.construct(subject.values)), subject, class.name(), repeated, report);
         }
         for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {

@@ -1,6 +1,7 @@
 //! Rules over the resolved fleet, each in a file: they run last, and those of components run code of these.
 
 mod constructors;
+mod languages;
 mod only_read;
 mod plugin_rules;
 mod similar_names;

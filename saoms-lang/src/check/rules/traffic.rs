@@ -53,7 +53,8 @@ pub(crate) fn check(assembly: &Assembly, places: &[ComponentPlaces], report: &mu
     let mut similar = Similar::of(&traffic, |topic| topic.ends().all(|end| all.is_renamed(end, topic)));
     let mut reported: HashSet<&str> = all.known(&traffic, report);
     let is_known = |topic: &TrafficTopic| reported.contains(topic.name.as_str());
-    let is_lone = |topic: &&TrafficTopic| (topic.writers.is_empty() || topic.readers.is_empty()) && !is_known(topic);
+    let has_writer = |topic: &TrafficTopic| !topic.writers.is_empty() || all.comes_from_outside(topic);
+    let is_lone = |topic: &&TrafficTopic| (!has_writer(topic) || topic.readers.is_empty()) && !is_known(topic);
     let mut lone: HashMap<&str, &TrafficTopic> =
         traffic.topics.iter().filter(is_lone).map(|topic| (topic.name.as_str(), topic)).collect();
     for topic in &traffic.topics {
@@ -89,6 +90,14 @@ struct All<'a> {
 }
 
 impl All<'_> {
+    /// True if a reader takes an event by the topic: scenarios and people bring its messages.
+    fn comes_from_outside(&self, topic: &TrafficTopic) -> bool {
+        topic.readers.iter().any(|end| {
+            let spec = &self.assembly.components[end.component];
+            spec.class.declaration().takes.iter().any(|taken| spec.topic(&taken.topic) == topic.name)
+        })
+    }
+
     /// The topics with other names than in the rest of the fleet, for a `topicRename` or a site that a rule told of.
     fn known<'t>(&self, traffic: &'t Traffic, report: &mut Report<'_>) -> HashSet<&'t str> {
         let places = report

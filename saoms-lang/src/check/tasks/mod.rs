@@ -2,6 +2,7 @@
 
 pub(crate) mod broker_address;
 pub(crate) mod renames;
+mod taken_events;
 #[cfg(test)]
 mod tests;
 pub(crate) mod topic_types;
@@ -169,6 +170,7 @@ pub(crate) fn check_all<'a>(
 ) -> RepeatedValues {
     let mut unique = Unique::of(fleet, checks.iter().map(|check| &check.given), report);
     let mut topics = topic_types::Topics::default();
+    let mut taken = taken_events::TakenEvents::default();
     let mut renames = Renames::default();
     for (place, (member, check)) in fleet.members.iter().zip(checks).enumerate() {
         report.about(member);
@@ -184,6 +186,7 @@ pub(crate) fn check_all<'a>(
             check.task = task.check(&check.renamed, report);
         }
         topics.add(member, (index, class), &check.renamed, report);
+        taken.add(member, (index, class), report);
         let is_sound = check.given.is_sound && check.loops.is_some();
         check.state = match is_sound && is_periodic == check.task.is_some() {
             true => ComponentState::Sound,

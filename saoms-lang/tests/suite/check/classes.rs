@@ -32,6 +32,7 @@ pub(crate) fn registry() -> Registry {
     for one in all {
         registry.add(one).unwrap();
     }
+    crate::check::events::add(&mut registry);
     crate::check::loop_classes::add(&mut registry);
     registry
 }

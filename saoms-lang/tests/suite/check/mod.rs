@@ -5,6 +5,7 @@ mod classes;
 mod component_types;
 mod corpus;
 mod escapes;
+mod events;
 mod loop_classes;
 mod loops;
 mod mistakes;

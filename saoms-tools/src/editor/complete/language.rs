@@ -3,7 +3,7 @@
 use std::collections::{HashSet, VecDeque};
 use std::ops::Range;
 
-use saoms_api::extension::{self, PropertyLanguage, PropertyText};
+use saoms_api::extension::{self, Explanation, PropertyLanguage, PropertyText};
 use saoms_lang::expression::{ExpressionValue, render};
 use saoms_lang::syntax::ElementId;
 
@@ -12,16 +12,22 @@ use crate::editor::scene::Scene;
 use crate::editor::scene::outline::Component;
 use crate::editor::syntax::Places;
 
-/// A language, and the file of the composite whose components a text in it is about.
-pub(super) type Language = (&'static PropertyLanguage, usize);
+/// A language in a property, and the file of the composite whose components a text in it is about.
+#[derive(Clone)]
+pub(in crate::editor) struct Language {
+    language: &'static PropertyLanguage,
+    /// The words of the language whose events the class plays itself.
+    plays: Vec<String>,
+    composite: usize,
+}
 
 /// The most properties of composites that a text is followed through.
 const MOST: usize = 1000;
 
 /// The language of the text in a property of a component of a file.
-pub(super) fn of_property(scene: &Scene, file: usize, property: ElementId) -> Option<Language> {
+pub(in crate::editor) fn of_property(scene: &Scene, file: usize, property: ElementId) -> Option<Language> {
     match taken_by(scene, file, property)? {
-        Taker::Class(language) => Some((language, file)),
+        Taker::Class(language, plays) => Some(Language { language, plays, composite: file }),
         Taker::Composite(inner, name) => of_parameter(scene, inner, name),
     }
 }
@@ -33,7 +39,7 @@ pub(super) fn of_column<'s>(
     name: &'s str,
 ) -> Option<Language> {
     match taker(scene, file, component, name)? {
-        Taker::Class(language) => Some((language, file)),
+        Taker::Class(language, plays) => Some(Language { language, plays, composite: file }),
         Taker::Composite(inner, name) => of_parameter(scene, inner, name),
     }
 }
@@ -53,7 +59,9 @@ pub(super) fn of_parameter<'s>(scene: &'s Scene, file: usize, name: &'s str) -> 
                     continue;
                 }
                 match taken_by(scene, place, source.element) {
-                    Some(Taker::Class(language)) => return Some((language, place)),
+                    Some(Taker::Class(language, plays)) => {
+                        return Some(Language { language, plays, composite: place });
+                    }
                     Some(Taker::Composite(inner, name)) => {
                         let next = (scene.declaring(inner, name)?, name);
                         if seen.len() < MOST && seen.insert(next) {
@@ -70,7 +78,7 @@ pub(super) fn of_parameter<'s>(scene: &'s Scene, file: usize, name: &'s str) -> 
 
 /// The taker of the text of a component's property.
 enum Taker<'s> {
-    Class(&'static PropertyLanguage),
+    Class(&'static PropertyLanguage, Vec<String>),
     /// The property of a composite inside: its file, and its name.
     Composite(usize, &'s str),
 }
@@ -85,9 +93,9 @@ fn taker<'s>(scene: &Scene, file: usize, component: &Component, name: &'s str) -
     if let Some(inner) = scene.inner(file, component) {
         return Some(Taker::Composite(inner, name));
     }
-    let mut all = PropertyLanguage::linked();
-    let found = all.find(|language| language.property == name && is_a(scene, component, language.class));
-    found.map(Taker::Class)
+    let declared = scene.class(component)?.declaration().property(name)?;
+    let language = PropertyLanguage::named(declared.language.as_deref()?)?;
+    Some(Taker::Class(language, declared.plays.clone()))
 }
 
 fn is_a(scene: &Scene, component: &Component, class: &str) -> bool {
@@ -96,16 +104,27 @@ fn is_a(scene: &Scene, component: &Component, class: &str) -> bool {
 }
 
 /// The completions of a language at a byte of the scene's file; `range` is the text of the property.
-pub(super) fn complete(
-    (language, composite): Language,
+pub(super) fn complete(of: &Language, scene: &Scene, range: Range<usize>, at: usize) -> Vec<Proposal> {
+    let found = with_text(of, scene, &range, at, of.language.complete);
+    found.into_iter().map(|one| shifted(one, range.start)).collect()
+}
+
+/// What the word at a byte of the scene's file means, in Markdown, with its bytes.
+pub(in crate::editor) fn explain(
+    of: &Language,
     scene: &Scene,
     range: Range<usize>,
     at: usize,
-) -> Vec<Proposal> {
+) -> Option<(String, Range<usize>)> {
+    let Explanation { text, bytes } = with_text(of, scene, &range, at, of.language.explain)?;
+    Some((text, range.start + bytes.start..range.start + bytes.end))
+}
+
+fn with_text<T>(of: &Language, scene: &Scene, range: &Range<usize>, at: usize, ask: fn(&PropertyText<'_>) -> T) -> T {
     let text = &scene.file().text[range.clone()];
-    let components = |class: &str| components(scene, composite, class);
-    let found = (language.complete)(&PropertyText { text, at: at - range.start, components: &components });
-    found.into_iter().map(|one| shifted(one, range.start)).collect()
+    let components = |class: &str| components(scene, of.composite, class);
+    let events = scene.registry.events();
+    ask(&PropertyText { text, at: at - range.start, plays: &of.plays, events: &events, components: &components })
 }
 
 /// The completion of a text that begins at a byte of the file.

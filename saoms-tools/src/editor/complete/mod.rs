@@ -4,7 +4,7 @@ mod attributes;
 mod completion;
 mod elements;
 mod ends;
-mod language;
+pub(super) mod language;
 pub(super) mod names;
 mod paths;
 mod sources;
@@ -84,7 +84,7 @@ fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
                 return Some(inside);
             }
             let language = language::of_property(scene, file, property.element)?;
-            Some(language::complete(language, scene, whole.clone(), at))
+            Some(language::complete(&language, scene, whole.clone(), at))
         });
         of_components.or_else(|| {
             let mut properties = of.outline.properties.iter().filter(|one| {
@@ -92,7 +92,7 @@ fn beside(scene: &Scene, at: usize) -> Vec<Proposal> {
                 named.any(|name| scene.is_first(file, name))
             });
             let language = properties.find_map(|one| language::of_parameter(scene, file, &one.text))?;
-            Some(language::complete(language, scene, whole.clone(), at))
+            Some(language::complete(&language, scene, whole.clone(), at))
         })
     });
     found.unwrap_or_default()

@@ -48,7 +48,7 @@ pub(super) fn complete(scene: &Scene, of: (usize, &Component), at: usize) -> Vec
         (_, column) => {
             let Some(name) = head.get(column) else { return Vec::new() };
             if let Some(language) = language::of_column(scene, of, name) {
-                return language::complete(language, scene, range, at);
+                return language::complete(&language, scene, range, at);
             }
             let declared = names::declared_in(scene, of.0, of.1.name.element);
             match declared.into_iter().find(|(one, _)| one.name == *name) {

@@ -25,7 +25,7 @@ pub(super) fn complete(scene: &Scene, property: ElementId, range: Range<usize>, 
         return topics::complete(scene, property, range, at);
     }
     if let Some(language) = language::of_property(scene, 0, property) {
-        return language::complete(language, scene, range, at);
+        return language::complete(&language, scene, range, at);
     }
     let declared = names::declared(scene, parent);
     let Some((one, preset)) = declared.into_iter().find(|(one, _)| one.name == name) else {
@@ -60,7 +60,7 @@ pub(super) fn of_parameter(scene: &Scene, property: ElementId, range: Range<usiz
     let Some(name) = file.element(property).value("name") else { return Vec::new() };
     let name = &file.text[name];
     match language::of_parameter(scene, 0, name) {
-        Some(language) => language::complete(language, scene, range, at),
+        Some(language) => language::complete(&language, scene, range, at),
         None => as_used(scene, 0, name, &range, at),
     }
 }

@@ -126,12 +126,12 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_value);
     let by_source = halls("", "<property name=\"count\" source=\"$n${indx}\"/>");
     expect![[r#"
@@ -142,12 +142,12 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_source);
     let by_name = halls("", "<property name=\"coun${indx}\">1</property>");
     expect![[r#"
@@ -158,12 +158,12 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_name);
     let by_table = halls("saoms:overrides=\"none.csv\"", "");
     expect![[r#"
@@ -173,12 +173,12 @@ fn a_fault_in_what_a_component_gives_hides_nothing_inside_it() {
         hall:3:113-117 error S3004: class `example.Conductor` has no property `cout` (in `Hall1/C1`, index 1)
           help: `example.Conductor` has no properties at all
         hall:4:73-89 error S3001: there is no class `example.Conductr` (in `Hall1/D`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Conductr` with `example.Conductor` [hall:4:73-89 "example.Conductor"]
         inner:3:49-73 error S3001: there is no class `example.Conductor${coun}` (in `Hall1/In/E`)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
         inner:4:77-91 error S3001: there is no class `example.Nobody` (in `Hall1/In/F1`, index 1)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]].assert_eq(&by_table);
 }
 
@@ -250,7 +250,7 @@ fn a_file_that_is_given_twice_is_told_once() {
     );
     expect![[r#"
         3:49-63 error S3001: there is no class `example.Robott`
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [3:49-63 "example.Robot"]
         more.composite:1:99-104 error S2001: there are two composites `fleet` in one namespace
           1:99-104 the first
@@ -260,7 +260,7 @@ fn a_file_that_is_given_twice_is_told_once() {
     let other = text.replace("\"G\"", "\"H\"");
     expect![[r#"
         3:49-63 error S3001: there is no class `example.Robott`
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [3:49-63 "example.Robot"]
         more.composite:1:99-104 error S2001: there are two composites `fleet` in one namespace
           1:99-104 the first
@@ -269,7 +269,7 @@ fn a_file_that_is_given_twice_is_told_once() {
           3:18-19 the first
           fix: remove the second: both are the same, word for word [more.composite:3:1-78 ""]
         more.composite:3:49-63 error S3001: there is no class `example.Robott`
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [more.composite:3:49-63 "example.Robot"]
     "#]].assert_eq(&faults_of(&[&text, &other], &[]));
 }

@@ -237,7 +237,7 @@ fn what_is_said_of_many_replicas_is_told_once() {
           help: the components are `R02`, `R03`, `R04`, `R05`, `R06`, `R07`, `R08`, `R09`, `R10`, `R11`, `R12`, `X01`, `X02`, `X03`, `R*` and `X*`
           help: add a component of the class `example.Gps`
         5:76-90 error S3001: there is no class `example.Robott` (in `X01`, index 1, and in 2 more)
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robott` with `example.Robot` [5:76-90 "example.Robot"]
     "#]].assert_eq(&of(
         r#"<component name="R${index:02}" saoms:count="12"><implementation.java class="example.Robot"/>

@@ -217,7 +217,7 @@ fn a_source_that_is_no_path_says_what_paths_are() {
         match assumes {
             false => expect![[r#"
                 2:80-83 error S3001: there is no class `x.Y`
-                  help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+                  help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
                 2:113-128 error S2023: `concat($s, 'x')` is not the path of a property
                   help: a `source` is `$name`, `$name[2]`, or a path from there, `$name/step/step`: write a step as `name` or `*`, `name[2]`, `name[last()]`, `name[part='value']` or `name[@attribute='value']`, and at the end `@attribute` or `text()`
             "#]].assert_eq(&all),

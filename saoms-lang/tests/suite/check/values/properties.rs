@@ -47,13 +47,13 @@ fn a_component_without_a_name_is_not_called_by_an_empty_one() {
 fn unknown_classes_are_offered_the_nearest() {
     expect![[r#"
         2:49-64 error S3001: there is no class `example.Robt001`
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `example.Robt001` with `example.Robot001` [2:49-64 "example.Robot001"]
         3:49-70 error S3001: there is no class `org.example.navigator`
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
           fix: replace `org.example.navigator` with `example.Navigator` [3:49-70 "example.Navigator"]
         4:49-66 error S3001: there is no class `com.example.Wheel`
-          help: `saoms components` lists the 21 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
+          help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
     "#]]
     .assert_eq(&faults(
         r#"<component name="A"><implementation.java class="example.Robt001"/></component>
