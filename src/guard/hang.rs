@@ -47,8 +47,3 @@ pub(crate) fn waited_for() -> Option<String> {
     let calls = everywhere().into_iter().filter_map(|(_, call)| call);
     calls.filter(|(_, function)| function.holds_up()).map(|(owner, function)| waits(owner, function)).next()
 }
-
-/// True while a library is loaded: no thread begins then, nor can one wait as long as it likes.
-pub(super) fn is_loading() -> bool {
-    everywhere().into_iter().any(|(_, call)| call.is_some_and(|(_, function)| function == Function::Load))
-}

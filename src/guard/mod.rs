@@ -7,6 +7,7 @@ mod hang;
 mod hardware;
 mod signals;
 mod stray;
+mod thread_end;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Once, mpsc};
@@ -34,6 +35,7 @@ const FLUSH_PATIENCE: Duration = Duration::from_millis(200);
 pub(crate) fn install() {
     INSTALLED.call_once(|| {
         keep_folder();
+        thread_end::prepare();
         blame::keep_process();
         crash::install();
         end::install();
@@ -48,7 +50,7 @@ pub(crate) fn install() {
     });
 }
 
-/// Starts a thread, and waits until its code runs: a thread that starts while a library is loaded waits for that.
+/// Starts a thread, and waits until its code runs.
 fn started(name: &str, code: impl FnOnce() + Send + 'static) -> io::Result<()> {
     let (runs, has_begun) = mpsc::channel();
     let begin = move || {
@@ -103,9 +105,6 @@ pub(crate) fn exit(code: i32) -> ! {
     }
     ends_by_itself();
     if INSTALLED.is_completed() {
-        if hang::is_loading() {
-            blame::leave(code);
-        }
         let (flushed, all) = mpsc::channel();
         let flush = move || {
             // SAFETY: null stands for all streams.

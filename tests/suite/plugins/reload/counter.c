@@ -23,10 +23,19 @@ static SaomsStatus counter_construct(const SaomsPropertyView *values, size_t cou
     return *made == NULL ? saoms_fail(error, "there is no memory left") : SaomsStatus_OK;
 }
 
+#ifdef HANGS_WHILE_LOADED
+__attribute__((constructor)) static void hang(void) {
+    for (;;) {
+        sleep(1);
+    }
+}
+#endif
+
 #ifdef MOTOR
 static SaomsStatus motor_stop(void *state, SaomsSink error) {
-    (void)state, (void)error;
-    return SaomsStatus_OK;
+    static const char line[] = "the hardware stops\n";
+    (void)state;
+    return write(STDERR_FILENO, line, sizeof line - 1) < 0 ? saoms_fail(error, "nobody hears it") : SaomsStatus_OK;
 }
 
 static void motor_release(void *state) {
@@ -62,8 +71,8 @@ static SaomsStatus counter_execute(void *component, const SaomsHostHandle *host,
     Counter *counter = component;
     (void)error;
     counter->count++;
-#ifdef FAILS
-    if (counter->count == 3) {
+#ifdef FAILS_AT
+    if (counter->count == FAILS_AT) {
         return saoms_fail(error, "this build fails");
     }
 #endif

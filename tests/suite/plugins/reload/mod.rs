@@ -160,6 +160,22 @@ fn nobody_waits_for_the_hardware_of_an_earlier_build_to_be_released() {
 }
 
 #[test]
+fn hardware_stops_although_a_new_build_hangs_while_it_is_loaded() {
+    let mut run = Run::start(&["-DBUILD=1", "-DMOTOR", "-DFAILS_AT=500"]);
+    run.build(&["-DBUILD=2", "-DMOTOR", "-DHANGS_WHILE_LOADED"]);
+    let mut errors = BufReader::new(run.child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    let expected = "the program waits for the static constructors or the entry function of library `";
+    assert!(errors.any(|line| line.contains(expected)), "{expected} is missing");
+    run.wait_for("failed: this build fails");
+    assert!(errors.any(|line| line == "the hardware stops"), "at once");
+    let (_, report, code) = run.end();
+    let rest: Vec<String> = errors.collect();
+    assert!(!rest.iter().any(|line| line.contains("may still move")), "{rest:#?}");
+    assert!(report["outcome"].to_string().contains("this build fails"), "{report}");
+    assert_eq!(code, Some(130));
+}
+
+#[test]
 fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.wait_for("build 1 counts 100");
@@ -183,7 +199,7 @@ fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
 
 #[test]
 fn a_new_build_brings_back_what_failed() {
-    let mut run = Run::start(&["-DBUILD=1", "-DFAILS"]);
+    let mut run = Run::start(&["-DBUILD=1", "-DFAILS_AT=3"]);
     run.wait_for("failed: this build fails");
     run.build(&["-DBUILD=2"]);
     run.wait_for("build 2 counts 1");
