@@ -5,6 +5,7 @@ mod crash;
 mod end;
 mod hang;
 mod hardware;
+mod own_end;
 mod signals;
 mod stray;
 mod thread_end;
@@ -16,12 +17,13 @@ use std::{io, process, ptr, thread};
 
 pub(crate) use hang::waited_for;
 pub(crate) use hardware::{STOP_PATIENCE, still_moves};
+pub(crate) use own_end::{handles_ends, has_own_end, watch_ends};
 use saoms_api::host::present::{self, Function, Owner};
 use signals::UseAs;
 pub(crate) use signals::{forget as forget_signals, keep as keep_signals};
 
 use crate::Exit;
-use crate::output::{eprint, fail, has_failed, has_lost_descriptors, keep_folder, keep_from_libraries};
+use crate::output::{eprint, fail, has_failed, has_lost_descriptors, keep_folder, keep_from_libraries, keep_mask};
 
 /// True once the program ends by itself, and not because code of a library ended it.
 static ENDS: AtomicBool = AtomicBool::new(false);
@@ -35,11 +37,13 @@ const FLUSH_PATIENCE: Duration = Duration::from_millis(200);
 pub(crate) fn install() {
     INSTALLED.call_once(|| {
         keep_folder();
+        keep_mask();
         thread_end::prepare();
         blame::keep_process();
         crash::install();
         end::install();
         stray::install();
+        watch_ends();
         signals::keep_for(libc::SIGPIPE, "SIGPIPE", UseAs::Pipe);
         present::look_after(look);
         keep_from_libraries();

@@ -69,6 +69,20 @@ pub(super) unsafe fn set(signal: c_int, handler: usize, flags: c_int) {
     }
 }
 
+/// Does what a signal does by itself, at once, although it is being handled. A signal handler asks.
+pub(super) fn default_again(signal: c_int) {
+    // SAFETY: all zeros are the default action; the set is written before it is used.
+    unsafe {
+        let default: libc::sigaction = MaybeUninit::zeroed().assume_init();
+        let mut own = MaybeUninit::<libc::sigset_t>::zeroed().assume_init();
+        libc::sigemptyset(&raw mut own);
+        libc::sigaddset(&raw mut own, signal);
+        libc::sigaction(signal, &raw const default, ptr::null_mut());
+        libc::raise(signal);
+        libc::pthread_sigmask(libc::SIG_UNBLOCK, &raw const own, ptr::null_mut());
+    }
+}
+
 /// Takes back what code of a library took over, which is told once.
 pub(super) fn take_back(who: &str, place: &str) {
     for kept in KEPT.lock().unwrap_or_else(PoisonError::into_inner).iter() {

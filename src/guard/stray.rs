@@ -2,12 +2,11 @@
 //! without a word. They are told once each and ignored; those from outside end the program as ever.
 
 use std::ffi::{c_int, c_void};
-use std::mem::MaybeUninit;
 use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::blame::{Blame, blame, is_program, write, write_of_libraries};
-use super::signals::{action, set};
+use super::signals::{action, default_again, set};
 
 const STRAYS: [(c_int, &str); 13] = [
     (libc::SIGALRM, "SIGALRM"),
@@ -48,36 +47,64 @@ pub(super) fn install() {
 extern "C" fn strayed(signal: c_int, info: *mut libc::siginfo_t, _: *mut c_void) {
     let top = 0_u8;
     let place = STRAYS.iter().position(|(known, _)| *known == signal).unwrap_or(STRAYS.len());
-    // SAFETY: the system lends what it knows of the signal; of one that a process sent, that is which.
-    let (code, sender) = unsafe { ((*info).si_code, (*info).si_pid()) };
-    let is_sent = [libc::SI_USER, libc::SI_TKILL, libc::SI_QUEUE].contains(&code);
-    // SAFETY: the calls take no pointers but one to an action that is whole.
-    unsafe {
-        let is_of_terminal = code == libc::SI_KERNEL && OF_TERMINAL.contains(&signal);
-        if !is_program() || is_sent && sender != libc::getpid() || is_of_terminal {
-            let default: libc::sigaction = MaybeUninit::zeroed().assume_init();
-            libc::sigaction(signal, &raw const default, ptr::null_mut());
-            libc::raise(signal);
-            return;
-        }
+    // SAFETY: the system lends what it knows of the signal.
+    let origin = unsafe { Origin::of(info) };
+    let is_of_terminal = origin.code == libc::SI_KERNEL && OF_TERMINAL.contains(&signal);
+    if !is_program() || origin.is_of_another_process() || is_of_terminal {
+        return default_again(signal);
     }
     if TOLD[place].swap(true, Ordering::SeqCst) {
         return;
     }
     let name = STRAYS.get(place).map_or(REAL_TIME, |(_, name)| name);
-    // Only one that a thread sends to itself or to another thread comes to a certain thread.
-    let blamed = if code == libc::SI_TKILL { blame(ptr::from_ref(&top) as usize) } else { Blame::Nobody };
-    match blamed {
-        Blame::Call(owner, function) => {
-            let place = function.place();
-            write(&["warning: ", &owner.text, " sent the signal ", name, " ", place, ": it was ignored\n"]);
-        }
-        Blame::Thread(library) => {
-            write(&["warning: a thread of library `", library, "` sent the signal ", name, ": it was ignored\n"]);
-        }
-        Blame::Nobody => {
-            let how = if is_sent { "sent the signal " } else { "let a timer or a limit send the signal " };
-            write_of_libraries("warning: ", &[how, name, ": it was ignored\n"]);
+    origin.tell(ptr::from_ref(&top) as usize, "warning: ", name, ": it was ignored\n");
+}
+
+/// Who sent a signal.
+pub(super) struct Origin {
+    code: c_int,
+    /// The process, if one did.
+    sender: Option<c_int>,
+}
+
+impl Origin {
+    /// The origin of a signal.
+    ///
+    /// # Safety
+    /// It is what the system gave to a signal handler.
+    pub(super) unsafe fn of(info: *const libc::siginfo_t) -> Origin {
+        // SAFETY: as the caller promises; of a signal that a process sent, the system knows which.
+        let (code, sender) = unsafe { ((*info).si_code, (*info).si_pid()) };
+        let is_sent = [libc::SI_USER, libc::SI_TKILL, libc::SI_QUEUE].contains(&code);
+        Origin { code, sender: is_sent.then_some(sender) }
+    }
+
+    fn is_of_another_process(&self) -> bool {
+        // SAFETY: the call takes no pointers and never fails.
+        self.sender.is_some_and(|sender| sender != unsafe { libc::getpid() })
+    }
+
+    /// True if this process sent it, or lets a timer send it.
+    pub(super) fn is_of_this_process(&self) -> bool {
+        self.sender.is_some() && !self.is_of_another_process() || self.code == libc::SI_TIMER
+    }
+
+    /// Tells which code sent it to this process, and what comes of it. The top of the present stack is there.
+    pub(super) fn tell(&self, top: usize, before: &str, name: &str, after: &str) {
+        // Only one that a thread sends to itself or to another thread comes to a certain thread.
+        let blamed = if self.code == libc::SI_TKILL { blame(top) } else { Blame::Nobody };
+        match blamed {
+            Blame::Call(owner, function) => {
+                write(&[before, &owner.text, " sent the signal ", name, " ", function.place(), after]);
+            }
+            Blame::Thread(library) => {
+                write(&[before, "a thread of library `", library, "` sent the signal ", name, after]);
+            }
+            Blame::Nobody => {
+                let is_sent = self.sender.is_some();
+                let how = if is_sent { "sent the signal " } else { "let a timer or a limit send the signal " };
+                write_of_libraries(before, &[how, name, after]);
+            }
         }
     }
 }

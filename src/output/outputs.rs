@@ -10,6 +10,7 @@ use saoms_lang::project::INPUT;
 
 use super::displayed;
 use super::place::{Identity, Place};
+use super::replace::make_folder;
 use super::standard::{eprint, print};
 use crate::Exit;
 
@@ -182,7 +183,7 @@ pub(crate) fn write_into(
     if fs::metadata(folder).is_ok_and(|about| !about.is_dir()) {
         return refused("which is a file");
     }
-    fs::create_dir_all(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
+    make_folder(folder).map_err(|error| Refused::Unwritable(asked(folder).unwritable(&error)))?;
     let mut outputs = Outputs::beside(read);
     let places: Vec<Place> = texts.iter().map(|(path, _)| outputs.add(asked(path))).collect::<Result<_, _>>()?;
     for (place, (path, text)) in places.into_iter().zip(texts) {

@@ -1,10 +1,40 @@
 //! Files that are written whole or not at all: a text is written beside the file and takes its name.
 
-use std::fs::{self, File, Metadata, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
-use std::os::unix::fs::{MetadataExt, OpenOptionsExt, fchown};
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 use std::process;
+use std::sync::OnceLock;
+
+/// The bits that new files lack, as the program was started: code of a library may set others.
+static MASK: OnceLock<libc::mode_t> = OnceLock::new();
+
+/// Notes the present mask as that of files to come. Asked while no other thread makes a file.
+pub(crate) fn keep_mask() {
+    MASK.get_or_init(|| {
+        // SAFETY: the calls take no pointers and never fail. The mask can only be read by setting another one.
+        unsafe {
+            let mask = libc::umask(0o077);
+            libc::umask(mask);
+            mask
+        }
+    });
+}
+
+/// Permissions of new files, once the mask is kept.
+pub(crate) fn mode_of_files() -> Option<u32> {
+    MASK.get().map(|mask| 0o666 & !mask)
+}
+
+/// Makes a folder, with all above it that are not there.
+pub(super) fn make_folder(path: &Path) -> io::Result<()> {
+    if let Some(mask) = MASK.get() {
+        // SAFETY: the call takes no pointers and never fails.
+        unsafe { libc::umask(*mask) };
+    }
+    fs::create_dir_all(path)
+}
 
 /// Gives a file, which need not exist yet, another content. What there was stays if that cannot be written. The path
 /// must be no link: that would be replaced and not the file behind it.
@@ -63,6 +93,8 @@ fn fill(
         // Only the superuser may give a file to others; who may not keeps what is theirs.
         let _ = fchown(file, Some(earlier.uid()), Some(earlier.gid()));
         file.set_permissions(earlier.permissions())?;
+    } else if let Some(mode) = mode_of_files() {
+        file.set_permissions(Permissions::from_mode(mode))?;
     }
     file.sync_all()
 }

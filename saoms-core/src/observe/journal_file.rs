@@ -1,6 +1,7 @@
 use std::fmt;
-use std::fs::File;
-use std::io::{self, Write};
+use std::fs::{File, Permissions};
+use std::io::{self, ErrorKind, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -15,6 +16,8 @@ use super::{Beginning, Interest, Observer, Records};
 /// line holds the format version and the components, the last one the end of the run.
 pub struct JournalFile {
     path: PathBuf,
+    /// Permissions of the file where it is new; without, those of the process.
+    mode: Option<u32>,
     /// What is written in place of a file at the path.
     given: Mutex<Option<File>>,
     file: Mutex<Option<Open>>,
@@ -30,12 +33,29 @@ struct Open {
 impl JournalFile {
     /// The observer that writes to this path.
     pub fn new(path: impl Into<PathBuf>) -> JournalFile {
-        JournalFile { path: path.into(), given: Mutex::default(), file: Mutex::default() }
+        JournalFile { path: path.into(), mode: None, given: Mutex::default(), file: Mutex::default() }
     }
 
     /// The observer that writes to an open file, as a pipe, that messages call by this path.
     pub fn to(file: File, path: impl Into<PathBuf>) -> JournalFile {
         JournalFile { given: Mutex::new(Some(file)), ..JournalFile::new(path) }
+    }
+
+    /// The same observer, whose file has these permissions where it is new, whatever mask code of a library has set.
+    #[must_use]
+    pub fn with_mode(self, mode: Option<u32>) -> JournalFile {
+        JournalFile { mode, ..self }
+    }
+
+    fn create(&self) -> io::Result<File> {
+        let file = match File::create_new(&self.path) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => return File::create(&self.path),
+            created => created?,
+        };
+        if let Some(mode) = self.mode {
+            file.set_permissions(Permissions::from_mode(mode))?;
+        }
+        Ok(file)
     }
 }
 
@@ -53,7 +73,7 @@ impl Observer for JournalFile {
     fn begin(&self, beginning: &Beginning<'_>) -> Result<(), Failure> {
         let given = self.given.lock().unwrap_or_else(PoisonError::into_inner).take();
         let open = given
-            .map_or_else(|| File::create(&self.path), Ok)
+            .map_or_else(|| self.create(), Ok)
             .and_then(|file| Open::begin(file, beginning))
             .map_err(|error| Failure::new(format!("the journal cannot be written: {error}")))?;
         *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some(open);

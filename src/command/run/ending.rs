@@ -35,6 +35,7 @@ impl Signalled {
     pub(super) fn new(grace: Duration) -> Signalled {
         // Who starts it with `nohup` wants it to outlive the terminal.
         let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
+        guard::watch_ends();
         let signals = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup));
         let (has_come, starts) = (AtomicBool::new(false), AtomicBool::new(false));
         let state = Arc::new(State { grace, has_come, starts, fleet: OnceLock::new() });
@@ -43,6 +44,7 @@ impl Signalled {
         let spawned = signals.and_then(|signals| {
             // Never dropped: what it closed then might be closed already, or be something else by now.
             let mut signals = ManuallyDrop::new(signals);
+            guard::handles_ends();
             let handle = move || {
                 let handled = contained(|| signals.forever().for_each(|signal| handled.handle(signal)));
                 if handled.is_err() {

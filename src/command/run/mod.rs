@@ -29,6 +29,7 @@ use saoms_lang::project::INPUT;
 use crate::Exit;
 use crate::arguments::{FleetArguments, Format, duration};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
+use crate::guard::has_own_end;
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use console::Console;
 use control::Control;
@@ -243,6 +244,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         return Exit::Failed;
     }
     match outcome.status {
+        // In virtual time the run may be over before the thread that handles the signal knows of it.
+        RunStatus::Done | RunStatus::Elapsed if has_own_end() => Exit::Interrupted,
         RunStatus::Done | RunStatus::Elapsed | RunStatus::Stopped => Exit::Done,
         RunStatus::Incomplete | RunStatus::Failed => Exit::Failed,
         RunStatus::Interrupted if signals.has_come() => Exit::Interrupted,

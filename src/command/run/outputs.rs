@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use saoms_core::observe::JournalFile;
 
 use super::RunArguments;
-use crate::output::{Asked, Outputs, Place, Sink, counted, displayed, eprint};
+use crate::output::{Asked, Outputs, Place, Sink, counted, displayed, eprint, mode_of_files};
 
 /// The files of a run.
 pub(super) struct RunFiles {
@@ -57,7 +57,7 @@ impl RunFiles {
 fn grown(asked: Asked<'_>, place: Place) -> io::Result<JournalFile> {
     match place.open()? {
         Sink::Open(file) => Ok(JournalFile::to(file, asked.path)),
-        Sink::File(path) => Ok(JournalFile::new(path)),
+        Sink::File(path) => Ok(JournalFile::new(path).with_mode(mode_of_files())),
         Sink::Standard => Err(io::Error::other("standard output is for the lines of the run; give it a file")),
     }
 }

@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <unwind.h>
@@ -77,6 +78,13 @@ static void act_on_process(const char *does) {
         raise(SIGTSTP);
     } else if (strcmp(does, "SIGXCPU") == 0) {
         raise(SIGXCPU);
+    } else if (strcmp(does, "SIGTERM") == 0) {
+        raise(SIGTERM);
+    } else if (strcmp(does, "SIGINT to all") == 0) {
+        kill(getpid(), SIGINT);
+        sleep(1);
+    } else if (strcmp(does, "forbids files") == 0) {
+        umask(0777);
     } else if (strcmp(does, "SIGRTMAX") == 0) {
         raise(SIGRTMAX);
     } else if (strcmp(does, "cancels its thread") == 0) {

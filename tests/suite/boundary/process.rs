@@ -1,11 +1,15 @@
 //! What code of libraries does to the process that it runs in: it is told by name, and no exit code says that all went
 //! well where it did not.
 
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::ExitStatusExt;
+use std::process::Command;
 
+use super::build::c_library_of;
 use super::hostile::{bad, ended, ended_with};
-use super::run::component;
-use crate::support::{stderr, stdout, text};
+use super::run::{component, in_folder};
+use crate::support::{PROGRAM, command, stderr, stdout, text};
 
 /// The beginning of what is told of component `Bad`.
 fn assert_named(does: &str, expected: &str) -> std::process::Output {
@@ -91,6 +95,48 @@ fn a_signal_that_nobody_handles_is_told_and_ends_nothing() {
         assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{}", text(&output));
         assert!(stderr(&output).contains("warning: code of library `"), "{}", text(&output));
         assert!(stderr(&output).contains(expected), "{expected} is missing in\n{}", text(&output));
+    }
+}
+
+#[test]
+fn a_library_that_ends_the_run_by_a_signal_is_told() {
+    for (does, place) in [("SIGTERM", "`execute`"), ("made: SIGTERM", "the constructor")] {
+        let output = assert_named(does, &format!("sent the signal SIGTERM in {place}: it ends the run"));
+        assert_eq!(output.status.code(), Some(130), "{}", text(&output));
+    }
+    let output = ended("SIGINT to all");
+    assert!(stderr(&output).contains("error: code of library `"), "{}", text(&output));
+    assert!(stderr(&output).contains("sent the signal SIGINT: it ends the run"), "{}", text(&output));
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output));
+}
+
+#[test]
+fn a_library_that_ends_a_check_by_a_signal_is_told() {
+    let folder = in_folder(&bad("h.Actor", "made: SIGTERM", ""));
+    let library = c_library_of("hostile", folder.path(), &[]);
+    let composite = folder.path().join("t.composite");
+    let output = command(&["check", "--plugin"]).arg(library).arg(composite).output().unwrap();
+    let expected = "error: component `Bad` of library `";
+    assert!(stderr(&output).contains(expected), "{}", text(&output));
+    let expected = "sent the signal SIGTERM in the constructor: it ends the program";
+    assert!(stderr(&output).contains(expected), "{}", text(&output));
+    assert_eq!(output.status.signal(), Some(libc::SIGTERM), "{}", text(&output));
+}
+
+#[test]
+fn files_that_are_written_have_the_modes_of_the_start() {
+    let folder = in_folder(&bad("h.Actor", "made: forbids files", ""));
+    let library = c_library_of("hostile", folder.path(), &[]);
+    let line = format!(
+        "umask 022; exec '{PROGRAM}' run t.composite --virtual --for 950ms --report r.json --journal j.jsonl --paths \
+         p.svg --plugin '{}'",
+        library.display()
+    );
+    let output = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    for name in ["r.json", "j.jsonl", "p.svg"] {
+        let mode = fs::metadata(folder.path().join(name)).unwrap().permissions().mode() & 0o777;
+        assert_eq!(mode, 0o644, "{name}: {mode:o}");
     }
 }
 
