@@ -38,6 +38,7 @@ impl RunFiles {
         let report = add("report", "--report", arguments.report.as_deref(), false);
         let picture = add("picture", "--paths", arguments.paths.as_deref(), false);
         let journal = add("journal", "--journal", arguments.journal.as_deref(), true);
+        problems.extend(arguments.paths.as_deref().and_then(other_picture));
         if problems.is_empty() {
             // A pipe waits for its reader, so that it is opened when nothing else can be wrong.
             let mut told = |asked: Asked<'_>, error| problems.push(asked.unwritable(&error));
@@ -52,6 +53,23 @@ impl RunFiles {
         eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
         None
     }
+}
+
+/// The endings of pictures that are no SVG.
+const PICTURES: [&str; 13] =
+    ["png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps", "svgz", "ico"];
+
+/// The message about a file whose ending is that of another kind of picture.
+fn other_picture(path: &Path) -> Option<String> {
+    let ending = path.extension()?.to_str()?;
+    let is_other = PICTURES.iter().any(|known| ending.eq_ignore_ascii_case(known));
+    is_other.then(|| {
+        format!(
+            "error: the picture of `--paths` is in SVG, but `{}` ends with `.{ending}`\n  = help: write `{}`\n",
+            displayed(path),
+            displayed(&path.with_extension("svg"))
+        )
+    })
 }
 
 fn grown(asked: Asked<'_>, place: Place) -> io::Result<JournalFile> {

@@ -231,6 +231,28 @@ fn a_place_that_cannot_be_written_is_told_before_anything_starts() {
 }
 
 #[test]
+fn a_file_with_the_ending_of_another_kind_of_picture_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |file: &str| {
+        let path = folder.path().join(file);
+        let fleet = "composites/hall.composite";
+        let output = saoms(&["run", fleet, "--virtual", "--for", "1s", "--quiet", "--paths", path.to_str().unwrap()]);
+        let told = String::from_utf8(output.stderr).unwrap().replace(folder.path().to_str().unwrap(), "");
+        (output.status.code(), told, path.exists())
+    };
+    for ending in ["png", "PNG", "jpeg", "pdf", "svgz"] {
+        let told = format!(
+            "error: the picture of `--paths` is in SVG, but `/a.{ending}` ends with `.{ending}`\n  = help: write \
+            `/a.svg`\n\n1 error: nothing was started\n"
+        );
+        assert_eq!(run(&format!("a.{ending}")), (Some(2), told, false));
+    }
+    for file in ["a.svg", "a.SVG", "a", "a.xml"] {
+        assert_eq!(run(file), (Some(0), String::new(), true), "{file}");
+    }
+}
+
+#[test]
 fn a_fleet_without_robots_says_that_there_is_nothing_to_draw() {
     let text = drawn("composites/manual/launchbroker.composite", "1s");
     let document = Document::parse(&text).unwrap();
