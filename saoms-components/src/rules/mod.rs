@@ -11,7 +11,7 @@ mod environments;
 mod hearing;
 mod map;
 mod masters;
-mod motionless;
+mod missing_loop;
 mod number;
 mod robots;
 pub(crate) mod scenario;
@@ -39,7 +39,7 @@ saoms_api::fleet_rules!(
     map::size::RULE,
     scenario::broken_twice::RULE,
     worlds::RULE,
-    motionless::RULE,
+    missing_loop::RULE,
     scenario::no_work::RULE,
     scenario::early_end::RULE,
     unlikely::RULE,

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use saoms_api::host::format_duration;
-use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
+use saoms_api::host::declaration::Scalar;
+use saoms_api::host::{PropertyValue, SmolStr, format_duration};
+use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::robots::{FleetRobot, robots};
@@ -12,8 +13,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5020",
         name: "unlikely-value",
-        meaning: "A value has probably a wrong unit: a component has a period of more than a minute, or a robot starts with a \
-            battery of 1 % or less.",
+        meaning: "A value has probably a wrong unit: a component has a period of more than a minute or another time of less than \
+            a millisecond, or a robot starts with a battery of 1 % or less.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -25,17 +26,25 @@ pub(super) static RULE: FleetRule = FleetRule {
 /// Period beyond which a component of this crate hinders the others: it handles messages once in a period.
 const LONG: Duration = Duration::from_secs(60);
 
+/// Time below which nothing of this crate takes a time.
+const SHORT: Duration = Duration::from_millis(1);
+
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut findings = long_periods(fleet);
+    findings.extend(short_times(fleet));
     findings.extend(fractions(fleet));
     findings
 }
 
-/// Findings about long periods; the class of a plugin may have reasons for one.
+/// The components of this crate; the class of a plugin may have reasons for a value.
+fn shipped<'f>(fleet: &FleetView<'f>) -> impl Iterator<Item = (usize, &'f ComponentView<'f>)> + use<'f> {
+    fleet.components().iter().enumerate().filter(|(_, one)| one.class.name.starts_with("saoms."))
+}
+
+/// Findings about long periods.
 fn long_periods(fleet: &FleetView<'_>) -> Vec<Finding> {
-    let components = fleet.components().iter().enumerate();
-    let shipped = components.filter(|(_, one)| one.class.name.starts_with("saoms."));
-    let long = shipped.filter_map(|(index, one)| Some((index, one.path, one.period.filter(|period| *period > LONG)?)));
+    let long =
+        shipped(fleet).filter_map(|(index, one)| Some((index, one.path, one.period.filter(|period| *period > LONG)?)));
     let finding = |(index, path, period): (usize, &str, Duration)| {
         let period = format_duration(period);
         let message = format!("the period of `{path}` is {period}: it reacts up to {period} late");
@@ -43,6 +52,26 @@ fn long_periods(fleet: &FleetView<'_>) -> Vec<Finding> {
             .help("write a shorter time with its unit, such as `500ms`: a number without a unit is in milliseconds")
     };
     long.map(finding).collect()
+}
+
+/// Findings about times that are probably given in seconds.
+fn short_times(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let short = |value: &PropertyValue| match value {
+        PropertyValue::Scalar(Scalar::Duration(time)) if !time.is_zero() && *time < SHORT => Some(*time),
+        _ => None,
+    };
+    let times = shipped(fleet).flat_map(|(index, one)| {
+        let values = one.values.iter().filter_map(move |(name, value)| Some((name, short(value)?)));
+        values.map(move |(name, time)| (index, one.path, name, time))
+    });
+    let finding = |(index, path, name, time): (usize, &str, &SmolStr, Duration)| {
+        let message = format!("`{name}` of `{path}` is {}, which is shorter than a millisecond", format_duration(time));
+        // The number in seconds.
+        let meant = format_duration(time * 1000);
+        Finding::new(Place::property(name.as_str()).in_component(index), message)
+            .help(format!("write the unit, such as `{meant}`: a number without a unit is in milliseconds"))
+    };
+    times.map(finding).collect()
 }
 
 /// Findings about batteries that are probably given as a fraction.

@@ -3,6 +3,7 @@
 mod cascades;
 mod first_fleets;
 mod hints;
+mod missing_loops;
 mod mistakes;
 mod rules;
 mod shared;
