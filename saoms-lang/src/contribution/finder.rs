@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::fleets::InnerDeployable;
 use super::head;
 use super::imports::Imports;
 use super::index::{Index, is_of_definitions};
@@ -30,6 +31,8 @@ pub struct Finder {
     unread: HashMap<PathBuf, Vec<(PathBuf, String)>>,
     /// The files of composites that share a name, which is reported.
     pub(super) repeated: HashSet<PathBuf>,
+    /// The files of deployable composites that others use.
+    pub(crate) inner_deployables: HashMap<PathBuf, InnerDeployable>,
 }
 
 impl Finder {
@@ -43,6 +46,7 @@ impl Finder {
             explained: EXPLAINED_NAMES,
             unread: HashMap::new(),
             repeated: HashSet::new(),
+            inner_deployables: HashMap::new(),
         }
     }
 

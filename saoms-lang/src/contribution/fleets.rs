@@ -11,7 +11,7 @@ use crate::limits::ASKED_FOLDER_ENTRIES;
 use crate::load::description::{Deployable, Description};
 use crate::load::{ReadContext, definitions, load_file, read};
 use crate::model::{Composite, Contribution, Link};
-use crate::source::{Sources, Span, identity};
+use crate::source::{Location, Sources, Span, Text, identity};
 use crate::syntax::escaped;
 
 /// Composites in a folder that form one fleet: no other composite there names them.
@@ -23,6 +23,15 @@ pub struct FolderFleet {
     pub is_deployable: bool,
     /// True if it says that other contributions may take them, and not that they run.
     pub is_exported: bool,
+}
+
+/// A deployable composite that another one of its contribution uses.
+#[derive(Clone, Debug)]
+pub(crate) struct InnerDeployable {
+    /// The place that calls it deployable.
+    pub(crate) at: Location,
+    /// The name of a composite that uses it.
+    pub(crate) user: String,
 }
 
 impl Finder {
@@ -58,8 +67,18 @@ impl Finder {
                 self.exchange(description, &root, context);
             }
             let deployables = description.iter().flat_map(|description| &description.deployables);
-            let mut deployed: Vec<Option<PathBuf>> =
-                deployables.map(|one| contribution.find(one, &mut self.index, &root, context.diagnostics)).collect();
+            let users = contribution.users();
+            let mut deployed: Vec<Option<PathBuf>> = Vec::new();
+            for one in deployables {
+                let found = contribution.find(one, &mut self.index, &root, context.diagnostics);
+                if let Some(path) = &found
+                    && let Some(user) = users.get(path.as_path())
+                {
+                    let inner = InnerDeployable { at: one.name.location, user: user.name.to_string() };
+                    self.inner_deployables.entry(path.clone()).or_insert(inner);
+                }
+                deployed.push(found);
+            }
             let inside = root.join(DEPLOYABLES);
             deployed.extend(contribution.paths.iter().filter(|path| path.starts_with(&inside)).cloned().map(Some));
             contribution.fleets(deployed.into_iter().flatten().collect(), description.as_ref(), &mut fleets);
@@ -224,10 +243,22 @@ impl Files {
             let meant = format!("{}{meant}", prefix.unwrap_or_default());
             one.suggest(format!("replace {name} with {}", quoted(&meant)), at, escaped(&meant))
         } else if let Some(other) = all.iter().find(|one| one.name == *local) {
-            one.help(match other.namespace() {
+            let namespace = other.namespace();
+            let one = one.help(match namespace {
                 "" => format!("it has {} in no namespace", quoted(local)),
-                namespace => format!("it has {} in the namespace {}", quoted(local), quoted(namespace)),
-            })
+                _ => format!("it has {} in the namespace {}", quoted(local), quoted(namespace)),
+            });
+            // The prefix may be that of other composites.
+            let is_wrong =
+                |declared: &&Text| names.clone().next().is_none() && nearest(declared, [namespace]).is_some();
+            match deployable.declared.as_ref().filter(is_wrong) {
+                Some(declared) => one.suggest(
+                    format!("replace {} with {}", quoted(declared), quoted(namespace)),
+                    declared.location,
+                    escaped(namespace),
+                ),
+                None => one,
+            }
         } else if all.is_empty() {
             one.help("it has no composites: is it made from several folders?")
         } else if names.clone().next().is_none() {
@@ -237,6 +268,20 @@ impl Files {
             one.help(format!("it has {}", names.join(", ")))
         });
         None
+    }
+
+    /// The files of the composites that others use, each with the first of these.
+    fn users(&self) -> HashMap<&Path, &Composite> {
+        let mut users = HashMap::new();
+        for (place, one) in self.read.composites().iter().enumerate() {
+            let links = one.namings().filter_map(|naming| self.read.link(naming.origin));
+            let used = links.filter_map(|link| match link {
+                Link::To(used) if *used != place => Some(self.paths[self.places[*used]].as_path()),
+                _ => None,
+            });
+            used.for_each(|path| _ = users.entry(path).or_insert(one));
+        }
+        users
     }
 
     /// The composites that run together, and every other composite that none here names.

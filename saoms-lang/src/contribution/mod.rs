@@ -19,6 +19,7 @@ mod value_file;
 mod values;
 
 pub use finder::{Finder, SideFile};
+pub(crate) use fleets::InnerDeployable;
 pub use fleets::{FolderFleet, composites_below};
 pub use imports::{imported_near, importing_near};
 pub use index::{composites_near, description_near, root};

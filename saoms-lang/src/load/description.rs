@@ -45,6 +45,8 @@ pub(crate) struct Deployable {
     pub(crate) name: Text,
     /// The namespace that it is in; `None` where the name does not say it.
     pub(crate) namespace: Option<String>,
+    /// The namespace of its prefix, at its declaration.
+    pub(crate) declared: Option<Text>,
 }
 
 /// The description of a contribution.
@@ -184,7 +186,8 @@ impl Description {
         if part.name == "deployable" {
             let namespace = namespace(&what, child);
             self.judge(&what, namespace.as_deref(), child, loader);
-            return self.deployables.push(Deployable { name: what, namespace });
+            let declared = declaration(&what, child);
+            return self.deployables.push(Deployable { name: what, namespace, declared });
         }
         match import.or(export) {
             Some("") => self.exchange(Kind::Namespace, what.location, &what, child, loader),
@@ -265,4 +268,12 @@ fn namespace(name: &str, at: Element<'_>) -> Option<String> {
     let prefix = name.split_once(':').map_or("", |(prefix, _)| prefix);
     let namespace = at.resolve_prefix(prefix)?;
     (Version::from_namespace(namespace).is_none() && !namespace.is_empty()).then(|| namespace.to_owned())
+}
+
+/// The namespace of the prefix of a name, where it is declared.
+fn declaration(name: &str, at: Element<'_>) -> Option<Text> {
+    let (prefix, _) = name.split_once(':')?;
+    let around = std::iter::successors(Some(at), |one| one.parent());
+    let mut declared = around.flat_map(|one| one.namespace_declarations());
+    Some(declared.find(|one| one.name().strip_prefix("xmlns:") == Some(prefix))?.trimmed())
 }

@@ -1,9 +1,10 @@
 //! Folders among the inputs of one fleet.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::Input;
-use crate::contribution::{Finder, FolderFleet};
+use crate::contribution::{Finder, FolderFleet, InnerDeployable};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, quoted};
 use crate::source::{Sources, Span};
 
@@ -81,4 +82,25 @@ fn unclear(folder: &Path, fleets: &[FolderFleet], sources: &mut Sources) -> Diag
 /// True for a fault that those who use a composite have to mend: it is none where these may be elsewhere.
 pub(super) fn is_left_to_users(one: &Diagnostic) -> bool {
     [&codes::COMPOSITE_PROPERTY_MISSING, &codes::PROMOTED_UNWIRED].contains(&one.code)
+}
+
+/// Adds why a composite that others use runs by itself to the faults that follow from that: the place to each of them,
+/// what to do to the first.
+pub(super) fn blame_deployables(
+    diagnostics: &mut [Diagnostic],
+    mut deployables: HashMap<PathBuf, InnerDeployable>,
+    sources: &Sources,
+) {
+    for one in diagnostics.iter_mut().filter(|one| is_left_to_users(one)) {
+        let Some(inner) = deployables.get_mut(Path::new(sources.get(one.location.file).path())) else { continue };
+        *one = one.clone().label(inner.at, "it is deployable: it runs by itself");
+        let user = std::mem::take(&mut inner.user);
+        if !user.is_empty() {
+            let help = format!(
+                "call only composites deployable that run by themselves: {} uses this one, and gives it what it lacks",
+                quoted(&user)
+            );
+            one.help.insert(0, help);
+        }
+    }
 }

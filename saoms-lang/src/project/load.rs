@@ -1,12 +1,13 @@
 //! The step from the inputs of a project to the model.
 
+use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{ClassPath, Classes, Compilation, Input, PluginFault, Project, folder, libraries};
 use crate::assembly::Assembly;
 use crate::check::{self, Occurrences, Options, Setting, SeveritySetting, Variable};
-use crate::contribution::{Finder, read_tables, read_values, root};
+use crate::contribution::{Finder, InnerDeployable, read_tables, read_values, root};
 use crate::diagnostic::Diagnostics;
 use crate::load::{self, STANDARD_INPUT, load_file, read_from};
 use crate::model::{Composite, Contribution};
@@ -33,6 +34,8 @@ pub struct Loaded {
     pub(super) diagnostics: Diagnostics,
     pub(super) options: Options,
     pub(super) is_part: bool,
+    /// The files of deployable composites that others use.
+    pub(super) inner_deployables: HashMap<PathBuf, InnerDeployable>,
 }
 
 /// A step from the model to something: `None` where there is an error.
@@ -132,8 +135,11 @@ impl Project {
                 check::wanted_tables(contribution, &registry, &options, sources)
             });
         }
+        let inner_deployable = |path: PathBuf| Some((finder.inner_deployables.get(&path)?.clone(), path));
+        let inner_deployables = files(inputs).into_iter().filter_map(inner_deployable);
+        let inner_deployables = inner_deployables.map(|(inner, path)| (path, inner)).collect();
         let is_part = self.is_part;
-        Loaded { contribution, registry, sources, problems, diagnostics, options, is_part }
+        Loaded { contribution, registry, sources, problems, diagnostics, options, is_part, inner_deployables }
     }
 
     /// The composite in a text, with the values in files beside it.
@@ -160,12 +166,14 @@ impl Loaded {
     }
 
     fn checked<T>(self, check: Check<T>) -> Compilation<T> {
-        let Self { contribution, registry, sources, problems, mut diagnostics, options, is_part } = self;
+        let Self { contribution, registry, sources, problems, mut diagnostics, options, is_part, inner_deployables } =
+            self;
         let output = check(&contribution, &registry, &options, &sources, &mut diagnostics);
         let mut diagnostics = diagnostics.into_all();
         if is_part {
             diagnostics.retain(|one| !folder::is_left_to_users(one));
         }
+        folder::blame_deployables(&mut diagnostics, inner_deployables, &sources);
         Compilation { output, contribution, registry, sources, diagnostics, problems }
     }
 }

@@ -73,6 +73,27 @@ fn check_looks_at_every_fleet_of_a_folder() {
 }
 
 #[test]
+fn a_deployable_that_is_made_for_use_in_others_is_blamed_for_what_it_lacks() {
+    let folder = contribution(&["a:hall"]);
+    let inside = "<component name=\"Hall\"><implementation.composite name=\"a:hall\"/>\
+        <property name=\"level\">40</property></component>";
+    let help = "= help: call only composites deployable that run by themselves: `user` uses this one, and gives it \
+        what it lacks";
+    for command in [&["check", "."][..], &["check", "sca-contribution.xml"], &["run", ".", "--virtual"]] {
+        let (code, _, told) = saoms(folder.path(), command, "");
+        assert!(code == 2 && told.contains("error[S2025, ASM60034]"), "{told}");
+        assert!(!told.contains("deployable"), "nothing uses it: {told}");
+    }
+    fs::write(folder.path().join("user.composite"), composite("user", inside)).unwrap();
+    for command in [&["check", "."][..], &["check", "sca-contribution.xml"], &["run", ".", "--virtual"]] {
+        let (code, _, told) = saoms(folder.path(), command, "");
+        let counts = ["error[", "it is deployable: it runs by itself", help].map(|text| told.matches(text).count());
+        assert!(code == 2 && counts == [1, 1, 1], "{told}");
+        assert!(told.contains("sca-contribution.xml:1:"), "{told}");
+    }
+}
+
+#[test]
 fn what_runs_of_a_folder_is_what_it_calls_deployable() {
     let folder = contribution(&[]);
     let (code, _, stderr) = saoms(folder.path(), &["run", "--virtual", "."], "");

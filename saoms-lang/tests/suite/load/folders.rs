@@ -86,6 +86,7 @@ fn what_is_wrong_with_a_contribution_is_told() {
           it has `hall` in the namespace `urn:b`
         sca-contribution.xml:4:24 [x:hall] error S2051 the contribution has no composite `x:hall`
           it has `hall` in the namespace `urn:b`
+          replace `urn:c` with `urn:b`
         sca-contribution.xml:5:2 [deployable] error S1008 `deployable` needs the attribute `composite`
           add `composite="..."` to it
         sca-contribution.xml:6:13 [composit] error S1007 `deployable` has no attribute `composit`
