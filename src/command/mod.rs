@@ -180,6 +180,14 @@ fn parsed() -> Arguments {
         {
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
+        if error.kind() == ErrorKind::UnknownArgument
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
+            && ["-v", "-V"].contains(&word.as_str())
+            && std::env::args().any(|written| written == *word)
+        {
+            let tip = "`saoms --version` prints the version".to_owned();
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
         if error.kind() == ErrorKind::ArgumentConflict {
             let tip = "one of them has no effect beside the other: leave one out".to_owned();
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));

@@ -18,7 +18,8 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         diagnostics.push(fault);
         return None;
     }
-    let lines = lines(file, text, diagnostics);
+    let mut lines = lines(file, text, diagnostics);
+    without_comments(&mut lines, diagnostics);
     let mut lines = lines.into_iter();
     let Some(mut head) = lines.next().map(Vec::into_iter) else {
         let one = Diagnostic::new(&codes::OVERRIDES, Span::empty(0).in_file(file), "the table is empty");
@@ -92,6 +93,27 @@ pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> 
         rows.push(Row { key: of, values });
     }
     Some(Table { file, key, properties, rows })
+}
+
+/// Removes the lines that are meant as comments, and reports the first of them. In a table of names a later line may be
+/// about a component whose name begins so.
+fn without_comments(lines: &mut Vec<Vec<Text>>, diagnostics: &mut Diagnostics) {
+    let is_comment = |line: &[Text]| line.first().is_some_and(|first| first.starts_with('#'));
+    let head = lines.iter().position(|line| !is_comment(line)).unwrap_or(lines.len());
+    let is_of_names = lines.get(head).and_then(|line| line.first()).is_some_and(|key| *key == *"name");
+    let (mut place, mut first) = (0, None);
+    lines.retain(|line| {
+        let is_meant = is_comment(line) && (place < head || !is_of_names);
+        place += 1;
+        if is_meant && first.is_none() {
+            first = line.first().map(|cell| cell.location);
+        }
+        !is_meant
+    });
+    if let Some(at) = first {
+        let one = Diagnostic::new(&codes::OVERRIDES, at, "a line that begins with `#`: tables have no comments");
+        diagnostics.push(one.help("remove the line, or write what it says into a comment of the composite"));
+    }
 }
 
 /// The fault of a table with the marks of git around two versions of its lines.

@@ -42,7 +42,7 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
             }
         };
         if !known.contains_key(&path) {
-            match read::value(&path, max_size, file.location, sources.open()) {
+            match read::value(&path, max_size, file, sources.open()) {
                 Ok(text) => {
                     let file = sources.add(path.display().to_string(), text);
                     let whole = sources.get(file).text();
@@ -117,7 +117,7 @@ fn read_table(
 ) -> Result<Option<Arc<Table>>, Box<Diagnostic>> {
     let folder = Path::new(sources.get(name.location.file).path()).parent().unwrap_or(Path::new(""));
     let path = folder.join(name.as_str());
-    match read::value(&path, max_size, name.location, sources.open()) {
+    match read::value(&path, max_size, name, sources.open()) {
         Ok(text) => {
             let file = sources.add(path.display().to_string(), text);
             Ok(table(file, sources, diagnostics).map(Arc::new))

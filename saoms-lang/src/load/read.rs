@@ -8,7 +8,7 @@ use super::encoding;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes, nearest_few, quoted};
 pub use crate::limits::MAX_SIZE;
 use crate::limits::{ADDRESSABLE_BYTES, FOLDER_ENTRIES, OFFERED_NAMES};
-use crate::source::{FileId, Location, OpenTexts, Sources, Span};
+use crate::source::{FileId, Location, OpenTexts, Sources, Span, Text};
 
 /// The name of a text from standard input. Its folder is the current one.
 pub const STANDARD_INPUT: &str = "<stdin>";
@@ -86,19 +86,25 @@ fn add(
     }
 }
 
-/// Reads the text of a file of at most `max_size` bytes that is named at a place.
+/// Reads the text of a file of at most `max_size` bytes that is named at a place, as it is written there.
 ///
 /// # Errors
 /// The message for a file that does not exist or is no text in UTF-8.
-pub(crate) fn value(path: &Path, max_size: u64, named: Location, open: &OpenTexts) -> Result<String, Box<Diagnostic>> {
+pub(crate) fn value(path: &Path, max_size: u64, written: &Text, open: &OpenTexts) -> Result<String, Box<Diagnostic>> {
+    let named = written.location;
     let max_size = max_size.min(ADDRESSABLE_BYTES);
     let bytes = named_bytes(path, max_size, open).map_err(|failure| {
         let mut one = failure.diagnostic(path, max_size, named, &VALUE);
         if one.code == &codes::FILE_NOT_FOUND {
-            let shown = std::path::absolute(path).unwrap_or_else(|_| path.into()).display().to_string();
-            if shown.contains('\\') {
-                one.help.insert(0, format!("separate folders with `/`: write {}", quoted(&shown.replace('\\', "/"))));
+            let with_slashes = written.replace('\\', "/");
+            if with_slashes != written.as_str() {
+                // What it leads to is one file.
+                if Path::new(&path.display().to_string().replace('\\', "/")).is_file() {
+                    one.help.clear();
+                }
+                one.help.insert(0, format!("separate folders with `/`: write {}", quoted(&with_slashes)));
             } else {
+                let shown = std::path::absolute(path).unwrap_or_else(|_| path.into()).display().to_string();
                 one.help.insert(0, format!("the full path is {}", quoted(&shown)));
             }
         }

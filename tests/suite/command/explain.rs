@@ -91,6 +91,11 @@ fn several_files_need_a_folder() {
     assert!(stderr(&output).contains("tip: this command writes to standard output: write `> FILE` behind it"));
     let output = saoms(&["run", "composites/hall.composite", "--wiring"]);
     assert!(stderr(&output).contains("tip: this option belongs to `saoms check`"), "{}", stderr(&output));
+    for version in ["-v", "-V"] {
+        let output = saoms(&["run", "composites/hall.composite", version]);
+        let told = stderr(&output);
+        assert!(code(&output) == 2 && told.contains("tip: `saoms --version` prints the version"), "{told}");
+    }
     let output = saoms(&["run", "composites/hall.composite", "--seed", "abc"]);
     assert!(stderr(&output).contains("expected a whole number from 0 to 18446744073709551615"));
 }

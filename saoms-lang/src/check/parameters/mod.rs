@@ -350,7 +350,7 @@ impl<'a> Parameters<'a> {
                 let origin = property.origin;
                 let is_open = declared.source.is_some() || fleet.scopes[unit.scope].fault.is_some();
                 // No `source` can name one that is of the wrong form, which is reported.
-                let is_open = is_open || name.contains(char::is_whitespace);
+                let is_open = is_open || name.contains(|c: char| c.is_whitespace() || c == '/');
                 let is_open = is_open || report.diagnostics().is_meant(origin.file(), name);
                 if !used.contains(&(origin.file(), origin.element)) && !is_open {
                     let message = format!("no component uses the property {} of the composite", quoted(name));

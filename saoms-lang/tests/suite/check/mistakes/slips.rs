@@ -67,6 +67,19 @@ fn a_name_of_the_wrong_form_is_told_once() {
 }
 
 #[test]
+fn a_property_with_a_path_for_a_name_is_told_once() {
+    let inside = format!(
+        "<property name=\"North/robots\">5</property>\n{}",
+        robot("R1", "<property name=\"number\">1</property>")
+    );
+    expect![[r#"
+        2:17-29 error S1011: `North/robots` cannot be a name: it contains `/`
+          help: remove it from the name: targets use `/` in `component/service`, and lists separate names with blanks
+    "#]]
+    .assert_eq(&of(&inside));
+}
+
+#[test]
 fn replicas_that_lack_their_index_get_it() {
     let replicas = |name: &str, id: &str, number: &str| {
         of(&format!(
@@ -388,6 +401,13 @@ fn folders_stand_before_slashes() {
     expect![[r#"
         3:31-40 error S0001: there is no such file
           help: separate folders with `/`: write `sub/n.txt`
+    "#]]
+    .assert_eq(&found);
+    let beside = robot("R", "<property name=\"number\" file=\".\\n.txt\"/>");
+    let found = checked(&beside, &[("n.txt", b"1")], 1 << 20).1;
+    expect![[r#"
+        3:31-38 error S0001: there is no such file
+          help: separate folders with `/`: write `./n.txt`
     "#]]
     .assert_eq(&found);
 }

@@ -302,6 +302,11 @@ fn tables_say_what_differs() {
     "#]]
     .assert_eq(&found(""));
     expect![[r#"
+        robots.csv:1:1-9 error S2047: a line that begins with `#`: tables have no comments
+          help: remove the line, or write what it says into a comment of the composite
+    "#]]
+    .assert_eq(&found("# robots, of the hall\nindex,colour\n# 2,red\n2,blue\n"));
+    expect![[r#"
         robots.csv:1:1-6 error S2047: the first column is `robot`, expected `index` or `name`
           help: the first column names the replica of a row; the other columns are properties
         robots.csv:1:14-20 error S2047: there are two columns `colour`
