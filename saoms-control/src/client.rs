@@ -66,7 +66,7 @@ impl Response {
 
     /// The server-sent events of the body as they come, each with its name (`message` without one) and its data. It
     /// ends with the fleet.
-    pub fn events(mut self) -> impl Iterator<Item = (String, String)> {
+    pub fn events(mut self) -> impl Iterator<Item = (String, String)> + use<> {
         // Nothing may happen for long.
         let _ = self.body.get_ref().set_read_timeout(None);
         std::iter::from_fn(move || {

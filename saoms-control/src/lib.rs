@@ -9,9 +9,11 @@ mod description;
 mod log;
 mod place;
 mod server;
+mod topics;
 
 pub use client::{Client, ClientError, Response, running};
 pub use description::FleetDescription;
 pub use log::{LogLine, LogTail};
 pub use place::{Listener, default_socket};
 pub use server::{ControlServer, ControlledFleet, openapi};
+pub use topics::TopicWatch;

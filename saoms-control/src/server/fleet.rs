@@ -8,6 +8,7 @@ use serde_json::json;
 
 use crate::description::FleetDescription;
 use crate::log::LogTail;
+use crate::topics::TopicWatch;
 
 /// Time for which a snapshot is given to further clients.
 const FRESH: Duration = Duration::from_millis(100);
@@ -23,6 +24,8 @@ pub struct ControlledFleet {
     pub(super) handle: Handle,
     /// Its log.
     pub(super) log: Arc<LogTail>,
+    /// What passes the messages of its topics on.
+    pub(super) topics: Arc<TopicWatch>,
     /// Lets the events of a line happen; gives their number, or what is wrong.
     pub(super) send: Box<SendLine>,
     /// Ends the fleet.
@@ -32,17 +35,17 @@ pub struct ControlledFleet {
 }
 
 impl ControlledFleet {
-    /// A fleet with its remote control and its log. `send` lets the events of a line happen, and gives their number or
+    /// A fleet with its remote control, its log and its topics, which are observers of it. `send` lets the events of a line happen, and gives their number or
     /// what is wrong; `down` ends the fleet.
     pub fn new(
         description: FleetDescription,
         handle: Handle,
-        log: Arc<LogTail>,
+        (log, topics): (Arc<LogTail>, Arc<TopicWatch>),
         send: impl Fn(&str) -> Result<u64, String> + Send + Sync + 'static,
         down: impl Fn() + Send + Sync + 'static,
     ) -> ControlledFleet {
         let snapshot = Mutex::default();
-        ControlledFleet { description, handle, log, send: Box::new(send), down: Box::new(down), snapshot }
+        ControlledFleet { description, handle, log, topics, send: Box::new(send), down: Box::new(down), snapshot }
     }
 
     /// The snapshot, if it is new enough.

@@ -4,6 +4,7 @@ mod answer;
 mod fleet;
 mod logs;
 mod routes;
+mod topics;
 
 use std::io;
 use std::sync::Arc;

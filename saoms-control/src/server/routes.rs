@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::answer::{Answer, Refusal, done, json_text, waiting};
 use super::fleet::ControlledFleet;
-use super::logs;
+use super::{logs, topics};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -93,6 +93,30 @@ const ROUTES: &[Route] = &[
         query: &[],
         body: Some("the value, as a composite writes it"),
         serve: || put(set),
+    },
+    Route {
+        method: "get",
+        path: "/v1/topics",
+        doc: "The topics, with who publishes and reads each, and how many events wait for whom.",
+        query: &[],
+        body: None,
+        serve: || get(topics::list),
+    },
+    Route {
+        method: "get",
+        path: "/v1/topics/{topic}/messages",
+        doc: "The messages of a topic as they come, as server-sent events.",
+        query: &[],
+        body: None,
+        serve: || get(topics::echo),
+    },
+    Route {
+        method: "post",
+        path: "/v1/topics/{topic}/messages",
+        doc: "Publishes a message on a topic at the next instant.",
+        query: &[],
+        body: Some("the message in JSON"),
+        serve: || post(topics::publish),
     },
     Route {
         method: "post",

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use saoms_control::{Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, openapi};
+use saoms_control::{Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, TopicWatch, openapi};
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
 use tempfile::TempDir;
@@ -28,8 +28,11 @@ fn served() -> Served {
     let folder = tempfile::tempdir().unwrap();
     let socket = folder.path().join("fleet.sock");
     let log: Arc<LogTail> = Arc::default();
+    let topics: Arc<TopicWatch> = Arc::default();
     let settings = Settings { limit: Some(Duration::from_secs(60)), ..Settings::simulated(1) };
-    let fleet = RunningFleet::start(Assembly::default(), settings, vec![Arc::clone(&log) as _]).unwrap();
+    let fleet =
+        RunningFleet::start(Assembly::default(), settings, vec![Arc::clone(&log) as _, Arc::clone(&topics) as _])
+            .unwrap();
     let description = FleetDescription {
         name: "a \"fleet\"".to_owned(),
         pid: 7,
@@ -45,7 +48,7 @@ fn served() -> Served {
     let down = move || {
         counted.fetch_add(1, Ordering::SeqCst);
     };
-    let controlled = ControlledFleet::new(description, fleet.handle(), log, send, down);
+    let controlled = ControlledFleet::new(description, fleet.handle(), (log, topics), send, down);
     let server = ControlServer::start(Listener::bind(&socket).unwrap(), controlled).unwrap();
     Served { client: Client::new(&socket), downs, socket, _server: server, _fleet: fleet, _folder: folder }
 }

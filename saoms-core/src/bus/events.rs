@@ -39,6 +39,12 @@ impl EventReader {
 }
 
 impl EventLog {
+    /// Number of messages that wait for a reader, and of those that may wait.
+    pub(super) fn waiting(&self, place: u32) -> (u64, u64) {
+        let reader = &self.readers[place as usize];
+        ((self.end() - reader.next).min(reader.queue), reader.queue)
+    }
+
     fn end(&self) -> u64 {
         self.first + self.messages.len() as u64
     }

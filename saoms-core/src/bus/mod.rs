@@ -24,7 +24,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
-use saoms_api::host::{SharedMessage, TopicDeclaration};
+use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
 use saoms_api::{Departed, Region};
 
 pub(crate) use state::MOST_KEYS;
@@ -92,6 +92,27 @@ impl Bus {
     /// The names of the topics in use, in the order of their creation.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.topics.iter().filter(|topic| topic.users > 0).map(|topic| &*topic.name)
+    }
+
+    /// The topics in use, in the order of their creation.
+    pub fn topics(&self) -> impl Iterator<Item = TopicId> {
+        let all = self.topics.iter().enumerate().filter(|(_, topic)| topic.users > 0);
+        all.map(|(place, _)| TopicId(place as u32))
+    }
+
+    /// Whether a topic is one of events or of states.
+    pub fn kind(&self, topic: TopicId) -> TopicKind {
+        self.topics[topic.0 as usize].kind()
+    }
+
+    /// The name of the topic's messages.
+    pub fn message(&self, topic: TopicId) -> &str {
+        self.topics[topic.0 as usize].message()
+    }
+
+    /// Number of messages that wait for a reader of an event topic, and of those that may wait.
+    pub fn waiting(&self, subscription: &TopicReader) -> Option<(u64, u64)> {
+        self.topics[subscription.topic.0 as usize].waiting(&subscription.reader)
     }
 
     /// The schema of the topic's messages, as text.
@@ -239,6 +260,14 @@ impl Bus {
         if !more.is_empty() {
             *known = Some(known.iter().flat_map(|known| known.iter().copied()).chain(more).collect());
         }
+    }
+
+    /// Notes that an observer outside the fleet wants the messages of a topic no more.
+    pub fn ignore(&mut self, topic: TopicId, observer: u32) {
+        let known = &mut self.topics[topic.0 as usize].observers;
+        let others: Vec<u32> =
+            known.iter().flat_map(|known| known.iter().copied()).filter(|one| *one != observer).collect();
+        *known = (!others.is_empty()).then(|| others.into());
     }
 
     /// The numbers of the observers outside the fleet that want its messages; `None` if there is none.

@@ -66,7 +66,20 @@ impl BusTopic {
         &self.schema
     }
 
-    fn kind(&self) -> TopicKind {
+    /// The name of its messages.
+    pub(super) fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// Number of messages that wait for a reader of an event topic, and of those that may wait.
+    pub(super) fn waiting(&self, reader: &ReadPosition) -> Option<(u64, u64)> {
+        match (&self.store, reader) {
+            (Store::Event(log), ReadPosition::Event(place)) => Some(log.waiting(*place)),
+            _ => None,
+        }
+    }
+
+    pub(super) fn kind(&self) -> TopicKind {
         match self.store {
             Store::State(_) => TopicKind::State,
             Store::Event(_) => TopicKind::Event,

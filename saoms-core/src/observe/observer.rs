@@ -159,6 +159,11 @@ impl Observers {
         self.all.iter().enumerate().filter(wants).map(|(number, _)| number as u32).collect()
     }
 
+    /// The number of an observer.
+    pub(crate) fn number(&self, observer: &Arc<dyn Observer>) -> Option<u32> {
+        self.all.iter().position(|(one, _)| Arc::ptr_eq(one, observer)).map(|place| place as u32)
+    }
+
     pub(crate) fn event(&self, event: &RunEvent) {
         for (observer, interest) in &self.all {
             let is_wanted = match &event.what {

@@ -21,12 +21,14 @@ use super::os::realtime;
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::takers::{RaiseError, Takers};
+use super::topics;
 use crate::journal::ComponentName;
 use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;
-use crate::status::FleetStatus;
+use crate::status::{FleetStatus, TopicStatus};
 use saoms_api::host::contain;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
+use saoms_lang::schema::Schema;
 
 /// A fleet that runs.
 ///
@@ -423,6 +425,20 @@ impl Handle {
         let status = engine.status(&shared.sections(), shared.clock.now());
         shared.release(engine);
         status
+    }
+
+    /// The topics of the fleet, with who publishes and reads each, and how many events wait for whom.
+    pub fn topics(&self) -> Vec<TopicStatus> {
+        topics::topics(&self.shared)
+    }
+
+    /// Lets an observer of this fleet get the messages of a topic from now on, or no more. Gives the schema of the
+    /// messages.
+    ///
+    /// # Errors
+    /// The fleet has no such topic.
+    pub fn watch(&self, topic: &str, observer: &Arc<dyn Observer>, wanted: bool) -> Result<Schema, InjectError> {
+        topics::watch(&self.shared, topic, observer, wanted)
     }
 
     /// Progress of the run.

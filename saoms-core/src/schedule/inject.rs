@@ -5,7 +5,6 @@ use std::fmt;
 use std::sync::Arc;
 
 use saoms_api::host::SharedMessage;
-use saoms_api::rule::nearest;
 use saoms_api::{Cause, Header, Level, Time};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
@@ -159,11 +158,7 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
         if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
             return Err(InjectError::Ending);
         }
-        let Some(id) = engine.bus.find(&topic) else {
-            let known: Vec<String> = engine.bus.names().map(str::to_owned).collect();
-            let nearest = nearest(&topic, known.iter().map(String::as_str)).map(str::to_owned);
-            return Err(InjectError::UnknownTopic { topic, nearest, known });
-        };
+        let id = engine.topic(&topic)?;
         (id, engine.bus.schema(id).to_owned())
     };
     let refused = |message: &str, error: String| InjectError::Content {

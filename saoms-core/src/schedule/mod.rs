@@ -23,6 +23,7 @@ mod stop;
 mod takers;
 #[cfg(test)]
 mod tests;
+mod topics;
 
 pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
 pub use fleet::{Handle, Hold, RunningFleet, UnknownComponent};

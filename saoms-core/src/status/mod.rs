@@ -86,6 +86,34 @@ impl ComponentState {
     }
 }
 
+/// A snapshot of a topic.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct TopicStatus {
+    /// Its name, after renaming.
+    pub name: String,
+    /// `event` or `state`.
+    pub kind: &'static str,
+    /// The name of its messages.
+    pub message: String,
+    /// The fields of its messages, as declarations write them.
+    pub schema: Value,
+    /// The components that publish it.
+    pub publishers: Vec<String>,
+    /// The components that read it.
+    pub readers: Vec<TopicReaderStatus>,
+}
+
+/// A component that reads a topic.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct TopicReaderStatus {
+    /// Its path.
+    pub component: String,
+    /// Number of events that wait for it; `null` on a state topic, and while its code runs.
+    pub waiting: Option<u64>,
+    /// Number of events that may wait for it.
+    pub queue: Option<u64>,
+}
+
 /// What a component said of itself.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Description {

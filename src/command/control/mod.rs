@@ -6,6 +6,7 @@ mod orders;
 mod ps;
 mod status;
 mod table;
+mod topic;
 
 pub(super) use logs::{LogsArguments, logs};
 pub(super) use orders::{
@@ -13,3 +14,4 @@ pub(super) use orders::{
 };
 pub(super) use ps::{PsArguments, ps};
 pub(super) use status::{StatusArguments, status};
+pub(super) use topic::{TopicArguments, topic};

@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use saoms_api::Level;
-use saoms_control::{ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, default_socket};
+use saoms_control::{ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, TopicWatch, default_socket};
+use saoms_core::observe::Observer;
 use saoms_core::schedule::Handle;
 
 use super::RunArguments;
@@ -22,7 +23,9 @@ pub(super) struct Control {
     listener: Listener,
     description: FleetDescription,
     /// The log of the fleet, an observer of it.
-    pub(super) log: Arc<LogTail>,
+    log: Arc<LogTail>,
+    /// The topics of the fleet, an observer of it.
+    topics: Arc<TopicWatch>,
 }
 
 impl Control {
@@ -46,12 +49,17 @@ impl Control {
                 }
             },
         };
-        Ok(Some(Control { listener, description, log: Arc::default() }))
+        Ok(Some(Control { listener, description, log: Arc::default(), topics: Arc::default() }))
+    }
+
+    /// The observers of the fleet with which it serves.
+    pub(super) fn observers(&self) -> [Arc<dyn Observer>; 2] {
+        [Arc::clone(&self.log) as _, Arc::clone(&self.topics) as _]
     }
 
     /// Serves operators from now on.
     pub(super) fn serve(self, handle: &Handle, signals: &Signalled) -> Option<ControlServer> {
-        let Control { listener, description, log } = self;
+        let Control { listener, description, log, topics } = self;
         let events = Mutex::new(Events::of_operators(description.seed));
         let fleet = handle.clone();
         let send = move |line: &str| {
@@ -59,7 +67,7 @@ impl Control {
             events.send(line, &fleet)
         };
         let (fleet, ending) = (handle.clone(), signals.ending());
-        let fleet = ControlledFleet::new(description, handle.clone(), log, send, move || ending.down(&fleet));
+        let fleet = ControlledFleet::new(description, handle.clone(), (log, topics), send, move || ending.down(&fleet));
         ControlServer::start(listener, fleet)
             .inspect_err(|error| {
                 handle

@@ -204,7 +204,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         Ok(control) => control,
         Err(exit) => return exit,
     };
-    observers.extend(control.as_ref().map(|control| Arc::clone(&control.log) as Arc<dyn Observer>));
+    observers.extend(control.iter().flat_map(Control::observers));
     signals.starts();
     let mut server = None;
     let before = |handle: &Handle| {

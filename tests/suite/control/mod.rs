@@ -3,6 +3,7 @@
 mod hang;
 mod orders;
 mod places;
+mod topics;
 
 use std::fs;
 use std::path::Path;
@@ -17,7 +18,7 @@ use crate::support::{command, stderr, stdout, text};
 
 /// A fleet that runs until it is ended, in a folder of its own, with a folder for sockets that no other test uses.
 pub(super) struct Running {
-    child: Child,
+    child: Option<Child>,
     folder: TempDir,
 }
 
@@ -34,7 +35,7 @@ impl Running {
         let mut run = command(&[&["run", "fleet.composite"], arguments].concat());
         run.current_dir(folder.path()).env("XDG_RUNTIME_DIR", folder.path());
         let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let running = Running { child, folder };
+        let running = Running { child: Some(child), folder };
         // Until it listens.
         for _ in 0..1000 {
             if stdout(&running.ask(&["ps", "--format", "json"])).contains("\"pid\"") {
@@ -42,7 +43,7 @@ impl Running {
             }
             sleep(Duration::from_millis(10));
         }
-        panic!("the fleet cannot be reached: {}", text(&running.child.wait_with_output().unwrap()));
+        panic!("the fleet cannot be reached");
     }
 
     /// The folder in which it runs.
@@ -92,9 +93,24 @@ impl Running {
     }
 
     /// Waits for the end of the run: its exit code and what it printed.
-    pub(super) fn end(self) -> (Option<i32>, String) {
-        let output = self.child.wait_with_output().unwrap();
+    pub(super) fn end(mut self) -> (Option<i32>, String) {
+        self.wait()
+    }
+
+    /// The same, and its folder stays.
+    pub(super) fn wait(&mut self) -> (Option<i32>, String) {
+        let output = self.child.take().unwrap().wait_with_output().unwrap();
         (output.status.code(), text(&output))
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // A test that failed leaves no fleet behind.
+        if let Some(child) = &mut self.child {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
     }
 }
 

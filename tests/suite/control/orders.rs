@@ -6,7 +6,7 @@ use super::{Running, fleet};
 
 #[test]
 fn a_fleet_is_listed_shown_and_ended() {
-    let running = Running::start(&fleet(), &["--report", "report.json"]);
+    let mut running = Running::start(&fleet(), &["--report", "report.json"]);
     let listed = running.told(&["ps"]);
     assert!(listed.starts_with("NAME   PID") && listed.contains("fleet.composite"), "{listed}");
     running.until("Robot1", |robot| robot["values"]["state"] == "free" && robot["executions"].as_u64() > Some(2));
@@ -18,10 +18,9 @@ fn a_fleet_is_listed_shown_and_ended() {
     assert_eq!(running.told(&["down"]), "the fleet ends\n");
     let folder = running.folder().to_owned();
     let report = folder.join("report.json");
-    let Running { child, folder: _kept } = running;
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("\nstopped after "), "{output:?}");
+    let (code, text) = running.wait();
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("\nstopped after "), "{text}");
     let report: Value = serde_json::from_slice(&std::fs::read(report).unwrap()).unwrap();
     assert_eq!(report["outcome"]["status"], "stopped");
     assert_eq!(std::fs::read_dir(folder.join("saoms")).unwrap().count(), 0, "the socket is removed");

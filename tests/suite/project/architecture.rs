@@ -122,7 +122,7 @@ fn crates_know_only_what_they_may() {
         "the core never knows a component"
     );
     assert_eq!(dependencies("saoms-tools"), ["saoms-api", "saoms-lang"], "no tool runs a fleet");
-    assert_eq!(dependencies("saoms-control"), ["saoms-api", "saoms-core"], "operators reach any fleet");
+    assert_eq!(dependencies("saoms-control"), ["saoms-api", "saoms-core", "saoms-lang"], "operators reach any fleet");
     assert_eq!(dependencies("saoms-components"), ["saoms-api"], "components know the contract alone");
 }
 

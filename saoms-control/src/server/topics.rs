@@ -1,0 +1,43 @@
+//! The topics of the fleet.
+
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use axum::extract::{Path, State};
+use axum::response::IntoResponse;
+use axum::response::sse::{Event, KeepAlive, Sse};
+use futures_util::stream;
+use saoms_core::schedule::{InjectedContent, Injection};
+use serde_json::{Value, json};
+
+use super::answer::{Answer, Refusal, done, json_text, waiting};
+use super::fleet::ControlledFleet;
+
+type Fleet = State<Arc<ControlledFleet>>;
+
+pub(super) async fn list(State(fleet): Fleet) -> Answer {
+    json_text(waiting(move || json!(fleet.handle.topics()).to_string()).await?)
+}
+
+/// The messages of a topic as they come, an event each. The event `lost` says how many came faster than the client took
+/// them.
+pub(super) async fn echo(State(fleet): Fleet, Path(topic): Path<String>) -> Answer {
+    let follower = fleet.topics.follow(&topic, &fleet.handle).map_err(Refusal::unprocessable)?;
+    let events = stream::unfold(follower, |mut follower| async move {
+        let event = match follower.next().await? {
+            Ok(message) => Event::default().data(&*message),
+            Err(lost) => Event::default().event("lost").data(lost.to_string()),
+        };
+        Some((Ok::<_, Infallible>(event), follower))
+    });
+    Ok(Sse::new(events).keep_alive(KeepAlive::default()).into_response())
+}
+
+pub(super) async fn publish(State(fleet): Fleet, Path(topic): Path<String>, message: String) -> Answer {
+    let fields: Value = serde_json::from_str(&message)
+        .map_err(|error| Refusal::unprocessable(format!("the message is not JSON: {error}")))?;
+    let text = format!("publish {topic} {fields}");
+    let injection = Injection { topic, content: InjectedContent::Fields(fields), at: None, text };
+    waiting(move || fleet.handle.inject(injection)).await?.map_err(Refusal::unprocessable)?;
+    done()
+}

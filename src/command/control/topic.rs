@@ -1,0 +1,227 @@
+//! `saoms topic`: the topics of a running fleet, and their messages.
+
+use std::time::{Duration, Instant};
+
+use clap::{Args, Subcommand};
+use saoms_api::host::one_line;
+use serde_json::{Value, json};
+
+use super::fleet::{RunningFleetArguments, escape};
+use super::table::Table;
+use crate::Exit;
+use crate::arguments::{Format, duration};
+use crate::output::{eprint, has_failed, print};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  shown or published
+  1  standard output could not be written
+  2  there is no such topic, the message does not fit, no fleet runs, or it is not clear which one is meant";
+
+/// Show the topics of a running fleet and their messages, or publish one
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct TopicArguments {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    List(ListArguments),
+    Info(InfoArguments),
+    Echo(EchoArguments),
+    Hz(HzArguments),
+    Pub(PubArguments),
+}
+
+/// List the topics with the numbers of their publishers and readers
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+struct ListArguments {
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+/// Show who publishes and reads a topic, how many events wait for whom, and the fields of its messages
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+struct InfoArguments {
+    /// The topic
+    topic: String,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+/// Show the messages of a topic as they come, until the fleet ends
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+struct EchoArguments {
+    /// The topic
+    topic: String,
+
+    /// End after so many messages
+    #[arg(long, short = 'n', value_name = "N")]
+    count: Option<u64>,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+/// Count the messages of a topic in each second, for a while
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+struct HzArguments {
+    /// The topic
+    topic: String,
+
+    /// The time for which they are counted (a bare number is milliseconds; units us, ms, s, min, h)
+    #[arg(long = "for", value_name = "DURATION", default_value = "3s", value_parser = duration)]
+    limit: Duration,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+/// Publish a message on a topic
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+struct PubArguments {
+    /// The topic
+    topic: String,
+
+    /// The message, as a JSON object with its fields; `saoms topic info` shows them
+    message: String,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+pub(crate) fn topic(arguments: &TopicArguments) -> Exit {
+    let done = match &arguments.action {
+        Action::List(arguments) => list(&arguments.fleet),
+        Action::Info(arguments) => info(arguments),
+        Action::Echo(arguments) => echo(arguments),
+        Action::Hz(arguments) => hz(arguments),
+        Action::Pub(arguments) => publish(arguments),
+    };
+    done.map_or_else(|exit| exit, |()| Exit::Done)
+}
+
+fn list(fleet: &RunningFleetArguments) -> Result<(), Exit> {
+    let topics = fleet.ask("GET", "/v1/topics", "")?;
+    fleet.show(&topics, || {
+        let mut table = Table::new(&["TOPIC", "KIND", "MESSAGE", "PUBLISHERS", "READERS", "WAITING"]);
+        for topic in topics.as_array().into_iter().flatten() {
+            let word = |field: &str| one_line(topic[field].as_str().unwrap_or_default()).into_owned();
+            let count = |field: &str| topic[field].as_array().map_or(0, Vec::len).to_string();
+            let waiting = topic["readers"].as_array().into_iter().flatten().filter_map(|one| one["waiting"].as_u64());
+            let waiting = waiting.max().map_or_else(String::new, |most| most.to_string());
+            table.row([word("name"), word("kind"), word("message"), count("publishers"), count("readers"), waiting]);
+        }
+        table.to_string()
+    });
+    Ok(())
+}
+
+/// The topic of this name in the list of all.
+fn find(fleet: &RunningFleetArguments, name: &str) -> Result<Value, Exit> {
+    let topics = fleet.ask("GET", "/v1/topics", "")?;
+    let all = topics.as_array().map(Vec::as_slice).unwrap_or_default();
+    if let Some(topic) = all.iter().find(|topic| topic["name"] == name) {
+        return Ok(topic.clone());
+    }
+    let near = saoms_api::rule::nearest(name, all.iter().filter_map(|topic| topic["name"].as_str()));
+    let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+    Err(fleet.refuse(&format!("the fleet has no topic `{name}`{near}"), Exit::WrongInput))
+}
+
+fn info(arguments: &InfoArguments) -> Result<(), Exit> {
+    let topic = find(&arguments.fleet, &arguments.topic)?;
+    arguments.fleet.show(&topic, || {
+        let word = |value: &Value| one_line(value.as_str().unwrap_or_default()).into_owned();
+        let mut text =
+            format!("{}: {} messages `{}`\n", word(&topic["name"]), word(&topic["kind"]), word(&topic["message"]));
+        for field in topic["schema"]["fields"].as_array().into_iter().flatten() {
+            let of = &field["type"];
+            let of = of
+                .as_str()
+                .map_or_else(|| of["name"].as_str().map_or_else(|| of.to_string(), str::to_owned), str::to_owned);
+            text.push_str(&format!("  {}: {}\n", word(&field["name"]), one_line(&of)));
+        }
+        text.push_str("published by\n");
+        for publisher in topic["publishers"].as_array().into_iter().flatten() {
+            text.push_str(&format!("  {}\n", word(publisher)));
+        }
+        text.push_str("read by\n");
+        for reader in topic["readers"].as_array().into_iter().flatten() {
+            let waiting = match (reader["waiting"].as_u64(), reader["queue"].as_u64()) {
+                (Some(waiting), Some(queue)) => format!(": {waiting} of at most {queue} events wait"),
+                _ => String::new(),
+            };
+            text.push_str(&format!("  {}{waiting}\n", word(&reader["component"])));
+        }
+        text
+    });
+    Ok(())
+}
+
+/// The messages of a topic as they come, in JSON.
+fn messages(fleet: &RunningFleetArguments, topic: &str) -> Result<impl Iterator<Item = String> + use<>, Exit> {
+    let response = fleet.request("GET", &format!("/v1/topics/{}/messages", escape(topic)), "")?;
+    Ok(response.events().filter_map(|(name, data)| {
+        if name == "lost" {
+            eprint(&format!("warning: {data} messages came faster than they were read, and are lost\n"));
+            return None;
+        }
+        Some(data)
+    }))
+}
+
+fn echo(arguments: &EchoArguments) -> Result<(), Exit> {
+    let most = arguments.count.map_or(usize::MAX, |count| usize::try_from(count).unwrap_or(usize::MAX));
+    for message in messages(&arguments.fleet, &arguments.topic)?.take(most) {
+        match (arguments.fleet.format, serde_json::from_str::<Value>(&message)) {
+            (Format::Human, Ok(sent)) => {
+                let time = sent["time_s"].as_f64().unwrap_or_default();
+                let component = one_line(sent["component"].as_str().unwrap_or_default()).into_owned();
+                print(&format!("[{time:.3} s] {component}: {}\n", one_line(&sent["message"].to_string())));
+            }
+            _ => print(&format!("{message}\n")),
+        }
+        if has_failed() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+fn hz(arguments: &HzArguments) -> Result<(), Exit> {
+    let topic = find(&arguments.fleet, &arguments.topic)?;
+    let name = topic["name"].as_str().unwrap_or_default().to_owned();
+    let mut messages = messages(&arguments.fleet, &name)?;
+    let (sender, counted) = std::sync::mpsc::channel();
+    // It ends with the process: no message may come for long.
+    let count = move || while messages.next().is_some_and(|_| sender.send(()).is_ok()) {};
+    std::thread::spawn(count);
+    let (start, mut number) = (Instant::now(), 0_u64);
+    while let Some(left) = arguments.limit.checked_sub(start.elapsed()) {
+        match counted.recv_timeout(left) {
+            Ok(()) => number += 1,
+            Err(_) => break,
+        }
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    let rate = number as f64 / seconds;
+    let answer = json!({"topic": name, "messages": number, "seconds": seconds, "per_second": rate});
+    arguments.fleet.show(&answer, || format!("{rate:.1} messages a second: {number} in {seconds:.1} s\n"));
+    Ok(())
+}
+
+fn publish(arguments: &PubArguments) -> Result<(), Exit> {
+    let path = format!("/v1/topics/{}/messages", escape(&arguments.topic));
+    let answer = arguments.fleet.ask("POST", &path, &arguments.message)?;
+    arguments.fleet.show(&answer, || "published\n".to_owned());
+    Ok(())
+}
