@@ -35,8 +35,8 @@ pub struct ControlledFleet {
 }
 
 impl ControlledFleet {
-    /// A fleet with its remote control, its log and its topics, which are observers of it. `send` lets the events of a line happen, and gives their number or
-    /// what is wrong; `down` ends the fleet.
+    /// A fleet with its remote control, its log and its topics, which are observers of it. `send` lets the events of a
+    /// line happen, and gives their number or what is wrong; `down` ends the fleet.
     pub fn new(
         description: FleetDescription,
         handle: Handle,
