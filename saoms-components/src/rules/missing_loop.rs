@@ -90,11 +90,11 @@ const CLASSIC_PATH_FOLLOWER: &str = "saoms.classic.PathFollowerMS";
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots: Vec<usize> = fleet.indices::<Robot>().collect();
-    let in_trouble = has_trouble(fleet, &robots);
+    let in_trouble = robots.len() > 1 && has_trouble(fleet, &robots);
     let is_needed = |part: &Part| match part.needed {
         Needed::Always => true,
         Needed::Together => robots.len() > 1,
-        Needed::InTrouble => robots.len() > 1 && in_trouble,
+        Needed::InTrouble => in_trouble,
     };
     robots.iter().flat_map(|index| findings(fleet, *index, is_needed)).collect()
 }
