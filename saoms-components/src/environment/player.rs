@@ -2,6 +2,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Duration;
 
+use saoms_api::event::EventCall;
 use saoms_api::{Chance, Failure, Field, Time};
 
 use super::scenario::{EventSpec, Line, Scenario};
@@ -156,7 +157,10 @@ pub(super) fn draw(event: &EventSpec, chance: &mut Chance, area: Option<&Map>) -
         EventSpec::Landing(pieces) => exceptional(ExceptionalKind::Landing, pieces.draw(chance)),
         EventSpec::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),
         EventSpec::Breakdown(robot) => Some(ScenarioEvent::Breakdown(robot.value.draw(chance))),
-        EventSpec::Raised(call) => Some(ScenarioEvent::Raised(call.drawn(chance))),
+        EventSpec::Raised(event) => {
+            let call = EventCall::read(event).ok()?;
+            Some(ScenarioEvent::Raised(call.drawn(chance)))
+        }
         EventSpec::End => Some(ScenarioEvent::End),
     }
 }

@@ -1,5 +1,6 @@
 //! The language of scenarios, for the checker and editors.
 
+use saoms_api::event::EventCall;
 use saoms_api::extension::{
     Explanation, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, RaisedEvent, submit,
 };
@@ -19,8 +20,11 @@ const WORDS: &[&str] = &[
 fn check(texts: &PropertyTexts<'_>) -> JudgedTexts {
     let vocabulary = Vocabulary::with(texts.events).playing(texts.plays);
     let (scenario, findings) = Scenario::read_with(texts.property, texts.texts, vocabulary);
-    let raised = scenario.lines.into_iter().filter_map(|line| match line.event {
-        EventSpec::Raised(call) => Some(RaisedEvent { text: line.text, call }),
+    let raised = scenario.lines.iter().filter_map(|line| match &line.event {
+        EventSpec::Raised(event) => {
+            let call = EventCall::read(event).ok()?;
+            Some(RaisedEvent { text: line.text, call: call.moved(line.bytes.start) })
+        }
         _ => None,
     });
     JudgedTexts { findings, raised: raised.collect() }

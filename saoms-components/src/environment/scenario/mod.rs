@@ -14,7 +14,6 @@ use std::ops::Range;
 use std::time::Duration;
 
 use saoms_api::Finding;
-use saoms_api::event::EventCall;
 
 pub use continuation::{Continuation, continuations};
 pub use random::{RandomRange, Spot};
@@ -75,8 +74,8 @@ pub enum EventSpec {
     Takeoff(RandomRange<u32>),
     /// A breakdown of the robot with this number, given as a number or as a name that ends with it.
     Breakdown(Spanned<RandomRange<u32>>),
-    /// An event that other classes take.
-    Raised(EventCall),
+    /// An event that other classes take, as it is written.
+    Raised(Box<str>),
     /// No event: the run lasts until this time.
     End,
 }

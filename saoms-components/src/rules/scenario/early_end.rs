@@ -26,27 +26,32 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     environments
         .flat_map(|(index, properties)| {
             let (scenario, _) = Scenario::read_partly(&properties.scenario);
-            let place =
-                |line: &Line| Place::property("scenario").part(line.text, line.bytes.clone()).in_component(index);
-            let times = last_times(scenario.lines());
-            // The line whose last event comes latest of all, at the earliest.
-            let (last, latest) = scenario.lines().iter().zip(&times).max_by_key(|(_, time)| time.least).unzip();
-            let ends = scenario.lines().iter().zip(times.clone()).filter(|(line, _)| line.event == EventSpec::End);
-            let early = ends.filter(|(_, time)| latest.is_some_and(|latest| time.most < latest.least));
-            let findings = early.zip(std::iter::repeat(last)).map(|((end, time), last)| {
-                let message = "this `end` has no effect: the scenario has later events";
-                let at = format_duration(time.most);
-                let finding = Finding::new(place(end), message);
-                let finding =
-                    last.into_iter().fold(finding, |finding, last| finding.label(place(last), "a later event"));
-                finding.help(format!(
-                    "remove it, or write a time after all events: `end` only keeps the run from ending earlier. \
-                    `saoms run --for {at}` ends a run after {at}"
-                ))
-            });
-            findings.collect::<Vec<Finding>>()
+            early_ends(scenario.lines(), index)
         })
         .collect()
+}
+
+/// The findings about a scenario.
+fn early_ends(lines: &[Line], index: usize) -> Vec<Finding> {
+    if lines.iter().all(|line| line.event != EventSpec::End) {
+        // Most scenarios have none, and some are very long.
+        return Vec::new();
+    }
+    let place = |line: &Line| Place::property("scenario").part(line.text, line.bytes.clone()).in_component(index);
+    let times = last_times(lines);
+    // The line whose last event comes latest of all, at the earliest.
+    let Some((last, latest)) = lines.iter().zip(&times).max_by_key(|(_, time)| time.least) else { return Vec::new() };
+    let ends = lines.iter().zip(&times).filter(|(line, _)| line.event == EventSpec::End);
+    let early = ends.filter(|(_, time)| time.most < latest.least);
+    let finding = |(end, time): (&Line, &RandomRange<Duration>)| {
+        let at = format_duration(time.most);
+        let message = "this `end` has no effect: the scenario has later events";
+        Finding::new(place(end), message).label(place(last), "a later event").help(format!(
+            "remove it, or write a time after all events: `end` only keeps the run from ending earlier. \
+             `saoms run --for {at}` ends a run after {at}"
+        ))
+    };
+    early.map(finding).collect()
 }
 
 /// Earliest and latest time of the last event of each line.
