@@ -127,6 +127,8 @@ impl Component for Busy {
                 ("map".to_owned(), ReportValue::Map(vec![("yes".to_owned(), true.into())])),
             ]),
         );
+        let raised = (context.raise("fire size=2 to Hall\u{fc}"), context.raise("flood"));
+        context.info(format_args!("{raised:?}"));
         context.count("a.c", -3);
         context.vote(Work::GivenUp);
         context.vote(Work::Done);

@@ -90,6 +90,16 @@ impl Host for FakeHost {
         Duration::from_millis(500)
     }
 
+    fn raise(&mut self, event: &str) -> Result<(), Failure> {
+        match event {
+            "fire size=2 to Hall\u{fc}" => {
+                self.lines.push(format!("raised {event}"));
+                Ok(())
+            }
+            other => Err(Failure::new(format!("no component takes `{other}`"))),
+        }
+    }
+
     fn cancelled(&self) -> bool {
         false
     }
