@@ -55,6 +55,7 @@ mod chance;
 mod component;
 mod context;
 mod derived;
+mod dyn_component;
 pub mod event;
 pub mod extension;
 mod failure;

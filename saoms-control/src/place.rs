@@ -65,11 +65,6 @@ impl Listener {
         let file = SocketFile { path: path.to_owned(), identity: (metadata.dev(), metadata.ino()) };
         Ok(Listener { socket, file })
     }
-
-    /// The path of the socket.
-    pub fn path(&self) -> &Path {
-        &self.file.path
-    }
 }
 
 impl Drop for SocketFile {

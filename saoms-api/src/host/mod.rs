@@ -16,8 +16,8 @@ pub use crate::adaptation::{
     Snapshot, Subject,
 };
 pub use crate::bounded::Measured;
-pub use crate::component::DynComponent;
 pub use crate::derived::{Derived, DerivedLoop, Fields};
+pub use crate::dyn_component::DynComponent;
 pub use crate::field::Arguments;
 pub use crate::message::SharedMessage;
 pub use crate::property::{PropertyValue, RESERVED, WriteProperties};

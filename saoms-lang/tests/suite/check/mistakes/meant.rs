@@ -350,3 +350,17 @@ fn a_property_that_an_element_of_another_namespace_would_take_is_used() {
     }
     assert!(fleet("$faster").contains("`fast`"));
 }
+
+#[test]
+fn a_property_of_the_composite_around_is_handed_in() {
+    let robot = robot("R", "<property name=\"number\" source=\"$tick\"/>");
+    let hall = part("hall", "", &format!("<property name=\"first\">1</property>{robot}"));
+    let around = "<property name=\"tick\">1</property><component name=\"H\"><implementation.composite name=\"t:hall\"/><property name=\"first\">1</property></component>";
+    let told = outcome(&[&part("fleet", "", around), &hall], &[]);
+    expect![[r#"
+        hall:3:34-38 error S2024: the composite has no property `tick`
+          help: its properties are `first`
+          help: properties of the outer composite are not visible here: declare `tick` here, and set it in the component
+    "#]]
+    .assert_eq(&told);
+}
