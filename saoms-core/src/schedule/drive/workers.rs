@@ -4,6 +4,7 @@ use saoms_api::Level;
 
 use super::spawn_thread;
 use crate::schedule::component::body::Job;
+use crate::schedule::engine::slot::SlotState;
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::os::sys;
 use crate::schedule::shared::{Shared, relock};
@@ -38,7 +39,11 @@ pub(super) fn work(shared: &Arc<Shared>) {
             slot.waiting = true;
             continue;
         }
-        let question = slot.asked.then_some(Job::Describe);
+        let question = slot.asked.then_some(Job::Describe).filter(|_| slot.state == SlotState::Active);
+        if question.is_none() {
+            // One that starts or leaves has nothing to say.
+            engine.note_answer(index);
+        }
         let Some(job) = question.or_else(|| engine.job(index, started)) else { continue };
         let Some(mut body) = engine.begin(index, job, started) else { continue };
         shared.release(engine);

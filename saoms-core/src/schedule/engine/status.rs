@@ -79,7 +79,7 @@ impl Engine {
     }
 
     /// Notes that a component has answered, or failed to.
-    pub(super) fn note_answer(&mut self, index: u32) {
+    pub(crate) fn note_answer(&mut self, index: u32) {
         // One that was asked in an earlier round is not waited for.
         if std::mem::take(&mut self.slots[index as usize].asked) {
             self.questions.unanswered -= 1;
