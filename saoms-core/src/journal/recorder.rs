@@ -1,3 +1,4 @@
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use saoms_api::host::Phase;
@@ -14,8 +15,8 @@ pub(crate) struct Recorder {
     /// State of the component outside all loops.
     outside: CauseChain,
     loops: Vec<LoopState>,
-    /// The newest change of each entry by each loop.
-    changes: Vec<(&'static str, u16, Cause)>,
+    /// The newest change of each entry by each loop. Code of a library may name any number of entries.
+    changes: HashMap<&'static str, Vec<(u16, Cause)>>,
     /// Records to be delivered.
     pub(crate) batch: Batch,
     pub(crate) notices: Vec<Notice>,
@@ -66,6 +67,7 @@ struct LoopState {
     last: CauseChain,
     /// Digests, causes and numbers of its effects.
     effects: Vec<(u64, Cause, Cause)>,
+    /// Those of the execution before, in order.
     last_effects: Vec<(u64, Cause, Cause)>,
 }
 
@@ -108,6 +110,8 @@ impl Recorder {
         let chain = std::mem::take(&mut state.chain);
         std::mem::swap(&mut state.effects, &mut state.last_effects);
         state.effects.clear();
+        // One execution may have very many: each is looked up by halves. Of equal ones the oldest comes first.
+        state.last_effects.sort_unstable();
         // A loop that skipped an execution starts with an empty state.
         state.last = if state.execution + 1 == number { chain } else { CauseChain::default() };
         if state.execution + 1 != number {
@@ -176,9 +180,9 @@ impl Recorder {
     /// The newest change of one of these entries by another loop.
     fn newest_sensed(&self, senses: &[String]) -> Cause {
         let Some(present) = self.present else { return Cause::default() };
-        let others = self.changes.iter().filter(|(_, by, _)| *by != present);
-        let sensed = others.filter(|(entry, ..)| senses.iter().any(|name| name == entry));
-        sensed.map(|(.., cause)| *cause).max().unwrap_or_default()
+        let sensed = senses.iter().filter_map(|entry| self.changes.get(entry.as_str())).flatten();
+        let by_others = sensed.filter(|(by, _)| *by != present);
+        by_others.map(|(_, cause)| *cause).max().unwrap_or_default()
     }
 
     fn decision(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
@@ -196,8 +200,7 @@ impl Recorder {
     fn effect(&mut self, stamp: Stamp<'_>, fingerprint: u64, record: &Record) {
         self.acted();
         let cause = self.chain().cause_of_effect();
-        let same = |(digest, reason, _): &&(u64, Cause, Cause)| *digest == fingerprint && *reason == cause;
-        let before = self.loop_state().and_then(|state| state.last_effects.iter().find(same).copied());
+        let before = self.loop_state().and_then(|state| state.repeated(fingerprint, cause));
         let effect = before.unwrap_or_else(|| {
             let reference = self.push(stamp, Phase::Effect, fingerprint, cause, false, record);
             (fingerprint, cause, reference.id)
@@ -225,9 +228,10 @@ impl Recorder {
         }
         self.chain().newest = id;
         let by = self.present.unwrap_or(OUTSIDE);
-        match self.changes.iter_mut().find(|(name, place, _)| *name == entry && *place == by) {
-            Some(known) => known.2 = id,
-            None => self.changes.push((entry, by, id)),
+        let changes = self.changes.entry(entry).or_default();
+        match changes.iter_mut().find(|(place, _)| *place == by) {
+            Some(known) => known.1 = id,
+            None => changes.push((by, id)),
         }
     }
 
@@ -263,6 +267,14 @@ impl Recorder {
         let place = self.present.unwrap_or(OUTSIDE);
         self.batch.push(&Note { id, time, cause, fingerprint, component, place, phase, change, record });
         RecordRef { fingerprint, id, at, acted: false }
+    }
+}
+
+impl LoopState {
+    /// The effect of this digest and cause in the execution before.
+    fn repeated(&self, fingerprint: u64, cause: Cause) -> Option<(u64, Cause, Cause)> {
+        let place = self.last_effects.partition_point(|(digest, reason, _)| (*digest, *reason) < (fingerprint, cause));
+        self.last_effects.get(place).copied().filter(|(digest, reason, _)| (*digest, *reason) == (fingerprint, cause))
     }
 }
 

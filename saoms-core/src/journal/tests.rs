@@ -76,6 +76,43 @@ fn a_loop_that_paused_begins_anew() {
     assert_eq!(recorder.batch.len(), 2);
 }
 
+/// Comparing each effect with all of the execution before would take 10^10 steps here.
+#[test]
+fn as_many_effects_as_an_execution_may_have_are_found_again_whatever_their_order() {
+    const EFFECTS: i64 = 100_000;
+    let (mut recorder, ids) = recorder();
+    let effect = |number: i64| record!(acts: "acts {number}", number);
+    recorder.enter(Some(0), 0);
+    for number in (0..EFFECTS).chain([7, 7]) {
+        recorder.write(stamp(&ids), Phase::Effect, &effect(number), &[]);
+    }
+    assert_eq!(recorder.batch.len(), 100_002, "within an execution each is an effect of its own");
+    recorder.enter(Some(0), 1);
+    for number in (0..EFFECTS).rev() {
+        recorder.write(stamp(&ids), Phase::Effect, &effect(number), &[]);
+        assert_eq!(recorder.cause(), Cause(number as u64 + 1), "the oldest of equal ones");
+    }
+    assert_eq!(recorder.batch.len(), 100_002);
+    recorder.write(stamp(&ids), Phase::Effect, &effect(EFFECTS), &[]);
+    assert_eq!(recorder.batch.len(), 100_003, "a new one");
+}
+
+/// Code of a library may name as many entries as an execution may have records.
+#[test]
+fn the_newest_change_is_found_among_as_many_entries_as_an_execution_may_name() {
+    let (mut recorder, ids) = recorder();
+    let names: Vec<&'static str> = (0..100_000).map(|number| &*format!("entry {number}").leak()).collect();
+    recorder.enter(Some(0), 0);
+    recorder.write(stamp(&ids), Phase::Symptom, &record!("looks"), &[]);
+    for name in names.iter().chain(&names) {
+        recorder.changed(stamp(&ids), name, Value::Integer(1), Value::Integer(2));
+    }
+    recorder.enter(Some(1), 0);
+    let senses = [names[0].to_owned(), names[3].to_owned(), "another".to_owned()];
+    recorder.write(stamp(&ids), Phase::Symptom, &record!("has a job"), &senses);
+    assert_eq!(causes(&recorder).last(), Some(&(200_002, 100_005)), "the second change of the fourth entry");
+}
+
 const HEAD: &str = r#"{"journal":1,"seed":7,"clock":"virtual","components":[{"name":"A","id":"1"}]}"#;
 
 fn refused(text: &str) -> String {
