@@ -421,7 +421,8 @@ impl<'a> Context<'a> {
     }
 
     /// Says whether this component has work left. The run ends by itself when at least one component voted and all that
-    /// voted `Open` or `Done` are [`Work::Done`].
+    /// voted `Open` or `Done` are [`Work::Done`]. If the component publishes events in the same execution, the run
+    /// continues for three of its longest periods, so that these are read.
     pub fn vote(&mut self, work: Work) {
         self.host.vote(work);
     }

@@ -18,6 +18,32 @@ fn the_run_ends_when_all_who_voted_see_no_work_left() {
 }
 
 #[test]
+fn a_run_does_not_end_before_the_last_event_of_who_has_no_work_left_is_read() {
+    check(
+        "A actor period=10 publishes=TALK each=[0: open; 2: say last words; 2: done]
+         B actor period=20 delay=5 subscribes=TALK each=[1: hear]",
+        1000,
+        "[0.025 s] B: hears [last words]
+         Done after 0.08 s",
+    );
+    // Who goes on to talk keeps no run from its end.
+    check(
+        "A actor period=10 publishes=TALK each=[say again; done]
+         B actor period=10 subscribes=TALK each=[0: hear]",
+        1000,
+        "[0.000 s] B: hears [again]
+         Done after 0.03 s",
+    );
+    // A state is no event: the newest one is kept, and nobody has to read it.
+    check(
+        "A actor period=10 publishes=TABLE each=[2: put 1 10; 2: done]
+         B actor period=10 subscribes=TABLE",
+        1000,
+        "Done after 0.02 s",
+    );
+}
+
+#[test]
 fn who_sees_work_again_takes_its_vote_back() {
     check(
         "A actor period=10 each=[0: done; 2: done]

@@ -108,6 +108,15 @@ fn luggage_that_nobody_is_left_for_stays_open_and_the_run_ends_incomplete() {
 }
 
 #[test]
+fn a_breakdown_that_is_the_last_event_of_a_scenario_happens_before_the_run_ends() {
+    for scenario in ["at 3s breakdown 2", "at 1s luggage (1,0) to (1,1); at 20s breakdown 2"] {
+        let report = Fleet::of_text(with_scenario(scenario)).run(1, HOUR);
+        assert_eq!(section(&report, "robots")["broken"], json!(1), "{scenario}");
+        assert_eq!(section(&report, "robots")["by_path"]["Robot2"]["state"], json!("broken"), "{scenario}");
+    }
+}
+
+#[test]
 fn a_robot_that_breaks_down_twice_is_one_broken_robot() {
     let scenario = "at 1s breakdown 1; at 2s breakdown 1; at 3s breakdown 2; at 4s end";
     let report = Fleet::of_text(with_scenario(scenario)).run(1, HOUR);

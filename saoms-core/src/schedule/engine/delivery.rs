@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use saoms_api::host::SharedMessage;
+use saoms_api::host::{SharedMessage, TopicKind};
 use saoms_api::{Level, Time};
 use saoms_lang::assembly::Loss;
 
@@ -46,7 +46,7 @@ impl Engine {
         }
         part.sent_bytes = 0;
         self.standstill.note_effect(now);
-        if std::mem::take(&mut part.has_raised) && self.phase == RunPhase::Running {
+        if (std::mem::take(&mut part.has_raised) || self.says_last_words(part)) && self.phase == RunPhase::Running {
             self.settle(now);
         }
         self.slots[part.index as usize].statistics.sent += part.outbox.len() as u64;
@@ -67,6 +67,15 @@ impl Engine {
                 }
             }
         }
+    }
+
+    /// True if the outbox has an event, and its component sees no work left from now on: the event has to be read
+    /// before the run ends.
+    #[inline]
+    fn says_last_words(&self, part: &Part) -> bool {
+        part.vote.is_some_and(|vote| vote.is_done())
+            && self.slots[part.index as usize].sees_work != Some(false)
+            && part.outbox.iter().any(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event)
     }
 
     /// Puts a message into its topic, and triggers the components that react to it.

@@ -21,6 +21,11 @@ pub(crate) struct Ballot {
 }
 
 impl Ballot {
+    /// True if its component said that no work is left.
+    pub(crate) fn is_done(self) -> bool {
+        self.left == Some(false)
+    }
+
     pub(crate) fn mark(&mut self, work: Work) {
         match work {
             Work::Open => self.left = Some(true),
