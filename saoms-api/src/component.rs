@@ -295,7 +295,7 @@ pub trait Component: Derived + Send + Sized + 'static {
 
     /// What an operator wants to know of the component now, as named values: asked between two executions when somebody
     /// looks at the running fleet (`saoms status`). What the program counts itself (executions, failures, messages) is
-    /// not among them. It is quick, and changes nothing.
+    /// not among them. It is quick, and changes nothing. Two values of the same name are a failure.
     ///
     /// ```
     /// use saoms_api::{Class, Component, Own, ReportValue};

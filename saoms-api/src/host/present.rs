@@ -253,6 +253,14 @@ pub fn everywhere() -> Vec<(u64, Option<(&'static Owner, Function)>)> {
     all.iter().map(|call| (call.changes.load(Ordering::Relaxed), call.read())).collect()
 }
 
+/// The code of a component that a thread runs now, if a library has it, as ``function of library `./libarm.so` ``.
+pub fn present_code(component: &str) -> Option<String> {
+    let own = format!("component `{component}` of ");
+    let mut calls = everywhere().into_iter().filter_map(|(_, call)| call);
+    let found = calls.find_map(|(owner, function)| Some((function, owner.text.strip_prefix(&own)?)));
+    found.map(|(function, library)| format!("{} of {library}", function.name()))
+}
+
 /// What a host looks at when code of a library that begins has returned.
 type Look = fn(&'static Owner, Function);
 

@@ -1,11 +1,13 @@
 //! The status of a running fleet, as operators see it.
 
-use saoms_api::Time;
+use std::collections::HashSet;
+
 use saoms_api::extension::RunSummary;
+use saoms_api::{Failure, ReportValue, Time};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use crate::report::ComponentReport;
+use crate::report::{ComponentReport, json};
 
 /// A snapshot of a running fleet.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -120,6 +122,40 @@ pub(crate) struct Description {
     pub(crate) at: Time,
     pub(crate) waits_for: Option<String>,
     pub(crate) values: Map<String, Value>,
+}
+
+/// The values of a status by their names.
+///
+/// # Errors
+/// A name stands twice: one of the two would be lost without a word.
+pub(crate) fn named_values(values: &[(String, ReportValue)]) -> Result<Map<String, Value>, Failure> {
+    let mut named = Map::new();
+    for (name, value) in values {
+        has_own_names(value)?;
+        if named.insert(name.clone(), json(value)).is_some() {
+            return Err(twice(name));
+        }
+    }
+    Ok(named)
+}
+
+fn has_own_names(value: &ReportValue) -> Result<(), Failure> {
+    match value {
+        ReportValue::List(values) => values.iter().try_for_each(has_own_names),
+        ReportValue::Map(values) => {
+            let mut names = HashSet::new();
+            values.iter().try_for_each(
+                |(name, value)| {
+                    if names.insert(name) { has_own_names(value) } else { Err(twice(name)) }
+                },
+            )
+        }
+        _ => Ok(()),
+    }
+}
+
+fn twice(name: &str) -> Failure {
+    Failure::new(format!("its status has `{name}` twice: give each value a name of its own"))
 }
 
 /// The summaries of counts so far.

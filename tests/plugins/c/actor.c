@@ -221,6 +221,38 @@ static SaomsStatus shutdown(void *component, const SaomsHostHandle *host, SaomsS
     return SaomsStatus_OK;
 }
 
+/* What it says of itself: as it should, or as `does` names it. */
+static SaomsStatus status(void *component, SaomsSink values, SaomsSink error) {
+    static const char *const said[][2] = {
+        {"names twice", "{\"level\": 1, \"level\": 2}"},
+        {"names twice inside", "{\"motors\": [{\"left\": 1, \"left\": 2}]}"},
+        {"half an object", "{\"level\": "},
+        {"two objects", "{} {}"},
+        {"a list", "[1, 2]"},
+        {"bytes", "{\"level\": \"\xff\"}"},
+        {"nothing", ""},
+    };
+    const Actor *actor = component;
+    size_t at;
+    act(actor, "status");
+    if (strcmp(actor->at, "status") == 0) {
+        for (at = 0; at < sizeof said / sizeof said[0]; at++) {
+            if (strcmp(actor->does, said[at][0]) == 0) {
+                values.put(values.state, saoms_text(said[at][1]));
+                return SaomsStatus_OK;
+            }
+        }
+        if (strcmp(actor->does, "fail") == 0) {
+            return saoms_fail(error, "nobody knows");
+        }
+        if (strcmp(actor->does, "odd") == 0) {
+            return (SaomsStatus)77;
+        }
+    }
+    values.put(values.state, saoms_text("{\"level\": 80.5, \"most\": 18446744073709551615, \"at\": [3, -1], \"on\": null}"));
+    return SaomsStatus_OK;
+}
+
 static SaomsStatus serve(void *component, const SaomsHostHandle *host, SaomsBytes service, uint32_t operation,
                          SaomsBytes arguments, SaomsSink reply, SaomsSink error) {
     (void)component, (void)host, (void)service, (void)operation, (void)arguments, (void)reply, (void)error;
@@ -333,7 +365,7 @@ SAOMS_EXPORT const SaomsPluginTable *actor_plugin(uint32_t version) {
     static SaomsPluginTable table = {.size = sizeof table, .version = SAOMS_ABI_VERSION, .class_count = 1, .loop_count = 1};
     (void)version;
     /* Used in all cases, so that a compiler says nothing. */
-    (void)component_table, (void)loop_table, (void)effect_for_ever;
+    (void)component_table, (void)loop_table, (void)effect_for_ever, (void)status;
     classes[0] = CLASS;
     table.classes = CLASSES;
     table.loops = loops;

@@ -3,6 +3,7 @@
 mod hang;
 mod orders;
 mod places;
+mod status;
 mod topics;
 
 use std::fs;

@@ -7,7 +7,8 @@ use saoms_api::boundary::{Lease, PropertyViews, call, call_for_bytes, call_with_
 use saoms_api::host::present::{Function, Owner, enter, looked_after, subject};
 use saoms_api::host::{DynComponent, Invocation, PropertyValue, SmolStr};
 use saoms_api::{CallError, Context, Failure, ReportValue, Saved};
-use serde_json::{Map, Value};
+
+use super::status::read_status;
 
 /// A class of a plugin.
 #[derive(Clone, Copy, Debug)]
@@ -209,12 +210,7 @@ impl DynComponent for ImportedComponent {
         let _entered = enter(self.owner, Function::Status);
         // SAFETY: as in `save`.
         call_for_bytes(&mut bytes, |values, error| unsafe { status(instance, values, error) })?;
-        if bytes.is_empty() {
-            return Ok(Vec::new());
-        }
-        let values: Result<Map<String, Value>, _> = serde_json::from_slice(&bytes);
-        let values = values.map_err(|error| Failure::new(format!("its status is not one JSON object: {error}")))?;
-        Ok(values.into_iter().map(|(name, value)| (name, report_value(value))).collect())
+        read_status(&bytes)
     }
 }
 
@@ -223,21 +219,5 @@ impl Drop for ImportedComponent {
         let _entered = enter(self.owner, Function::Destroy);
         // SAFETY: the instance is the one that `construct` gave, and is given back once.
         unsafe { (self.table.destroy)(self.instance) }
-    }
-}
-
-/// The value of a status that a library wrote as JSON.
-fn report_value(value: Value) -> ReportValue {
-    match value {
-        Value::Null => ReportValue::Null,
-        Value::Bool(value) => value.into(),
-        Value::Number(number) => {
-            number.as_i64().map_or_else(|| number.as_f64().unwrap_or(f64::NAN).into(), ReportValue::from)
-        }
-        Value::String(text) => text.into(),
-        Value::Array(values) => ReportValue::List(values.into_iter().map(report_value).collect()),
-        Value::Object(values) => {
-            ReportValue::Map(values.into_iter().map(|(name, value)| (name, report_value(value))).collect())
-        }
     }
 }

@@ -3,6 +3,7 @@
 mod component;
 mod looping;
 mod rule;
+mod status;
 
 pub use component::ImportedClass;
 pub use looping::ImportedLoopClass;

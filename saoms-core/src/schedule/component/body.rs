@@ -11,11 +11,10 @@ use super::spent::Spent;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
-use crate::report::json;
 use crate::schedule::engine::votes::Ballot;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::RegisteredStop;
-use crate::status::Description;
+use crate::status::{Description, named_values};
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_lang::assembly::ComponentSpec;
@@ -229,7 +228,7 @@ impl Body {
     fn describe(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
         let told = self.call(shared, |instance, _| Ok::<_, Failure>((instance.waits_for()?, instance.status()?)));
         let (waits_for, values) = told??;
-        let values = values.iter().map(|(name, value)| (name.clone(), json(value))).collect();
+        let values = named_values(&values)?;
         let at = Time::from_nanos(if shared.clock.is_virtual() { self.part.now } else { shared.clock.now() });
         self.part.described = Some(Arc::new(Description { at, waits_for, values }));
         Ok(())

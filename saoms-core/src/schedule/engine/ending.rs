@@ -1,5 +1,7 @@
 use std::sync::atomic::Ordering;
 
+use saoms_api::host::present::present_code;
+
 use super::slot::SlotState;
 use super::{Engine, RunPhase};
 use crate::assemble::ChangePlan;
@@ -73,7 +75,8 @@ impl Engine {
             let stuck = slot.body.is_none() && slot.state != SlotState::Abandoned;
             if stuck && only.is_none_or(|only| only == index) {
                 slot.state = SlotState::Abandoned;
-                self.reasons.push(format!("component `{}` {why}", slot.name));
+                let code = present_code(&slot.name).map(|code| format!(": {code} has not returned"));
+                self.reasons.push(format!("component `{}` {why}{}", slot.name, code.unwrap_or_default()));
                 self.note_return();
                 self.emit(now, index, Occurrence::Abandoned);
                 self.stops.request_of(index);
