@@ -1,15 +1,18 @@
-//! The client of the server: HTTP/1.0 over the Unix socket.
+//! The client of the server: HTTP/1.0 over the Unix socket, or over the network.
 
 use std::fmt;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
+use std::net::TcpStream;
 use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use serde_json::Value;
 
 use crate::description::FleetDescription;
-use crate::place::{folder, remove_if_dead};
+use crate::network::server_of;
+use crate::place::{folder, remove_if_dead, token_beside};
+use crate::token::Token;
 
 /// Time for which an answer is waited for.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -19,14 +22,22 @@ const LONGEST_HEAD: u64 = 65_536;
 /// A client of a running fleet.
 #[derive(Clone, Debug)]
 pub struct Client {
-    socket: PathBuf,
+    place: Place,
+}
+
+/// Where a fleet is reached.
+#[derive(Clone, Debug)]
+enum Place {
+    Socket(PathBuf),
+    /// Address and port.
+    Network(String, Token),
 }
 
 /// Error of a request.
 #[derive(Debug)]
 pub enum ClientError {
     /// No fleet answers at this socket.
-    NotReached(PathBuf, io::Error),
+    NotReached(String, io::Error),
     /// The fleet refused it, with this reason.
     Refused(String),
     /// The answer cannot be understood.
@@ -36,9 +47,7 @@ pub enum ClientError {
 impl fmt::Display for ClientError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            ClientError::NotReached(path, error) => {
-                write!(formatter, "no fleet answers at `{}`: {error}", path.display())
-            }
+            ClientError::NotReached(place, error) => write!(formatter, "no fleet answers at `{place}`: {error}"),
             ClientError::Refused(reason) => formatter.write_str(reason),
             ClientError::Malformed(what) => write!(formatter, "the answer of the fleet cannot be understood: {what}"),
         }
@@ -50,7 +59,7 @@ impl std::error::Error for ClientError {}
 /// The answer to a request: its body.
 #[derive(Debug)]
 pub struct Response {
-    body: BufReader<UnixStream>,
+    body: BufReader<Box<dyn Connection>>,
 }
 
 impl Response {
@@ -68,7 +77,7 @@ impl Response {
     /// ends with the fleet.
     pub fn events(mut self) -> impl Iterator<Item = (String, String)> + use<> {
         // Nothing may happen for long.
-        let _ = self.body.get_ref().set_read_timeout(None);
+        let _ = self.body.get_ref().be_patient(None);
         std::iter::from_fn(move || {
             let (mut name, mut data, mut line) = ("message".to_owned(), None::<String>, String::new());
             loop {
@@ -97,12 +106,32 @@ impl Response {
 impl Client {
     /// A client of the fleet at this socket.
     pub fn new(socket: impl Into<PathBuf>) -> Client {
-        Client { socket: socket.into() }
+        Client { place: Place::Socket(socket.into()) }
     }
 
-    /// The path of the socket.
-    pub fn socket(&self) -> &Path {
-        &self.socket
+    /// A client of the fleet at this address of the network, as `http://127.0.0.1:8080`.
+    ///
+    /// # Errors
+    /// It is no such address.
+    pub fn of_network(url: &str, token: Token) -> io::Result<Client> {
+        Ok(Client { place: Place::Network(server_of(url)?, token) })
+    }
+
+    /// The path of its socket, or its address.
+    pub fn place(&self) -> String {
+        match &self.place {
+            Place::Socket(path) => path.display().to_string(),
+            Place::Network(server, _) => format!("http://{server}"),
+        }
+    }
+
+    fn connect(&self) -> io::Result<Box<dyn Connection>> {
+        let stream: Box<dyn Connection> = match &self.place {
+            Place::Socket(path) => Box::new(UnixStream::connect(path)?),
+            Place::Network(server, _) => Box::new(TcpStream::connect(server)?),
+        };
+        stream.be_patient(Some(PATIENCE))?;
+        Ok(stream)
     }
 
     /// Sends a request, such as `GET /v1/status`, with a body of text.
@@ -110,13 +139,15 @@ impl Client {
     /// # Errors
     /// The fleet does not answer, or refuses it.
     pub fn request(&self, method: &str, path: &str, body: &str) -> Result<Response, ClientError> {
-        let unreached = |error| ClientError::NotReached(self.socket.clone(), error);
-        let mut stream = UnixStream::connect(&self.socket).map_err(unreached)?;
-        stream.set_read_timeout(Some(PATIENCE)).map_err(unreached)?;
-        stream.set_write_timeout(Some(PATIENCE)).map_err(unreached)?;
+        let unreached = |error| ClientError::NotReached(self.place(), error);
+        let mut stream = self.connect().map_err(unreached)?;
         let length = body.len();
+        let (host, authorization) = match &self.place {
+            Place::Socket(_) => ("localhost", String::new()),
+            Place::Network(server, token) => (&**server, format!("Authorization: {}\r\n", token.authorization())),
+        };
         let head = format!(
-            "{method} {path} HTTP/1.0\r\nHost: localhost\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: {length}\r\n\r\n"
+            "{method} {path} HTTP/1.0\r\nHost: {host}\r\n{authorization}Content-Type: text/plain; charset=utf-8\r\nContent-Length: {length}\r\n\r\n"
         );
         stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body.as_bytes())).map_err(unreached)?;
         let mut answer = BufReader::new(stream);
@@ -142,8 +173,28 @@ impl Client {
     }
 }
 
+/// A connection to a server.
+trait Connection: Read + Write + Send + fmt::Debug {
+    /// Sets the time for which an answer is waited for; `None` is for ever.
+    fn be_patient(&self, time: Option<Duration>) -> io::Result<()>;
+}
+
+impl Connection for UnixStream {
+    fn be_patient(&self, time: Option<Duration>) -> io::Result<()> {
+        self.set_read_timeout(time)?;
+        self.set_write_timeout(time)
+    }
+}
+
+impl Connection for TcpStream {
+    fn be_patient(&self, time: Option<Duration>) -> io::Result<()> {
+        self.set_read_timeout(time)?;
+        self.set_write_timeout(time)
+    }
+}
+
 /// Reads the head of an answer, and gives its status.
-fn read_head(answer: &mut BufReader<UnixStream>) -> io::Result<u16> {
+fn read_head(answer: &mut impl BufRead) -> io::Result<u16> {
     let mut head = answer.by_ref().take(LONGEST_HEAD);
     let mut line = String::new();
     head.read_line(&mut line)?;
@@ -170,7 +221,9 @@ pub fn running() -> Vec<(Client, FleetDescription)> {
             match client.description() {
                 Ok(description) => Some((client, description)),
                 Err(_) => {
-                    let _ = remove_if_dead(&path);
+                    if remove_if_dead(&path).is_ok() {
+                        let _ = std::fs::remove_file(token_beside(&path));
+                    }
                     None
                 }
             }

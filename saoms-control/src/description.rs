@@ -15,6 +15,12 @@ pub struct FleetDescription {
     pub started: u64,
     /// True if it runs in virtual time.
     pub is_virtual: bool,
+    /// Its address on the network, as `http://127.0.0.1:8080`.
+    #[serde(default)]
+    pub url: Option<String>,
+    /// The file with the token for that.
+    #[serde(default)]
+    pub token_file: Option<String>,
     /// The seed of all chance.
     pub seed: u64,
 }

@@ -1,19 +1,23 @@
 //! Control of running fleets: a server in the program of a fleet, and its client.
 //!
-//! The server speaks HTTP on a Unix socket of the user, with threads of its own: the timer of the fleet never waits for
-//! it. `openapi` describes its routes. Commands such as `saoms status` use the [`Client`]; so does any program that
-//! speaks HTTP, such as `curl --unix-socket`.
+//! The server speaks HTTP on a Unix socket of the user, and on the network for clients with its token. It has threads
+//! of its own: the timer of the fleet never waits for it. `openapi` describes its routes. Commands such as
+//! `saoms status` use the [`Client`]; so does any program that speaks HTTP, such as `curl --unix-socket`.
 
 mod client;
 mod description;
 mod log;
+mod network;
 mod place;
 mod server;
+mod token;
 mod topics;
 
 pub use client::{Client, ClientError, Response, running};
 pub use description::FleetDescription;
 pub use log::{LogLine, LogTail};
-pub use place::{Listener, default_socket};
-pub use server::{ControlServer, ControlledFleet, openapi};
+pub use network::{NetworkError, NetworkListener};
+pub use place::{Listener, default_socket, token_beside};
+pub use server::{ControlServer, ControlledFleet, Places, openapi};
+pub use token::{Token, TokenFile};
 pub use topics::TopicWatch;

@@ -1,4 +1,4 @@
-//! Where the sockets of running fleets are.
+//! Where the sockets of running fleets are, and the other files that only their user may use.
 
 use std::env;
 use std::fs::{self, DirBuilder, Permissions};
@@ -16,7 +16,7 @@ pub(crate) fn folder() -> PathBuf {
     }
 }
 
-fn user() -> u32 {
+pub(crate) fn user() -> u32 {
     // SAFETY: it takes nothing and cannot fail.
     unsafe { libc::geteuid() }
 }
@@ -29,16 +29,23 @@ pub fn default_socket(name: &str, pid: u32) -> PathBuf {
     folder().join(format!("{}-{pid}.sock", name.trim_start_matches('.')))
 }
 
+/// The file beside a socket with the token for the network.
+pub fn token_beside(socket: &Path) -> PathBuf {
+    let mut file = socket.as_os_str().to_owned();
+    file.push(".token");
+    file.into()
+}
+
 /// A socket on which a fleet listens. The file is removed when it is dropped.
 #[derive(Debug)]
 pub struct Listener {
     pub(crate) socket: UnixListener,
-    pub(crate) file: SocketFile,
+    pub(crate) file: OwnFile,
 }
 
-/// The file of a socket.
+/// A file of this program, removed when it is dropped.
 #[derive(Debug)]
-pub(crate) struct SocketFile {
+pub(crate) struct OwnFile {
     path: PathBuf,
     /// Device and inode.
     identity: (u64, u64),
@@ -50,9 +57,7 @@ impl Listener {
     /// # Errors
     /// The folder cannot be made or belongs to somebody else, a program listens there, or the file is no socket.
     pub fn bind(path: &Path) -> io::Result<Listener> {
-        if let Some(parent) = path.parent().filter(|parent| *parent == folder()) {
-            make_private(parent)?;
-        }
+        in_own_folder(path)?;
         let socket = match UnixListener::bind(path) {
             Err(error) if error.kind() == ErrorKind::AddrInUse => {
                 remove_if_dead(path)?;
@@ -61,20 +66,31 @@ impl Listener {
             bound => bound?,
         };
         fs::set_permissions(path, Permissions::from_mode(0o600))?;
-        let metadata = fs::symlink_metadata(path)?;
-        let file = SocketFile { path: path.to_owned(), identity: (metadata.dev(), metadata.ino()) };
-        Ok(Listener { socket, file })
+        Ok(Listener { socket, file: OwnFile::of(path)? })
     }
 }
 
-impl Drop for SocketFile {
+impl OwnFile {
+    /// The file that is at a path now.
+    pub(crate) fn of(path: &Path) -> io::Result<OwnFile> {
+        let metadata = fs::symlink_metadata(path)?;
+        Ok(OwnFile { path: path.to_owned(), identity: (metadata.dev(), metadata.ino()) })
+    }
+}
+
+impl Drop for OwnFile {
     fn drop(&mut self) {
-        // Another program may have put its own socket there.
+        // Another program may have put its own file there.
         let is_own = fs::symlink_metadata(&self.path).is_ok_and(|file| (file.dev(), file.ino()) == self.identity);
         if is_own {
             let _ = fs::remove_file(&self.path);
         }
     }
+}
+
+/// Makes the folder of a file if it is that of the user's fleets.
+pub(crate) fn in_own_folder(path: &Path) -> io::Result<()> {
+    path.parent().filter(|parent| *parent == folder()).map_or(Ok(()), make_private)
 }
 
 /// Makes a folder that only the user can use.

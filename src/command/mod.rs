@@ -44,7 +44,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Run(run::RunArguments),
+    Run(Box<run::RunArguments>),
     Check(check::CheckArguments),
     Explain(explain::ExplainArguments),
     Expand(expand::ExpandArguments),

@@ -1,4 +1,5 @@
-use axum::http::StatusCode;
+use axum::http::header::WWW_AUTHENTICATE;
+use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
@@ -20,6 +21,25 @@ impl Refusal {
         Refusal { status: StatusCode::INTERNAL_SERVER_ERROR, message: message.to_string() }
     }
 
+    pub(super) fn forbidden(message: &str) -> Refusal {
+        Refusal { status: StatusCode::FORBIDDEN, message: message.to_owned() }
+    }
+
+    pub(super) fn unauthorized() -> Refusal {
+        let message =
+            "the token is missing or wrong: `Authorization: Bearer` with the text of the token's file".to_owned();
+        Refusal { status: StatusCode::UNAUTHORIZED, message }
+    }
+
+    pub(super) fn too_long(most: usize) -> Refusal {
+        let message = format!("the body has more than {most} bytes, or broke off");
+        Refusal { status: StatusCode::PAYLOAD_TOO_LARGE, message }
+    }
+
+    pub(super) fn too_slow() -> Refusal {
+        Refusal { status: StatusCode::REQUEST_TIMEOUT, message: "the body came too slowly".to_owned() }
+    }
+
     pub(super) fn not_found() -> Refusal {
         let message = "there is no such route: `GET /v1/openapi.json` describes all".to_owned();
         Refusal { status: StatusCode::NOT_FOUND, message }
@@ -29,7 +49,11 @@ impl Refusal {
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
         let body = json!({"error": self.message}).to_string();
-        (self.status, [("content-type", "application/json")], body).into_response()
+        let mut response = (self.status, [("content-type", "application/json")], body).into_response();
+        if self.status == StatusCode::UNAUTHORIZED {
+            response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+        }
+        response
     }
 }
 

@@ -6,6 +6,7 @@ use axum::body::Bytes;
 use saoms_core::schedule::Handle;
 use serde_json::json;
 
+use super::connections::ClientCounts;
 use crate::description::FleetDescription;
 use crate::log::LogTail;
 use crate::topics::TopicWatch;
@@ -30,6 +31,8 @@ pub struct ControlledFleet {
     pub(super) send: Box<SendLine>,
     /// Ends the fleet.
     pub(super) down: Box<dyn Fn() + Send + Sync>,
+    /// What is counted of its clients.
+    pub(super) counts: Arc<ClientCounts>,
     /// The last snapshot and its time.
     snapshot: Mutex<Option<(Instant, Bytes)>>,
 }
@@ -44,8 +47,17 @@ impl ControlledFleet {
         send: impl Fn(&str) -> Result<u64, String> + Send + Sync + 'static,
         down: impl Fn() + Send + Sync + 'static,
     ) -> ControlledFleet {
-        let snapshot = Mutex::default();
-        ControlledFleet { description, handle, log, topics, send: Box::new(send), down: Box::new(down), snapshot }
+        let (send, down) = (Box::new(send), Box::new(down));
+        ControlledFleet {
+            description,
+            handle,
+            log,
+            topics,
+            send,
+            down,
+            counts: Arc::default(),
+            snapshot: Mutex::default(),
+        }
     }
 
     /// The snapshot, if it is new enough.

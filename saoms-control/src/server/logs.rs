@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use axum::response::IntoResponse;
 use axum::response::sse::{Event, KeepAlive, Sse};
@@ -12,6 +13,8 @@ use tokio::sync::broadcast::Receiver;
 use tokio::sync::broadcast::error::RecvError;
 
 use super::answer::{Answer, json_text};
+use super::connections::ClientCounts;
+use super::fleet::ControlledFleet;
 use crate::log::{LogLine, LogTail};
 
 /// The newest lines as a JSON list.
@@ -23,23 +26,26 @@ pub(super) fn newest(log: &LogTail, most: usize) -> Answer {
 
 /// The newest lines and all that follow, an event each: `data` is a line in JSON. The event `lost` says how many lines
 /// came faster than the client took them.
-pub(super) fn followed(log: &LogTail, most: usize) -> Answer {
-    let (lines, new) = log.follow(most);
-    let state = (VecDeque::from(lines), new);
-    let events = stream::unfold(state, |(mut lines, mut new)| async move {
+pub(super) fn followed(fleet: &ControlledFleet, most: usize) -> Answer {
+    let (lines, new) = fleet.log.follow(most);
+    let state = (VecDeque::from(lines), new, Arc::clone(&fleet.counts));
+    let events = stream::unfold(state, |(mut lines, mut new, counts)| async move {
         let event = match lines.pop_front() {
             Some(line) => shown(&line),
-            None => next(&mut new).await?,
+            None => next(&mut new, &counts).await?,
         };
-        Some((Ok::<_, Infallible>(event), (lines, new)))
+        Some((Ok::<_, Infallible>(event), (lines, new, counts)))
     });
     Ok(Sse::new(events).keep_alive(KeepAlive::default()).into_response())
 }
 
-async fn next(new: &mut Receiver<Arc<LogLine>>) -> Option<Event> {
+async fn next(new: &mut Receiver<Arc<LogLine>>, counts: &ClientCounts) -> Option<Event> {
     match new.recv().await {
         Ok(line) => Some(shown(&line)),
-        Err(RecvError::Lagged(lost)) => Some(Event::default().event("lost").data(lost.to_string())),
+        Err(RecvError::Lagged(lost)) => {
+            counts.lost.fetch_add(lost, Ordering::Relaxed);
+            Some(Event::default().event("lost").data(lost.to_string()))
+        }
         Err(RecvError::Closed) => None,
     }
 }

@@ -1,6 +1,8 @@
 //! The server in the program of a fleet.
 
+mod access;
 mod answer;
+mod connections;
 mod fleet;
 mod logs;
 mod routes;
@@ -12,13 +14,18 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use axum::Router;
+use axum::middleware::from_fn_with_state;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
 pub use fleet::ControlledFleet;
 pub use routes::openapi;
 
-use crate::place::{Listener, SocketFile};
+use access::{Access, guarded};
+use connections::serve;
+
+use crate::network::NetworkListener;
+use crate::place::{Listener, OwnFile};
 
 /// Time for clients that follow the log to take its last lines when the server ends.
 const FAREWELL: Duration = Duration::from_millis(100);
@@ -30,35 +37,51 @@ pub struct ControlServer {
     end: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
     /// Removed after the server has ended.
-    _file: SocketFile,
+    _file: Option<OwnFile>,
+}
+
+/// The places at which a fleet is reached.
+#[derive(Debug, Default)]
+pub struct Places {
+    /// A socket of the user.
+    pub socket: Option<Listener>,
+    /// An address of the network.
+    pub network: Option<NetworkListener>,
 }
 
 impl ControlServer {
-    /// Serves a fleet.
+    /// Serves a fleet at these places.
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn start(listener: Listener, fleet: ControlledFleet) -> io::Result<ControlServer> {
-        let Listener { socket, file } = listener;
-        socket.set_nonblocking(true)?;
+    pub fn start(places: Places, fleet: ControlledFleet) -> io::Result<ControlServer> {
+        let Places { socket, network } = places;
+        let (socket, file) = socket.map(|Listener { socket, file }| (socket, file)).unzip();
         let runtime = Builder::new_current_thread().enable_all().thread_name("saoms-control").build()?;
-        let socket = {
-            let _entered = runtime.enter();
-            tokio::net::UnixListener::from_std(socket)?
-        };
-        let (end, ended) = oneshot::channel::<()>();
-        let log = Arc::clone(&fleet.log);
+        let (log, counts) = (Arc::clone(&fleet.log), Arc::clone(&fleet.counts));
         let router: Router = routes::router(Arc::new(fleet));
+        {
+            let _entered = runtime.enter();
+            if let Some(socket) = socket {
+                socket.set_nonblocking(true)?;
+                let socket = tokio::net::UnixListener::from_std(socket)?;
+                runtime.spawn(serve(socket, router.clone(), Arc::clone(&counts)));
+            }
+            if let Some(NetworkListener { socket, token, names, .. }) = network {
+                socket.set_nonblocking(true)?;
+                let socket = tokio::net::TcpListener::from_std(socket)?;
+                let access = Access { names, token, counts: Arc::clone(&counts) };
+                let router = router.layer(from_fn_with_state(Arc::new(access), guarded));
+                runtime.spawn(serve(socket, router, counts));
+            }
+        }
+        let (end, ended) = oneshot::channel::<()>();
         let serve = move || {
             runtime.block_on(async {
-                let serve = axum::serve(socket, router).into_future();
-                tokio::select! {
-                    _ = serve => {}
-                    _ = ended => {
-                        if log.is_followed() {
-                            tokio::time::sleep(FAREWELL).await;
-                        }
-                    }
+                // Dropping its other end is the order to end.
+                let _ = ended.await;
+                if log.is_followed() {
+                    tokio::time::sleep(FAREWELL).await;
                 }
             });
             // A call that hangs in a component must not keep the program.

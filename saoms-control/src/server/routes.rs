@@ -4,20 +4,20 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::{DefaultBodyLimit, Path, Query, State};
+use axum::extract::{Path, Query, State};
+use axum::middleware::from_fn;
 use axum::routing::{MethodRouter, get, post, put};
 use saoms_api::host::parse_duration;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use super::access::with_body;
 use super::answer::{Answer, Refusal, done, json_text, waiting};
 use super::fleet::ControlledFleet;
 use super::{logs, topics};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
-/// The most bytes of the body of a request.
-const LONGEST_BODY: usize = 65_536;
 /// The lines of the log that a client gets unless it says how many.
 const LINES: usize = 100;
 
@@ -143,7 +143,7 @@ pub(super) fn router(fleet: Arc<ControlledFleet>) -> Router {
         router = router.route(route.path, (route.serve)());
     }
     let router = router.fallback(|| async { Refusal::not_found() });
-    router.layer(DefaultBodyLimit::max(LONGEST_BODY)).with_state(fleet)
+    router.layer(from_fn(with_body)).with_state(fleet)
 }
 
 /// The OpenAPI document of the server.
@@ -196,7 +196,7 @@ struct LogQuery {
 async fn log_lines(State(fleet): Fleet, Query(query): Query<LogQuery>) -> Answer {
     let most = query.lines.unwrap_or(LINES);
     match query.follow {
-        true => logs::followed(&fleet.log, most),
+        true => logs::followed(&fleet, most),
         false => logs::newest(&fleet.log, most),
     }
 }

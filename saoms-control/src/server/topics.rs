@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use axum::extract::{Path, State};
 use axum::response::IntoResponse;
@@ -23,12 +24,16 @@ pub(super) async fn list(State(fleet): Fleet) -> Answer {
 /// them.
 pub(super) async fn echo(State(fleet): Fleet, Path(topic): Path<String>) -> Answer {
     let follower = fleet.topics.follow(&topic, &fleet.handle).map_err(Refusal::unprocessable)?;
-    let events = stream::unfold(follower, |mut follower| async move {
+    let counts = Arc::clone(&fleet.counts);
+    let events = stream::unfold((follower, counts), |(mut follower, counts)| async move {
         let event = match follower.next().await? {
             Ok(message) => Event::default().data(&*message),
-            Err(lost) => Event::default().event("lost").data(lost.to_string()),
+            Err(lost) => {
+                counts.lost.fetch_add(lost, Ordering::Relaxed);
+                Event::default().event("lost").data(lost.to_string())
+            }
         };
-        Some((Ok::<_, Infallible>(event), follower))
+        Some((Ok::<_, Infallible>(event), (follower, counts)))
     });
     Ok(Sse::new(events).keep_alive(KeepAlive::default()).into_response())
 }

@@ -2,21 +2,30 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::io::{Read, Write};
-use std::os::unix::net::UnixStream;
+mod hostile;
+mod network;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use saoms_control::{Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, TopicWatch, openapi};
+use saoms_control::{
+    Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkListener, Places, Token,
+    TokenFile, TopicWatch, openapi,
+};
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
 use tempfile::TempDir;
 
-/// A server for a fleet without components, in virtual time.
+/// A server for a fleet without components, in virtual time, on a socket and on the network.
 struct Served {
     client: Client,
+    of_network: Client,
+    /// Address and port.
+    address: String,
+    /// The file with the token.
+    token: PathBuf,
     downs: Arc<AtomicUsize>,
     socket: PathBuf,
     _server: ControlServer,
@@ -40,6 +49,8 @@ fn served() -> Served {
         version: "1".to_owned(),
         started: 1,
         is_virtual: true,
+        url: None,
+        token_file: None,
         seed: 1,
     };
     let downs = Arc::new(AtomicUsize::new(0));
@@ -49,8 +60,14 @@ fn served() -> Served {
         counted.fetch_add(1, Ordering::SeqCst);
     };
     let controlled = ControlledFleet::new(description, fleet.handle(), (log, topics), send, down);
-    let server = ControlServer::start(Listener::bind(&socket).unwrap(), controlled).unwrap();
-    Served { client: Client::new(&socket), downs, socket, _server: server, _fleet: fleet, _folder: folder }
+    let token = folder.path().join("fleet.sock.token");
+    let network = NetworkListener::bind("127.0.0.1:0", false, TokenFile::create(&token).unwrap()).unwrap();
+    let of_network = Client::of_network(&network.url(), Token::read(&token).unwrap()).unwrap();
+    let address = network.url().strip_prefix("http://").unwrap().to_owned();
+    let places = Places { socket: Some(Listener::bind(&socket).unwrap()), network: Some(network) };
+    let server = ControlServer::start(places, controlled).unwrap();
+    let client = Client::new(&socket);
+    Served { client, of_network, address, token, downs, socket, _server: server, _fleet: fleet, _folder: folder }
 }
 
 #[test]
@@ -90,30 +107,4 @@ fn orders_are_taken_or_refused_with_a_reason() {
     while downs.load(Ordering::SeqCst) == 0 {
         std::thread::sleep(Duration::from_millis(1));
     }
-}
-
-#[test]
-fn what_is_no_request_harms_nothing() {
-    let served = served();
-    let oversized = "x".repeat(1_000_000);
-    let refused = served.client.request("POST", "/v1/events", &oversized);
-    assert!(refused.is_err());
-    for number in 0..2000_u32 {
-        let mut stream = UnixStream::connect(&served.socket).unwrap();
-        let bytes = match number % 8 {
-            0 => b"GET /v1/status".to_vec(),
-            1 => vec![0xff; 300],
-            2 => format!("GET /{} HTTP/1.1\r\nHost: x\r\n\r\n", "../".repeat(100)).into_bytes(),
-            3 => b"POST /v1/events HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999999999999\r\n\r\n".to_vec(),
-            4 => b"POST /v1/events HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n".to_vec(),
-            5 => b"GET /v1/logs?lines=18446744073709551616 HTTP/1.0\r\n\r\n".to_vec(),
-            6 => format!("GET / HTTP/1.1\r\n{}\r\n\r\n", "a: b\r\n".repeat(1000)).into_bytes(),
-            _ => b"PUT /v1/components/%ff/properties/%00 HTTP/1.0\r\nContent-Length: 1\r\n\r\nx".to_vec(),
-        };
-        // The server may have closed it.
-        let _ = stream.write_all(&bytes);
-        let _ = stream.shutdown(std::net::Shutdown::Write);
-        let _ = stream.read(&mut [0; 16]);
-    }
-    assert_eq!(served.client.description().unwrap().pid, 7);
 }

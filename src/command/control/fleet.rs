@@ -1,24 +1,31 @@
 //! The running fleet that a command is for.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use saoms_api::host::one_line;
 use saoms_api::rule::nearest;
-use saoms_control::{Client, ClientError, FleetDescription, Response, running};
+use saoms_control::{Client, ClientError, FleetDescription, Response, Token, running};
 use serde_json::Value;
 
 use crate::Exit;
 use crate::arguments::Format;
-use crate::output::{eprint, eprint_json, print_json};
+use crate::output::{displayed, eprint, eprint_json, print_json};
+
+/// The variable of the environment that names the file with the token.
+const TOKEN_FILE: &str = "SAOMS_TOKEN_FILE";
 
 /// Options of commands for a running fleet.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct RunningFleetArguments {
     /// The fleet, where several run on this machine: its name, its process, or the path of its socket. `saoms ps` lists
-    /// them
+    /// them. `http://ADDRESS:PORT` is one that `saoms run --serve` serves
     #[arg(long = "fleet", value_name = "NAME")]
     pub(crate) name: Option<String>,
+
+    /// The file with the token of a fleet at an address; without it, the file that `SAOMS_TOKEN_FILE` names
+    #[arg(long, value_name = "FILE", requires = "name")]
+    pub(crate) token_file: Option<PathBuf>,
 
     /// The format of the answer: for people, or JSON
     #[arg(long, value_enum, default_value_t = Format::Human)]
@@ -28,8 +35,10 @@ pub(crate) struct RunningFleetArguments {
 impl RunningFleetArguments {
     /// The fleet that is meant. Why there is none is reported.
     pub(crate) fn client(&self) -> Result<Client, Exit> {
-        if let Some(path) = self.name.as_deref().filter(|name| name.contains('/')) {
-            return Ok(Client::new(Path::new(path)));
+        match self.name.as_deref() {
+            Some(url) if url.contains("://") => return self.client_of_network(url),
+            Some(path) if path.contains('/') => return Ok(Client::new(Path::new(path))),
+            _ => {}
         }
         let all = running();
         let is_meant = |one: &FleetDescription| match self.name.as_deref() {
@@ -41,6 +50,22 @@ impl RunningFleetArguments {
             (Some((client, _)), None) => Ok(client.clone()),
             (found, _) => Err(self.refuse(&unclear(self.name.as_deref(), found.is_some(), &all), Exit::WrongInput)),
         }
+    }
+
+    fn client_of_network(&self, url: &str) -> Result<Client, Exit> {
+        let named = self.token_file.clone().or_else(|| std::env::var_os(TOKEN_FILE).map(PathBuf::from));
+        let Some(file) = named else {
+            let message = format!(
+                "the fleet at `{}` wants a token\n  = help: name its file with `--token-file`, or with `{TOKEN_FILE}`",
+                one_line(url)
+            );
+            return Err(self.refuse(&message, Exit::WrongInput));
+        };
+        let token = Token::read(&file).map_err(|error| {
+            self.refuse(&format!("the token in `{}` cannot be used: {error}", displayed(&file)), Exit::WrongInput)
+        })?;
+        Client::of_network(url, token)
+            .map_err(|error| self.refuse(&format!("`--fleet {}`: {error}", one_line(url)), Exit::WrongInput))
     }
 
     /// Sends a request to the fleet that is meant. What hinders it is reported.

@@ -32,7 +32,7 @@ pub(crate) fn ps(arguments: &PsArguments) -> Exit {
     if arguments.format == Format::Json {
         let fleet = |(client, one): &(saoms_control::Client, saoms_control::FleetDescription)| {
             let mut value = json!(one);
-            value["socket"] = Value::from(client.socket().display().to_string());
+            value["socket"] = Value::from(client.place());
             value
         };
         print_json(&fleets.iter().map(fleet).collect::<Vec<Value>>());

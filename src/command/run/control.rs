@@ -1,11 +1,17 @@
 //! The server with which operators reach the running fleet (`saoms status`, `saoms down`).
 
-use std::path::Path;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use clap::Args;
 use saoms_api::Level;
-use saoms_control::{ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, TopicWatch, default_socket};
+use saoms_api::host::one_line;
+use saoms_control::{
+    ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkError, NetworkListener, Places,
+    TokenFile, TopicWatch, default_socket, token_beside,
+};
 use saoms_core::observe::Observer;
 use saoms_core::schedule::Handle;
 
@@ -18,9 +24,27 @@ use crate::output::{displayed, eprint};
 /// The value of `--control` for a fleet that nobody can reach.
 const NONE: &str = "none";
 
-/// The place at which the fleet will be reached.
+/// Where a fleet is reached over the network.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct NetworkArguments {
+    /// Let clients with a token reach the fleet at this address, such as `127.0.0.1:8080`, beside the socket; with port
+    /// 0 the system chooses one. The token is made, in a file beside the socket, unless `--token-file` names one
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub(crate) serve: Option<String>,
+
+    /// The file with the token for `--serve`: 16 visible characters or more, which nobody else may read
+    #[arg(long, value_name = "FILE", requires = "serve")]
+    pub(crate) token_file: Option<PathBuf>,
+
+    /// Let `--serve` take an address that other machines reach, although nothing is encrypted: who listens on the way
+    /// reads the token, and can give orders
+    #[arg(long, requires = "serve")]
+    pub(crate) serve_unencrypted: bool,
+}
+
+/// The places at which the fleet will be reached.
 pub(super) struct Control {
-    listener: Listener,
+    places: Places,
     description: FleetDescription,
     /// The log of the fleet, an observer of it.
     log: Arc<LogTail>,
@@ -32,24 +56,28 @@ impl Control {
     /// Listens where the command line says, or where the commands look. In virtual time nobody listens unless that is
     /// asked for. Why a place that was named cannot be used is reported; one that was not named is done without.
     pub(super) fn of(arguments: &RunArguments, notes: &mut Vec<String>) -> Result<Option<Control>, Exit> {
-        let description = description(arguments);
-        let listener = match arguments.control.as_deref() {
-            Some(NONE) => return Ok(None),
-            None if arguments.virtual_time => return Ok(None),
-            Some(path) => Listener::bind(Path::new(path)).map_err(|error| {
-                let path = displayed(Path::new(path));
-                eprint(&format!("error: `--control {path}`: {error}\n\n1 error: nothing was started\n"));
-                Exit::WrongInput
-            })?,
-            None => match Listener::bind(&default_socket(&description.name, description.pid)) {
-                Ok(listener) => listener,
-                Err(error) => {
+        let mut description = description(arguments);
+        let usual = default_socket(&description.name, description.pid);
+        let socket = match arguments.control.as_deref() {
+            Some(NONE) => None,
+            None if arguments.virtual_time => None,
+            Some(path) => {
+                let told = |error| unusable(&format!("--control {}", displayed(Path::new(path))), &error, "");
+                Some(Listener::bind(Path::new(path)).map_err(told)?)
+            }
+            None => Listener::bind(&usual)
+                .inspect_err(|error| {
                     notes.push(format!("commands such as `saoms status` cannot reach this fleet: {error}"));
-                    return Ok(None);
-                }
-            },
+                })
+                .ok(),
         };
-        Ok(Some(Control { listener, description, log: Arc::default(), topics: Arc::default() }))
+        let beside = arguments.control.as_deref().filter(|path| *path != NONE).map_or(usual.as_path(), Path::new);
+        let network = network(&arguments.network, beside)?;
+        description.url = network.as_ref().map(NetworkListener::url);
+        description.token_file = network.as_ref().map(|network| network.token().path().display().to_string());
+        let places = Places { socket, network };
+        let is_reached = places.socket.is_some() || places.network.is_some();
+        Ok(is_reached.then(|| Control { places, description, log: Arc::default(), topics: Arc::default() }))
     }
 
     /// The observers of the fleet with which it serves.
@@ -59,7 +87,8 @@ impl Control {
 
     /// Serves operators from now on.
     pub(super) fn serve(self, handle: &Handle, signals: &Signalled) -> Option<ControlServer> {
-        let Control { listener, description, log, topics } = self;
+        let Control { places, description, log, topics } = self;
+        let place = description.url.clone().zip(description.token_file.clone());
         let events = Mutex::new(Events::of_operators(description.seed));
         let fleet = handle.clone();
         let send = move |line: &str| {
@@ -68,13 +97,53 @@ impl Control {
         };
         let (fleet, ending) = (handle.clone(), signals.ending());
         let fleet = ControlledFleet::new(description, handle.clone(), (log, topics), send, move || ending.down(&fleet));
-        ControlServer::start(listener, fleet)
-            .inspect_err(|error| {
-                handle
-                    .note(Level::Warning, format!("commands such as `saoms status` cannot reach this fleet: {error}"));
-            })
-            .ok()
+        match ControlServer::start(places, fleet) {
+            Ok(server) => {
+                if let Some((url, file)) = place {
+                    handle.note(Level::Info, format!("is served at {url}, with the token in `{file}`"));
+                }
+                Some(server)
+            }
+            Err(error) => {
+                let text = format!("commands such as `saoms status` cannot reach this fleet: {error}");
+                handle.note(Level::Warning, text);
+                None
+            }
+        }
     }
+}
+
+/// Listens on the network if the command line says so, with the token in its file, or a new one beside the socket.
+fn network(arguments: &NetworkArguments, socket: &Path) -> Result<Option<NetworkListener>, Exit> {
+    let Some(address) = &arguments.serve else { return Ok(None) };
+    let token = match &arguments.token_file {
+        Some(file) => TokenFile::given(file)
+            .map_err(|error| unusable(&format!("--token-file {}", displayed(file)), &error, ""))?,
+        None => {
+            let file = token_beside(socket);
+            let told = |error| {
+                let help = "  = help: name a file with a token: `--token-file`\n";
+                unusable(&format!("--serve {}", one_line(address)), &format!("`{}`: {error}", displayed(&file)), help)
+            };
+            TokenFile::create(&file).map_err(told)?
+        }
+    };
+    let bound = NetworkListener::bind(address, arguments.serve_unencrypted, token).map_err(|error| {
+        let help = match &error {
+            NetworkError::NotLoopback(_) => {
+                "  = help: reach 127.0.0.1 from there through a tunnel such as `ssh -L`, or allow it with `--serve-unencrypted`\n"
+            }
+            NetworkError::Malformed(_) | NetworkError::System(_) => "",
+        };
+        unusable(&format!("--serve {}", one_line(address)), &error, help)
+    })?;
+    Ok(Some(bound))
+}
+
+/// Reports that a place of the command line cannot be used.
+fn unusable(option: &str, error: &impl Display, help: &str) -> Exit {
+    eprint(&format!("error: `{option}`: {error}\n{help}\n1 error: nothing was started\n"));
+    Exit::WrongInput
 }
 
 fn description(arguments: &RunArguments) -> FleetDescription {
@@ -87,6 +156,8 @@ fn description(arguments: &RunArguments) -> FleetDescription {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         started: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs(),
         is_virtual: arguments.virtual_time,
+        url: None,
+        token_file: None,
         seed: arguments.seed,
     }
 }

@@ -32,7 +32,7 @@ use crate::fleet::{DiagnosticReport, compiled, files_read};
 use crate::guard::has_own_end;
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
 use console::Console;
-use control::Control;
+use control::{Control, NetworkArguments};
 use ending::{Signalled, end_without_reader};
 use events::Events;
 use outputs::{Output, RunFiles};
@@ -105,6 +105,9 @@ pub(crate) struct RunArguments {
     /// there is none
     #[arg(long, value_name = "PATH|none")]
     pub(crate) control: Option<String>,
+
+    #[command(flatten)]
+    pub(crate) network: NetworkArguments,
 
     /// Watch the libraries of plugins: when a library is rebuilt, its components are replaced while the fleet runs
     #[arg(long, conflicts_with = "virtual_time")]

@@ -1,6 +1,7 @@
 //! Commands that reach a running fleet, against real processes.
 
 mod hang;
+mod network;
 mod orders;
 mod places;
 mod status;
