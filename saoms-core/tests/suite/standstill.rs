@@ -1,10 +1,12 @@
 //! Fleets in which nothing happens although work is left.
 
+use std::time::Duration;
+
 use saoms_core::schedule::Settings;
 
 use serde_json::json;
 
-use crate::fleet::{check, outcome, run, simulated, start};
+use crate::fleet::{check, outcome, real, run, simulated, start};
 
 /// The outcome and the diary of a fleet that runs without a limit.
 fn endless(fleet: &str) -> (String, String) {
@@ -80,4 +82,16 @@ fn who_is_not_started_is_told_although_nobody_votes() {
         "[3600.000 s] nothing has happened since 0.000 s: `B` is not started
          Elapsed after 7200 s",
     );
+}
+
+#[test]
+fn components_on_worker_threads_say_what_they_wait_for_there() {
+    // A runs on a worker thread after its second execution, which takes longer than the budget.
+    let fleet = "A actor period=10 each=[0: open; 1: sleep 50] waits=[parcels]\nB actor period=10 waits=[news]";
+    let settings = Settings { quiet: Duration::from_millis(200), ..real(1000) };
+    let (report, diary) = run(fleet, settings);
+    assert_eq!(outcome(&report), "Elapsed after 1 s");
+    let told = "`A` waits for parcels; `B` waits for news";
+    assert!(diary.lines().contains(told), "{}", diary.lines());
+    assert_eq!(diary.lines().matches("nothing has happened").count(), 1, "{}", diary.lines());
 }

@@ -39,10 +39,16 @@ pub(super) fn work(shared: &Arc<Shared>) {
             slot.waiting = true;
             continue;
         }
-        let question = slot.asked.then_some(Job::Describe).filter(|_| slot.state == SlotState::Active);
+        let question = match (slot.asked, slot.asked_to_wait) {
+            (true, _) => Some(Job::Describe),
+            (false, true) => Some(Job::Ask),
+            (false, false) => None,
+        };
+        let question = question.filter(|_| slot.state == SlotState::Active);
         if question.is_none() {
             // One that starts or leaves has nothing to say.
             engine.note_answer(index);
+            engine.note_waiting(index);
         }
         let Some(job) = question.or_else(|| engine.job(index, started)) else { continue };
         let Some(mut body) = engine.begin(index, job, started) else { continue };

@@ -204,20 +204,22 @@ impl Engine {
                 match job {
                     Job::Execute | Job::React | Job::Shutdown => {}
                     Job::Describe => slot.described = body.part.described.take(),
-                    Job::Ask => slot.waits_for = body.part.waits_for.take(),
+                    Job::Ask => {
+                        slot.waits_for = body.part.waits_for.take();
+                        self.note_waiting(index);
+                    }
                     Job::Start => {
                         body.fit_inboxes();
                         body.give_unread(&self.bus);
                     }
                 }
-                slot.body = Some(body);
+                self.slots[index as usize].body = Some(body);
                 if let Some(vote) = vote {
                     self.vote(index, vote, ended);
                 }
                 match job {
                     Job::Execute | Job::React => self.executed(index, ended),
-                    Job::Ask => self.resume(index, ended),
-                    Job::Describe => self.answered(index, ended),
+                    Job::Ask | Job::Describe => self.answered(index, ended),
                     Job::Start => self.started(index, ended),
                     Job::Shutdown => self.left(index, ended),
                 }

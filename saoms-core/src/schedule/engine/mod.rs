@@ -179,7 +179,7 @@ impl Engine {
             reasons: Vec::new(),
             ended: (0, 0),
             votes: VoteTally::default(),
-            standstill: StandstillDetector::default(),
+            standstill: StandstillDetector::new(nanos(settings.quiet)),
             questions: Questions::default(),
             look_at: 0,
             limit: settings.limit.map_or(NEVER, nanos),
@@ -207,8 +207,8 @@ impl Engine {
                             continue;
                         }
                         if self.standstill.is_quiet(now) {
-                            if let Some(index) = self.next_to_ask(now) {
-                                return Next::Run(index, Job::Ask);
+                            if let Some(question) = self.next_to_ask(now) {
+                                return question;
                             }
                             if self.phase != RunPhase::Running {
                                 continue;

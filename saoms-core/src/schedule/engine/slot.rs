@@ -66,6 +66,8 @@ pub(crate) struct Slot {
     pub(crate) waits_for: Option<String>,
     /// True if it was asked for its status and has not answered.
     pub(crate) asked: bool,
+    /// True if it was asked on a worker thread what it waits for, and has not answered.
+    pub(crate) asked_to_wait: bool,
     /// Its last answer.
     pub(crate) described: Option<Arc<Description>>,
     pub(crate) statistics: Statistics,
@@ -250,6 +252,7 @@ impl Slot {
             gave_up: false,
             waits_for: None,
             asked: false,
+            asked_to_wait: false,
             described: None,
             statistics: Statistics::default(),
             journal: Ring::default(),

@@ -3,15 +3,13 @@
 use saoms_api::Time;
 use saoms_lang::assembly::ComponentSpec;
 
-use super::Engine;
 use super::ending::EndCause;
 use super::slot::{NEVER, Slot, SlotState};
+use super::{Engine, Next};
 use crate::observe::Occurrence;
 use crate::report::{Standstill, Waiting};
+use crate::schedule::component::body::Job;
 
-/// Time without an effect, in nanoseconds, after which components are asked what they wait for: one minute. If all
-/// wait, nothing can happen any more.
-const QUIET: u64 = 60_000_000_000;
 /// Time without an effect after which the standstill is told even if components may still act: one hour.
 const LONG: u64 = 3_600_000_000_000;
 
@@ -25,17 +23,27 @@ pub(crate) struct StandstillDetector {
     /// The effect and the patience of the present round of questions, and the next component to ask.
     round: (u64, u64),
     next: usize,
+    /// Number of components that were asked on worker threads in the present round, and have not answered.
+    unanswered: usize,
+    /// See [`Settings::quiet`](crate::schedule::Settings::quiet), in nanoseconds.
+    quiet: u64,
     /// The standstill that was told.
     pub(crate) told: Option<Standstill>,
 }
 
-impl Default for StandstillDetector {
-    fn default() -> StandstillDetector {
-        StandstillDetector { last_effect: 0, patience: QUIET, round: (NEVER, 0), next: 0, told: None }
-    }
-}
-
 impl StandstillDetector {
+    pub(super) fn new(quiet: u64) -> StandstillDetector {
+        StandstillDetector {
+            last_effect: 0,
+            patience: quiet,
+            round: (NEVER, 0),
+            next: 0,
+            unanswered: 0,
+            quiet,
+            told: None,
+        }
+    }
+
     /// Notes that something happened.
     #[inline]
     pub(crate) fn note_effect(&mut self, now: u64) {
@@ -50,7 +58,7 @@ impl StandstillDetector {
         }
         // All were asked: only an effect begins another round, or an hour without one.
         let long = self.last_effect.saturating_add(LONG);
-        now.saturating_add(QUIET).min(if now < long { long } else { NEVER })
+        now.saturating_add(self.quiet).min(if now < long { long } else { NEVER })
     }
 
     #[inline]
@@ -60,9 +68,9 @@ impl StandstillDetector {
 }
 
 impl Engine {
-    /// The next component to ask what it waits for, while nothing happens. When all were asked, the standstill is told,
-    /// or ends the run if nothing can happen any more.
-    pub(crate) fn next_to_ask(&mut self, now: u64) -> Option<u32> {
+    /// The next component to ask what it waits for, while nothing happens. When all have answered, the standstill is
+    /// told, or ends the run if nothing can happen any more. A component that runs on a worker thread is asked there.
+    pub(crate) fn next_to_ask(&mut self, now: u64) -> Option<Next> {
         let has_voters = self.votes.voters > 0;
         if has_voters && self.votes.done == self.votes.voters {
             // No work is left: a fleet may be idle.
@@ -78,20 +86,46 @@ impl Engine {
             // Without a vote there is work to tell of only where a component waits to be started.
             let asks = has_voters || self.slots.iter().any(Slot::is_left_out);
             detector.next = if asks { 0 } else { self.slots.len() + 1 };
+            detector.unanswered = 0;
+            self.slots.iter_mut().for_each(|slot| slot.asked_to_wait = false);
         }
         while let Some(slot) = self.slots.get_mut(self.standstill.next) {
+            let index = self.standstill.next as u32;
             self.standstill.next += 1;
             slot.waits_for = None;
-            if slot.state == SlotState::Active && slot.body.is_some() && !slot.held && !slot.isolation.active {
-                return Some(self.standstill.next as u32 - 1);
+            if slot.state != SlotState::Active || slot.held {
+                continue;
+            }
+            if slot.isolation.active {
+                slot.asked_to_wait = true;
+                self.standstill.unanswered += 1;
+                if !std::mem::replace(&mut slot.queued, true) {
+                    self.roles.work.push_back(index);
+                    return Some(Next::HandOver);
+                }
+            } else if slot.body.is_some() {
+                return Some(Next::Run(index, Job::Ask));
             }
         }
-        if self.standstill.next == self.slots.len() {
+        // After an hour, one whose code hangs is not waited for.
+        let is_answered = self.standstill.unanswered == 0 || self.standstill.patience == LONG;
+        if is_answered && self.standstill.next == self.slots.len() {
             // Once a round.
             self.standstill.next += 1;
             self.judge_standstill(now);
         }
         None
+    }
+
+    /// Notes that a component has answered on its worker thread, or never will. After the last answer, the timer judges.
+    pub(crate) fn note_waiting(&mut self, index: u32) {
+        if std::mem::take(&mut self.slots[index as usize].asked_to_wait) {
+            self.standstill.unanswered -= 1;
+            if self.standstill.unanswered == 0 {
+                self.look_at = 0;
+                self.wake |= self.roles.asleep_until != 0;
+            }
+        }
     }
 
     fn judge_standstill(&mut self, now: u64) {

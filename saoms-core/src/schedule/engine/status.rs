@@ -94,6 +94,11 @@ impl Engine {
             let when = slot.next_time().max(now);
             self.enqueue(index, when);
         }
+        let slot = &mut self.slots[index as usize];
+        if slot.asked_to_wait && slot.isolation.active && !std::mem::replace(&mut slot.queued, true) {
+            // Its worker asks the other question next.
+            self.roles.work.push_back(index);
+        }
         self.resume(index, now);
     }
 
