@@ -26,8 +26,8 @@ pub struct Settings {
     /// Maximum duration of an execution in virtual time, on the machine's clock; beyond it the run ends as failed. At
     /// least 10 ms.
     pub virtual_watchdog: Duration,
-    /// Time in which nothing happens, although work is left, after which components are asked what they wait for. If all
-    /// of them wait, the run stands still: that is told, or ends it.
+    /// Time in which nothing happens, although work is left, after which components are asked what they wait for. If
+    /// all of them wait, the run stands still: that is told, or ends it.
     pub quiet: Duration,
     /// Number of journal records in memory, divided evenly among the components; each keeps its newest 128 at least.
     /// Records that are older are overwritten and counted.

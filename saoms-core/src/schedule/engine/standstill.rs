@@ -117,7 +117,7 @@ impl Engine {
         None
     }
 
-    /// Notes that a component has answered on its worker thread, or never will. After the last answer, the timer judges.
+    /// Notes that a component has answered on its worker thread, or never will. After the last one, the timer judges.
     pub(crate) fn note_waiting(&mut self, index: u32) {
         if std::mem::take(&mut self.slots[index as usize].asked_to_wait) {
             self.standstill.unanswered -= 1;
