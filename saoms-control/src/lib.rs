@@ -18,6 +18,6 @@ pub use description::FleetDescription;
 pub use log::{LogLine, LogTail};
 pub use network::{NetworkError, NetworkListener};
 pub use place::{Listener, default_socket, token_beside};
-pub use server::{ControlServer, ControlledFleet, Places, openapi};
+pub use server::{ControlServer, ControlledFleet, Places, SentLine, openapi};
 pub use token::{Token, TokenFile};
 pub use topics::TopicWatch;

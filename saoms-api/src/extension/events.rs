@@ -1,6 +1,7 @@
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU32;
 
 use crate::Time;
 use crate::event::Events;
@@ -15,8 +16,8 @@ pub struct EventLanguage {
     pub topic: TopicDeclaration<'static>,
     /// Codes of findings that do not hold for a run with such events: that nothing brings work.
     pub settles: &'static [&'static str],
-    /// Makes a reader for one run, with the seed of the run and the events that classes of the fleet take.
-    pub new: fn(seed: u64, events: Arc<Events>) -> Box<dyn EventReader>,
+    /// Makes a reader of one source of events.
+    pub new: fn(EventSource) -> Box<dyn EventReader>,
 }
 
 inventory::collect!(EventLanguage);
@@ -28,13 +29,25 @@ impl EventLanguage {
     }
 }
 
+/// A source of events: a file, or operators.
+#[derive(Clone, Debug)]
+pub struct EventSource {
+    /// Its name, from which its chance follows.
+    pub name: &'static str,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Number of things that the events of all sources of the run have numbered so far.
+    pub numbers: Arc<AtomicU32>,
+}
+
 /// A reader of events, line by line.
 pub trait EventReader: Send {
-    /// Reads a line, which comes at the time `now` of the run. An empty line or a comment has no events.
+    /// Reads a line, which comes at the time `now` of the run, with the events that classes of the fleet take. An empty
+    /// line or a comment has no events.
     ///
     /// # Errors
     /// The fault of the line, which has no events then.
-    fn read(&mut self, line: &str, now: Time) -> Result<Vec<TimedMessage>, LineFault>;
+    fn read(&mut self, line: &str, now: Time, events: &Events) -> Result<Vec<TimedMessage>, LineFault>;
 }
 
 /// A message from outside, with its time.
@@ -44,7 +57,7 @@ pub struct TimedMessage {
     pub at: Option<Time>,
     /// The message.
     pub content: EventContent,
-    /// Description in the words of the language.
+    /// A line of the language that says the same, without its time.
     pub text: String,
 }
 

@@ -18,7 +18,7 @@ mod summary;
 pub use inventory::submit;
 
 pub use crate::time::DURATION_UNITS;
-pub use events::{EventContent, EventLanguage, EventReader, LineFault, TimedMessage};
+pub use events::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 pub use language::{
     Completion, CompletionKind, Explanation, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, RaisedEvent,
 };

@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use expect_test::expect;
 use saoms_api::event::{Event, EventField, Events, FieldType};
-use saoms_api::extension::{EventReader, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, TimedMessage};
+use saoms_api::extension::{
+    EventReader, EventSource, JudgedTexts, PropertyLanguage, PropertyText, PropertyTexts, TimedMessage,
+};
 use saoms_api::host::declaration::PropertyKind;
 use saoms_api::{Chance, Time};
 
@@ -139,16 +141,18 @@ fn mistakes_are_told_at_their_words_with_what_is_meant() {
 
 #[test]
 fn lines_from_outside_have_them_too() {
-    let mut reader = Reader::new(1, Arc::new(events()));
-    let told =
-        reader.read("at 2s 2 times fire at=(1,1) size=1..9; fire at=(1,1) size=1 to Hall1", Time::START).unwrap();
+    let source = EventSource { name: "(outside)", seed: 1, numbers: Arc::default() };
+    let (mut reader, events) = (Reader::new(source), events());
+    let told = reader
+        .read("at 2s 2 times fire at=(1,1) size=1..9; fire at=(1,1) size=1 to Hall1", Time::START, &events)
+        .unwrap();
     let told: Vec<String> = told.into_iter().map(|TimedMessage { at, text, .. }| format!("{at:?} {text}")).collect();
     expect![[r#"
         Some(Time(2000000000)) fire at=(1,1) size=9
         Some(Time(2000000000)) fire at=(1,1) size=1
         None fire at=(1,1) size=1 to Hall1"#]]
     .assert_eq(&told.join("\n"));
-    let fault = reader.read("fier at=(1,1) size=1", Time::START).unwrap_err();
+    let fault = reader.read("fier at=(1,1) size=1", Time::START, &events).unwrap_err();
     assert_eq!((fault.bytes, fault.instead.as_deref()), (0..4, Some("fire")));
 }
 

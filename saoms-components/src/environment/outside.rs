@@ -1,9 +1,10 @@
 //! Scenario lines from outside a running fleet (`saoms run --events`).
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use saoms_api::event::Events;
-use saoms_api::extension::{EventContent, EventLanguage, EventReader, LineFault, TimedMessage, submit};
+use saoms_api::extension::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage, submit};
 use saoms_api::host::cdr;
 use saoms_api::{Chance, Time};
 
@@ -19,7 +20,7 @@ submit! {
     EventLanguage {
         topic: ENVIRONMENT.declaration(),
         settles: &[no_work::RULE.code.id],
-        new: |seed, events| Box::new(Reader::new(seed, events)),
+        new: |source| Box::new(Reader::new(source)),
     }
 }
 
@@ -27,32 +28,38 @@ submit! {
 const FIRST_LUGGAGE: u32 = 1_000_001;
 /// The most events of one line.
 const MOST: usize = 100_000;
+/// The word before the number of a piece of luggage.
+const NUMBER: &str = "number";
 
 /// A reader of scenario lines, without knowledge of the area.
 pub(super) struct Reader {
     chance: Chance,
-    /// The events that classes take.
-    events: Arc<Events>,
-    luggage: u32,
+    /// Number of pieces of luggage that came from outside.
+    luggage: Arc<AtomicU32>,
     /// The time of the last event of the line before.
     last: Time,
     before: Before,
 }
 
 impl Reader {
-    pub(super) fn new(seed: u64, events: Arc<Events>) -> Reader {
-        let chance = Chance::for_component(seed, "(outside)");
-        Reader { chance, events, luggage: FIRST_LUGGAGE, last: Time::START, before: Before::Start }
+    pub(super) fn new(source: EventSource) -> Reader {
+        let chance = Chance::for_component(source.seed, source.name);
+        Reader { chance, luggage: source.numbers, last: Time::START, before: Before::Start }
     }
 
     /// Reads one event of the line.
-    fn part(&mut self, text: &str, now: Time) -> Result<Vec<TimedMessage>, TextFault> {
-        let (line, is_now) = read_outside(text, self.before, Vocabulary::with(&self.events))?;
+    fn part(&mut self, text: &str, now: Time, events: &Events) -> Result<Vec<TimedMessage>, TextFault> {
+        let (event, number) = numbered(text)?;
+        let (line, is_now) = read_outside(event, self.before, Vocabulary::with(events))?;
         self.before = Before::Event;
         place_is_known(&line)?;
         if line.times.is_none() && line.until.is_none() {
             let fault = TextFault::new(line.bytes, "found no last event, but a line from outside needs one");
             return Err(fault.help("end it: `100 times`, or `until 60s`"));
+        }
+        if number.is_some() && !(matches!(line.event, EventSpec::Luggage { .. }) && line.times == Some(1)) {
+            let message = format!("found `{NUMBER}` behind something else than one piece of luggage");
+            return Err(TextFault::new(event.len()..text.len(), message));
         }
         // Each line draws for itself, so that one more or less changes nothing in the others.
         let mut chance = Chance::new(self.chance.next_u64());
@@ -68,7 +75,7 @@ impl Reader {
             let event = draw(&line.event, &mut chance, None).ok_or_else(|| {
                 TextFault::new(line.bytes.clone(), "found no two free blocks for the luggage of this line")
             })?;
-            let (content, text) = self.message(event);
+            let (content, text) = self.message(event, number);
             messages.push(TimedMessage { at: (!is_now).then_some(at), content, text });
             self.last = at;
             if line.times.is_some_and(|times| messages.len() as u64 >= times) {
@@ -79,13 +86,12 @@ impl Reader {
         Ok(messages)
     }
 
-    /// The message of an event, and the scenario line that says it, without its time.
-    fn message(&mut self, event: ScenarioEvent) -> (EventContent, String) {
+    /// The message of an event, and the line that says it again, without its time.
+    fn message(&mut self, event: ScenarioEvent, number: Option<u32>) -> (EventContent, String) {
         let (message, text): (EnvironmentEvent, String) = match event {
             ScenarioEvent::Luggage { from, to } => {
-                let request = EventLuggage::request(self.luggage, from, to);
-                self.luggage = self.luggage.saturating_add(1);
-                (request.into(), format!("luggage {from} to {to}"))
+                let number = self.luggage_number(number);
+                (EventLuggage::request(number, from, to).into(), format!("luggage {from} to {to} {NUMBER} {number}"))
             }
             ScenarioEvent::Exceptional(event) => {
                 let kind = match event.kind {
@@ -100,6 +106,34 @@ impl Reader {
             ScenarioEvent::Raised(event) => return (EventContent::Raised, event),
         };
         (EventContent::Bytes(cdr::encode(&message)), text)
+    }
+
+    /// The number that a line gives, or the next one.
+    fn luggage_number(&self, given: Option<u32>) -> u32 {
+        match given {
+            Some(number) => {
+                // The next one of its own is beyond all that were given.
+                self.luggage.fetch_max(number - FIRST_LUGGAGE + 1, Ordering::Relaxed);
+                number
+            }
+            None => FIRST_LUGGAGE.saturating_add(self.luggage.fetch_add(1, Ordering::Relaxed)),
+        }
+    }
+}
+
+/// The event of a text, and the number that follows it: `luggage (3,1) to (3,10) number 1000001`. The journal has it,
+/// so that luggage has the same number when its events are played again.
+fn numbered(text: &str) -> Result<(&str, Option<u32>), TextFault> {
+    let words: Vec<&str> = text.split_whitespace().rev().take(2).collect();
+    let [number, NUMBER] = words[..] else { return Ok((text, None)) };
+    let word = &text[bytes(text, words[1])];
+    match number.parse() {
+        Ok(given @ FIRST_LUGGAGE..=u32::MAX) => Ok((&text[..bytes(text, word).start], Some(given))),
+        _ => {
+            let message =
+                format!("found `{number}`, expected a number of luggage from outside: {FIRST_LUGGAGE} or more");
+            Err(TextFault::of(text, number, message))
+        }
     }
 }
 
@@ -117,11 +151,11 @@ fn place_is_known(line: &Line) -> Result<(), TextFault> {
 }
 
 impl EventReader for Reader {
-    fn read(&mut self, line: &str, now: Time) -> Result<Vec<TimedMessage>, LineFault> {
+    fn read(&mut self, line: &str, now: Time, events: &Events) -> Result<Vec<TimedMessage>, LineFault> {
         let mut messages = Vec::new();
         for part in split(line) {
             let offset = bytes(line, part).start;
-            messages.extend(self.part(part, now).map_err(|TextFault { bytes, message, instead, help }| {
+            messages.extend(self.part(part, now, events).map_err(|TextFault { bytes, message, instead, help }| {
                 LineFault { bytes, message, instead, help }.moved(offset)
             })?);
         }
@@ -135,12 +169,16 @@ mod tests {
 
     use super::*;
 
+    fn reader(seed: u64) -> Reader {
+        Reader::new(EventSource { name: "(outside)", seed, numbers: Arc::default() })
+    }
+
     /// The events of lines that come one after the other at 7 s, or what is wrong with a line.
     fn events(lines: &[&str]) -> Vec<String> {
-        let mut reader = Reader::new(1, Arc::default());
+        let mut reader = reader(1);
         let mut shown = Vec::new();
         for line in lines {
-            match reader.read(line, Time::START + Duration::from_secs(7)) {
+            match reader.read(line, Time::START + Duration::from_secs(7), &Events::default()) {
                 Ok(messages) => shown.extend(messages.into_iter().map(|TimedMessage { at, text, .. }| {
                     at.map_or_else(|| format!("now {text}"), |at| format!("{at} {text}"))
                 })),
@@ -164,14 +202,14 @@ mod tests {
                 "end",
             ]),
             [
-                "now luggage (3,1) to (3,10)",
+                "now luggage (3,1) to (3,10) number 1000001",
                 "9.000 s landing 4",
                 "9.500 s takeoff 2",
                 "10.500 s breakdown 2",
                 "12.500 s breakdown 2",
-                "1.000 s luggage (1,5) to (10,5)",
-                "2.000 s luggage (1,5) to (10,5)",
-                "3.000 s luggage (1,5) to (10,5)",
+                "1.000 s luggage (1,5) to (10,5) number 1000002",
+                "2.000 s luggage (1,5) to (10,5) number 1000003",
+                "3.000 s luggage (1,5) to (10,5) number 1000004",
                 "now end",
             ]
         );
@@ -180,7 +218,7 @@ mod tests {
     #[test]
     fn luggage_has_numbers_of_its_own_and_chance_follows_from_the_seed() {
         let line = "at 1s 2 times luggage (1,0)..(10,10) to (1,0)..(10,10)";
-        let read = |seed| Reader::new(seed, Arc::default()).read(line, Time::START).unwrap();
+        let read = |seed| reader(seed).read(line, Time::START, &Events::default()).unwrap();
         let event = |place: usize| -> EnvironmentEvent {
             let EventContent::Bytes(bytes) = &read(1)[place].content else { panic!("it is of the language") };
             cdr::decode(bytes).unwrap()
@@ -189,6 +227,26 @@ mod tests {
         assert_eq!((first.luggage[0].luggage, second.luggage[0].luggage), (1_000_001, 1_000_002));
         assert_eq!(read(1), read(1));
         assert_ne!(read(1), read(2));
+    }
+
+    #[test]
+    fn luggage_keeps_the_number_that_a_line_gives_and_others_go_on_behind_it() {
+        assert_eq!(
+            events(&[
+                "at 3s luggage (3,1) to (3,10) number 1000007",
+                "luggage (3,1) to (3,10)",
+                "luggage (3,1) to (3,10) number 7",
+                "landing 3 number 1000009",
+                "at 1s 2 times luggage (3,1) to (3,10) number 1000009",
+            ]),
+            [
+                "3.000 s luggage (3,1) to (3,10) number 1000007",
+                "now luggage (3,1) to (3,10) number 1000008",
+                "`7`: found `7`, expected a number of luggage from outside: 1000001 or more, None",
+                "`number 1000009`: found `number` behind something else than one piece of luggage, None",
+                "`number 1000009`: found `number` behind something else than one piece of luggage, None",
+            ]
+        );
     }
 
     #[test]

@@ -3,7 +3,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
-use saoms_core::schedule::Handle;
+use saoms_core::schedule::{Handle, OrderTicket};
 use serde_json::json;
 
 use super::connections::ClientCounts;
@@ -14,8 +14,17 @@ use crate::topics::TopicWatch;
 /// Time for which a snapshot is given to further clients.
 const FRESH: Duration = Duration::from_millis(100);
 
-/// Code that lets the events of a line happen, and gives their number or what is wrong.
-type SendLine = dyn Fn(&str) -> Result<u64, String> + Send + Sync;
+/// Code that takes a line of events or an order, and says what is wrong with it.
+type SendLine = dyn Fn(&str) -> Result<SentLine, String> + Send + Sync;
+
+/// A line that was taken.
+#[derive(Debug)]
+pub enum SentLine {
+    /// So many events happen.
+    Events(i64),
+    /// An order takes effect at the next instant.
+    Order(OrderTicket),
+}
 
 /// A fleet and what can be done with it.
 pub struct ControlledFleet {
@@ -27,7 +36,7 @@ pub struct ControlledFleet {
     pub(super) log: Arc<LogTail>,
     /// What passes the messages of its topics on.
     pub(super) topics: Arc<TopicWatch>,
-    /// Lets the events of a line happen; gives their number, or what is wrong.
+    /// Takes a line of events, or an order.
     pub(super) send: Box<SendLine>,
     /// Ends the fleet.
     pub(super) down: Box<dyn Fn() + Send + Sync>,
@@ -38,13 +47,13 @@ pub struct ControlledFleet {
 }
 
 impl ControlledFleet {
-    /// A fleet with its remote control, its log and its topics, which are observers of it. `send` lets the events of a
-    /// line happen, and gives their number or what is wrong; `down` ends the fleet.
+    /// A fleet with its remote control, its log and its topics, which are observers of it. `send` takes a line
+    /// of events or an order, or says what is wrong with it; `down` ends the fleet.
     pub fn new(
         description: FleetDescription,
         handle: Handle,
         (log, topics): (Arc<LogTail>, Arc<TopicWatch>),
-        send: impl Fn(&str) -> Result<u64, String> + Send + Sync + 'static,
+        send: impl Fn(&str) -> Result<SentLine, String> + Send + Sync + 'static,
         down: impl Fn() + Send + Sync + 'static,
     ) -> ControlledFleet {
         let (send, down) = (Box::new(send), Box::new(down));

@@ -5,6 +5,7 @@ mod answer;
 mod connections;
 mod fleet;
 mod logs;
+mod orders;
 mod routes;
 mod topics;
 
@@ -18,7 +19,7 @@ use axum::middleware::from_fn_with_state;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
-pub use fleet::ControlledFleet;
+pub use fleet::{ControlledFleet, SentLine};
 pub use routes::openapi;
 
 use access::{Access, guarded};

@@ -4,17 +4,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::{Path, Query, State};
+use axum::extract::{Query, State};
 use axum::middleware::from_fn;
 use axum::routing::{MethodRouter, get, post, put};
-use saoms_api::host::parse_duration;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::access::with_body;
 use super::answer::{Answer, Refusal, done, json_text, waiting};
 use super::fleet::ControlledFleet;
-use super::{logs, topics};
+use super::{logs, orders, topics};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -65,10 +64,10 @@ const ROUTES: &[Route] = &[
     Route {
         method: "post",
         path: "/v1/events",
-        doc: "Lets the events of a line happen, in the language of `saoms run --events`.",
+        doc: "Lets the events of a line happen, or gives its order, in the language of `saoms run --events`.",
         query: &[],
-        body: Some("a line of events"),
-        serve: || post(send),
+        body: Some("a line of events, or an order"),
+        serve: || post(orders::send),
     },
     Route {
         method: "post",
@@ -76,7 +75,7 @@ const ROUTES: &[Route] = &[
         doc: "Schedules a periodic component.",
         query: &[("for", "the time after which it is stopped again, such as `10s`")],
         body: None,
-        serve: || post(start),
+        serve: || post(orders::start),
     },
     Route {
         method: "post",
@@ -84,7 +83,7 @@ const ROUTES: &[Route] = &[
         doc: "Unschedules a periodic component.",
         query: &[],
         body: None,
-        serve: || post(stop),
+        serve: || post(orders::stop),
     },
     Route {
         method: "put",
@@ -92,7 +91,15 @@ const ROUTES: &[Route] = &[
         doc: "Gives a property that is declared `live` another value.",
         query: &[],
         body: Some("the value, as a composite writes it"),
-        serve: || put(set),
+        serve: || put(orders::set),
+    },
+    Route {
+        method: "post",
+        path: "/v1/components/{component}/operations/{operation}",
+        doc: "Calls an operation of a service that the component offers; `reply` is its reply.",
+        query: &[],
+        body: Some("the arguments in JSON, by their names"),
+        serve: || post(orders::call),
     },
     Route {
         method: "get",
@@ -199,39 +206,6 @@ async fn log_lines(State(fleet): Fleet, Query(query): Query<LogQuery>) -> Answer
         true => logs::followed(&fleet, most),
         false => logs::newest(&fleet.log, most),
     }
-}
-
-async fn send(State(fleet): Fleet, line: String) -> Answer {
-    let taken = waiting(move || (fleet.send)(&line)).await?.map_err(Refusal::unprocessable)?;
-    json_text(json!({"events": taken}).to_string())
-}
-
-#[derive(Deserialize)]
-struct StartQuery {
-    #[serde(rename = "for")]
-    duration: Option<String>,
-}
-
-async fn start(State(fleet): Fleet, Path(component): Path<String>, Query(query): Query<StartQuery>) -> Answer {
-    let duration: Option<Duration> =
-        query.duration.as_deref().map(parse_duration).transpose().map_err(Refusal::unprocessable)?;
-    let started = match duration {
-        Some(duration) => fleet.handle.schedule_for(&component, duration),
-        None => fleet.handle.schedule(&component),
-    };
-    started.map_err(Refusal::unprocessable)?;
-    done()
-}
-
-async fn stop(State(fleet): Fleet, Path(component): Path<String>) -> Answer {
-    fleet.handle.unschedule(&component).map_err(Refusal::unprocessable)?;
-    done()
-}
-
-async fn set(State(fleet): Fleet, Path((component, property)): Path<(String, String)>, value: String) -> Answer {
-    let set = move || fleet.handle.set(&component, &property, &value);
-    waiting(set).await?.map_err(Refusal::unprocessable)?;
-    done()
 }
 
 async fn down(State(fleet): Fleet) -> Answer {

@@ -8,11 +8,12 @@ use axum::extract::{Path, State};
 use axum::response::IntoResponse;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use futures_util::stream;
-use saoms_core::schedule::{InjectedContent, Injection};
+use saoms_core::schedule::Order;
 use serde_json::{Value, json};
 
-use super::answer::{Answer, Refusal, done, json_text, waiting};
+use super::answer::{Answer, Refusal, json_text, waiting};
 use super::fleet::ControlledFleet;
+use super::orders;
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -39,10 +40,7 @@ pub(super) async fn echo(State(fleet): Fleet, Path(topic): Path<String>) -> Answ
 }
 
 pub(super) async fn publish(State(fleet): Fleet, Path(topic): Path<String>, message: String) -> Answer {
-    let fields: Value = serde_json::from_str(&message)
+    let message: Value = serde_json::from_str(&message)
         .map_err(|error| Refusal::unprocessable(format!("the message is not JSON: {error}")))?;
-    let text = format!("publish {topic} {fields}");
-    let injection = Injection { topic, content: InjectedContent::Fields(fields), at: None, text };
-    waiting(move || fleet.handle.inject(injection)).await?.map_err(Refusal::unprocessable)?;
-    done()
+    orders::give(fleet, Order::Publish { topic, message }).await
 }

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use saoms_control::{
-    Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkListener, Places, Token,
-    TokenFile, TopicWatch, openapi,
+    Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkListener, Places, SentLine,
+    Token, TokenFile, TopicWatch, openapi,
 };
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
@@ -55,7 +55,8 @@ fn served() -> Served {
     };
     let downs = Arc::new(AtomicUsize::new(0));
     let counted = Arc::clone(&downs);
-    let send = |line: &str| if line == "wrong" { Err("no \u{1b}[2J such event".to_owned()) } else { Ok(2) };
+    let send =
+        |line: &str| if line == "wrong" { Err("no \u{1b}[2J such event".to_owned()) } else { Ok(SentLine::Events(2)) };
     let down = move || {
         counted.fetch_add(1, Ordering::SeqCst);
     };

@@ -7,15 +7,16 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use saoms_api::event::EventCall;
-use saoms_api::rule::nearest;
 use saoms_api::{Level, Time};
 
-use super::change::{self, ChangeError, Changed, SetError, StartError, Takeover};
+use super::change::{self, ChangeError, Changed, StartError, Takeover};
 use super::drive;
 use super::engine::RunPhase;
 use super::engine::lifecycle::Request;
 use super::engine::slot::NEVER;
 use super::inject::{self, InjectError, Injection};
+use super::members::UnknownComponent;
+use super::order::{self, Order, OrderError, OrderTicket};
 use super::os::clock::Clock;
 use super::os::realtime;
 use super::settings::{ClockKind, Settings, nanos};
@@ -63,34 +64,14 @@ pub struct RunningFleet {
 
 /// Time for which the answers of components are waited for.
 const PATIENCE: Duration = Duration::from_millis(50);
+/// Time for which a component may take to carry out an order.
+const ORDER_PATIENCE: Duration = Duration::from_millis(500);
 
 /// A remote control of a fleet. It may be cloned and used from any thread; after the end of the run it does nothing.
 #[derive(Clone)]
 pub struct Handle {
     shared: Arc<Shared>,
 }
-
-/// Error: a fleet has no such periodic component.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownComponent {
-    name: String,
-    passive: bool,
-    /// The path of the most similar one.
-    nearest: Option<String>,
-}
-
-impl fmt::Display for UnknownComponent {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.passive {
-            write!(formatter, "component `{}` is passive: it has no executions that could be scheduled", self.name)
-        } else {
-            write!(formatter, "the fleet has no component `{}`", self.name)?;
-            self.nearest.as_ref().map_or(Ok(()), |nearest| write!(formatter, "; did you mean `{nearest}`?"))
-        }
-    }
-}
-
-impl std::error::Error for UnknownComponent {}
 
 impl RunningFleet {
     /// Starts a fleet: constructs and initializes every component that runs from the start and every passive one,
@@ -328,8 +309,9 @@ impl Handle {
     /// # Errors
     /// As [`schedule`](Handle::schedule).
     pub fn is_running(&self, component: &str) -> Result<bool, UnknownComponent> {
-        let index = self.find(component)?;
-        Ok(self.shared.lock().slots[index].is_scheduled())
+        let engine = self.shared.lock();
+        let index = engine.periodic(component)?;
+        Ok(engine.slots[index as usize].is_scheduled())
     }
 
     /// Changes the fleet to that of an assembly: components whose paths differ end and start, components that differ
@@ -360,9 +342,21 @@ impl Handle {
     ///
     /// # Errors
     /// The component keeps the value that it has: there is no such component or property, the property cannot change
-    /// while it runs, the value is wrong, or the component refuses it.
-    pub fn set(&self, component: &str, property: &str, value: &str) -> Result<(), SetError> {
-        change::set(&self.shared, component, property, value)
+    /// while it runs, the value is wrong, or the component refuses it, or does not take it within 500 ms.
+    pub fn set(&self, component: &str, property: &str, value: &str) -> Result<(), OrderError> {
+        let (component, property, value) = (component.to_owned(), property.to_owned(), value.to_owned());
+        self.order(Order::Set { component, property, value }, None)?.wait(ORDER_PATIENCE).map(drop)
+    }
+
+    /// Gives an order of an operator, which takes effect at the next instant, or at its time, before the executions
+    /// that are due then, and is in the journal. Given again at the times that the journal says, in virtual time, the
+    /// same orders have the same effects.
+    ///
+    /// # Errors
+    /// It is refused: there is no such component, property, operation or topic, a value is wrong, or the run ends. The
+    /// ticket tells what is found out later.
+    pub fn order(&self, order: Order, at: Option<Time>) -> Result<OrderTicket, OrderError> {
+        order::accept(&self.shared, order, at)
     }
 
     /// Sends a message from outside on a topic of the fleet. It is checked against the schema of the topic, takes
@@ -447,25 +441,11 @@ impl Handle {
     }
 
     fn request(&self, component: &str, request: Request) -> Result<(), UnknownComponent> {
-        let index = self.find(component)?;
         let mut engine = self.shared.lock();
-        engine.request(index as u32, request, self.shared.clock.now());
+        let index = engine.periodic(component)?;
+        engine.request(index, request, self.shared.clock.now());
         self.shared.release(engine);
         Ok(())
-    }
-
-    fn find(&self, component: &str) -> Result<usize, UnknownComponent> {
-        let engine = self.shared.lock();
-        let known = engine.numbers.get(component).map(|number| *number as usize);
-        let slot = known.map(|number| &engine.slots[number]).filter(|slot| slot.is_member());
-        match (known, slot) {
-            (Some(number), Some(slot)) if slot.policy.periodic => Ok(number),
-            _ => {
-                let members = engine.slots.iter().filter(|slot| slot.is_member());
-                let nearest = nearest(component, members.map(|slot| &*slot.name)).map(str::to_owned);
-                Err(UnknownComponent { name: component.to_owned(), passive: slot.is_some(), nearest })
-            }
-        }
     }
 }
 

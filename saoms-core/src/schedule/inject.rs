@@ -10,6 +10,7 @@ use saoms_lang::schema::Schema;
 use serde_json::Value;
 
 use super::engine::{Engine, RunPhase};
+use super::order::PendingOrder;
 use super::shared::Shared;
 use super::takers::EventMessage;
 use crate::bus::TopicId;
@@ -20,6 +21,12 @@ use crate::observe::{Notification, Occurrence, SentMessage};
 pub(super) const OUTSIDE: u32 = u32::MAX;
 /// The name of that sender, which no component can have.
 pub(super) const OUTSIDE_NAME: &str = "(outside)";
+
+/// True for the name under which the journal has what came from outside the fleet.
+pub fn is_from_outside(component: &str) -> bool {
+    component == OUTSIDE_NAME
+}
+
 /// Number of the fleet's longest periods after an injection before the run may end for want of work: a message needs
 /// one period to be read, and the messages of its reader need another one.
 const SETTLING: u64 = 3;
@@ -93,8 +100,8 @@ impl fmt::Display for InjectError {
 
 impl std::error::Error for InjectError {}
 
-/// Messages that wait for their time, in the order in which they take effect: those from outside, and those that a
-/// fault holds up.
+/// Messages and orders that wait for their time, in the order in which they take effect: those from outside, and
+/// messages that a fault holds up.
 #[derive(Default)]
 pub(super) struct Injections {
     waiting: BTreeMap<(u64, u64), Due>,
@@ -116,6 +123,7 @@ enum Due {
         messages: Vec<EventMessage>,
         text: String,
     },
+    Order(Box<PendingOrder>),
     /// A message that a fault holds up.
     Late {
         topic: TopicId,
@@ -190,9 +198,17 @@ pub(super) fn raise(shared: &Shared, messages: Vec<EventMessage>, at: Option<Tim
     !is_ending
 }
 
+/// Queues an order, which was checked.
+pub(super) fn add_order(shared: &Shared, at: Option<Time>, order: PendingOrder) {
+    add(shared, at, Due::Order(Box::new(order)));
+}
+
 fn add(shared: &Shared, at: Option<Time>, due: Due) {
     let mut engine = shared.lock();
-    let when = at.map_or(0, Time::as_nanos).max(shared.clock.now());
+    let now = shared.clock.now();
+    // At the same time as executions that are over, it would come before them when it is played again.
+    let next = if shared.clock.is_virtual() && engine.begun == now { now.saturating_add(1) } else { now };
+    let when = at.map_or(0, Time::as_nanos).max(next);
     engine.injections.add(when, due);
     engine.look_at = engine.look_at.min(when);
     engine.wake |= when < engine.roles.asleep_until;
@@ -217,6 +233,14 @@ impl Engine {
                 Due::Event { messages, text } => {
                     self.deliver_event(when, messages, text);
                     delivered = true;
+                }
+                Due::Order(pending) => {
+                    self.carry_out(when, *pending);
+                    delivered = true;
+                    if self.has_orders() {
+                        // A component carries it out before what comes after it.
+                        break;
+                    }
                 }
                 Due::Late { topic, message } => self.publish(topic, message, now),
                 Due::Settled => self.end_if_done(now),

@@ -18,6 +18,7 @@ mod journal;
 mod kept;
 mod observer;
 mod order;
+mod orders;
 mod reaction;
 mod real_time;
 mod regions;

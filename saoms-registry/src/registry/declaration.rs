@@ -304,8 +304,8 @@ impl InterfaceDeclaration {
     }
 }
 
-/// An operation as authors write it.
-fn signature(operation: &Value) -> String {
+/// An operation as authors write it: `where(robot: uint32) -> Block`.
+pub fn signature(operation: &Value) -> String {
     let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let arguments = operation["arguments"].as_array().into_iter().flatten();
     let arguments: Vec<String> =

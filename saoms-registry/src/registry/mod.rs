@@ -29,7 +29,7 @@ pub use declaration::{
     Alias, ClassDeclaration, ClassKind, ClassTopic, InterfaceDeclaration, PropertyDeclaration, ReferenceDeclaration,
     ServiceDeclaration, TakenEvent,
 };
-pub use declaration::{inner_type, type_name, type_words};
+pub use declaration::{inner_type, signature, type_name, type_words};
 pub use error::{Holder, RegistryError};
 pub use looping::{DeclaredEntry, DefaultLoops, KnowledgeDeclaration, LoopDeclaration, LoopProvider, RegisteredLoop};
 pub use rule::{RegisteredRule, RuleProvider};

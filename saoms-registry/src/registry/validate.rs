@@ -2,7 +2,7 @@
 //!
 //! The derives exclude most of them; a declaration written by hand, as that of a plugin in C, can have all.
 
-use saoms_api::event::is_event_name;
+use saoms_api::event::{ORDERS, is_event_name};
 use saoms_api::host::{RESERVED, TopicKind};
 use std::collections::HashSet;
 
@@ -51,6 +51,11 @@ fn events(class: &ClassDeclaration) -> Result<(), String> {
     for TakenEvent { event, topic, .. } in &class.takes {
         if !is_event_name(event) {
             return Err(format!("the event `{event}` needs a letter, then letters, digits, `_` and `-` as its name"));
+        }
+        if ORDERS.contains(&event.as_str()) {
+            return Err(format!(
+                "the event `{event}` has the name of an order to a running fleet: give it another name"
+            ));
         }
         let Some(found) = class.subscribes.iter().find(|known| known.name == *topic) else {
             return Err(format!(

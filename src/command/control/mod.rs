@@ -10,7 +10,8 @@ mod topic;
 
 pub(super) use logs::{LogsArguments, logs};
 pub(super) use orders::{
-    DownArguments, SendArguments, SetArguments, StartArguments, StopArguments, down, send, set, start, stop,
+    CallArguments, DownArguments, SendArguments, SetArguments, StartArguments, StopArguments, call, down, send, set,
+    start, stop,
 };
 pub(super) use ps::{PsArguments, ps};
 pub(super) use status::{StatusArguments, status};

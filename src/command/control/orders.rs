@@ -1,9 +1,10 @@
-//! Orders to a running fleet: `saoms down`, `send`, `start`, `stop` and `set`.
+//! Orders to a running fleet: `saoms down`, `send`, `start`, `stop`, `set` and `call`.
 
 use std::time::Duration;
 
 use clap::Args;
 use saoms_api::host::{format_duration, one_line};
+use serde_json::{Map, Value};
 
 use super::fleet::{RunningFleetArguments, escape};
 use crate::Exit;
@@ -99,6 +100,37 @@ pub(crate) struct SetArguments {
     fleet: RunningFleetArguments,
 }
 
+const CALL_CODES: &str = "\
+Exit codes:
+  0  called; the reply is printed
+  2  it is refused or has failed: there is no such component or operation, an argument is wrong, or the component does
+     not run; no fleet runs, or it is not clear which one is meant";
+
+/// Call an operation of a service that a running component offers
+#[derive(Debug, Args)]
+#[command(after_help = CALL_CODES)]
+pub(crate) struct CallArguments {
+    /// The component and the operation, such as `Gps.where`; where two of its services have it, `Gps/SERVICE.where`
+    #[arg(value_name = "COMPONENT.OPERATION", value_parser = operation)]
+    operation: (String, String),
+
+    /// The arguments of the operation: values in JSON, or words
+    #[arg(value_name = "ARGUMENT=VALUE", value_parser = pair)]
+    arguments: Vec<(String, String)>,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+fn operation(text: &str) -> Result<(String, String), String> {
+    match text.rsplit_once('.') {
+        Some((component, name)) if !component.is_empty() && !name.is_empty() => {
+            Ok((component.to_owned(), name.to_owned()))
+        }
+        _ => Err("expected `COMPONENT.OPERATION`".to_owned()),
+    }
+}
+
 fn pair(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
@@ -115,9 +147,12 @@ pub(crate) fn send(arguments: &SendArguments) -> Exit {
         Ok(answer) => answer,
         Err(exit) => return exit,
     };
-    let count = answer["events"].as_u64().unwrap_or_default();
-    let plural = if count == 1 { "" } else { "s" };
-    arguments.fleet.show(&answer, || format!("{count} event{plural} taken\n"));
+    arguments.fleet.show(&answer, || match (answer["events"].as_u64(), &answer["reply"]) {
+        (Some(1), _) => "1 event taken\n".to_owned(),
+        (Some(count), _) => format!("{count} events taken\n"),
+        (None, Value::Null) => "done\n".to_owned(),
+        (None, reply) => format!("{reply}\n"),
+    });
     Exit::Done
 }
 
@@ -141,6 +176,29 @@ pub(crate) fn set(arguments: &SetArguments) -> Exit {
     let path = format!("/v1/components/{}/properties/{}", escape(component), escape(property));
     let said = || format!("`{}` has {} = {}\n", one_line(component), one_line(property), one_line(value));
     order(&arguments.fleet, "PUT", &path, value, said)
+}
+
+pub(crate) fn call(arguments: &CallArguments) -> Exit {
+    let (component, operation) = &arguments.operation;
+    let path = format!("/v1/components/{}/operations/{}", escape(component), escape(operation));
+    let mut given = Map::new();
+    for (name, text) in &arguments.arguments {
+        let value = serde_json::from_str(text).unwrap_or_else(|_| Value::from(text.as_str()));
+        if given.insert(name.clone(), value).is_some() {
+            let message = format!("the argument `{}` is given twice", one_line(name));
+            return arguments.fleet.refuse(&message, Exit::WrongInput);
+        }
+    }
+    let answer = match arguments.fleet.ask("POST", &path, &Value::Object(given).to_string()) {
+        Ok(answer) => answer,
+        Err(exit) => return exit,
+    };
+    arguments.fleet.show(&answer, || match &answer["reply"] {
+        Value::Null => "called\n".to_owned(),
+        Value::String(text) => format!("{}\n", one_line(text)),
+        reply => format!("{reply}\n"),
+    });
+    Exit::Done
 }
 
 /// Gives an order, and says that it was taken.

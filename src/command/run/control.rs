@@ -10,14 +10,14 @@ use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_control::{
     ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkError, NetworkListener, Places,
-    TokenFile, TopicWatch, default_socket, token_beside,
+    SentLine, TokenFile, TopicWatch, default_socket, token_beside,
 };
 use saoms_core::observe::Observer;
 use saoms_core::schedule::Handle;
 
 use super::RunArguments;
 use super::ending::Signalled;
-use super::events::Events;
+use super::events::{Languages, Numbers, Sent};
 use crate::Exit;
 use crate::output::{displayed, eprint};
 
@@ -86,14 +86,19 @@ impl Control {
     }
 
     /// Serves operators from now on.
-    pub(super) fn serve(self, handle: &Handle, signals: &Signalled) -> Option<ControlServer> {
+    pub(super) fn serve(self, handle: &Handle, signals: &Signalled, numbers: &Numbers) -> Option<ControlServer> {
         let Control { places, description, log, topics } = self;
         let place = description.url.clone().zip(description.token_file.clone());
-        let events = Mutex::new(Events::of_operators(description.seed));
+        let languages = Mutex::new(Languages::of("(operators)", numbers));
         let fleet = handle.clone();
         let send = move |line: &str| {
-            let mut events = events.lock().unwrap_or_else(PoisonError::into_inner);
-            events.send(line, &fleet)
+            let sent = languages.lock().unwrap_or_else(PoisonError::into_inner).send(line, &fleet)?;
+            Ok(match sent {
+                Sent::Events(count) => SentLine::Events(count),
+                // What takes effect later has no answer yet.
+                Sent::Order(_, Some(at)) if at > fleet.progress().time => SentLine::Events(1),
+                Sent::Order(ticket, _) => SentLine::Order(ticket),
+            })
         };
         let (fleet, ending) = (handle.clone(), signals.ending());
         let fleet = ControlledFleet::new(description, handle.clone(), (log, topics), send, move || ending.down(&fleet));

@@ -34,7 +34,7 @@ use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint
 use console::Console;
 use control::{Control, NetworkArguments};
 use ending::{Signalled, end_without_reader};
-use events::Events;
+use events::{Events, Numbers};
 use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
@@ -164,7 +164,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     if let Err(exit) = Outputs::beside(arguments.events.clone()).with_streams() {
         return exit;
     }
-    let events = arguments.events.as_deref().map(|path| (path, Events::open(path, arguments.seed)));
+    let numbers = Numbers::new(arguments.seed);
+    let events = arguments.events.as_deref().map(|path| (path, Events::open(path, &numbers)));
     let events = match events {
         Some((path, Err(error))) => {
             let path = displayed(path);
@@ -212,7 +213,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut server = None;
     let before = |handle: &Handle| {
         notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
-        server = control.and_then(|control| control.serve(handle, &signals));
+        server = control.and_then(|control| control.serve(handle, &signals, &numbers));
     };
     let fleet = match RunningFleet::start_with(assembly, settings(arguments), observers, before) {
         Ok(fleet) => fleet,

@@ -29,6 +29,11 @@ impl Running {
     pub(super) fn start(composite: &str, arguments: &[&str]) -> Running {
         // The path of a socket has to be short.
         let folder = tempfile::tempdir().unwrap();
+        Running::start_beside(folder, composite, arguments)
+    }
+
+    /// The same in a folder with other files.
+    pub(super) fn start_beside(folder: TempDir, composite: &str, arguments: &[&str]) -> Running {
         fs::write(folder.path().join("fleet.composite"), composite).unwrap();
         Running::start_in(folder, arguments)
     }

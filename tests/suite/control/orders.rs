@@ -97,3 +97,78 @@ fn the_log_is_followed_to_the_end_of_the_fleet() {
     assert!(lines.iter().all(|line| line["date_s"].as_f64() > Some(1.7e9)), "{followed}");
     assert_eq!(running.end().0, Some(0));
 }
+
+#[test]
+fn operations_are_called() {
+    let running = Running::start(&fleet(), &["--stay"]);
+    running.until("Robot1", |robot| robot["values"]["state"] == "free");
+    let area = running.told(&["call", "World.area"]);
+    assert!(area.starts_with('{') && area.contains("\"width\":"), "{area}");
+    let answer: Value = serde_json::from_str(&running.told(&["call", "World.area", "--format", "json"])).unwrap();
+    assert!(answer["reply"]["width"].is_u64(), "{answer}");
+    let refused = running.refused(&["call", "World.poll"]);
+    assert!(refused.contains("operation `poll(robot: uint32)") && refused.contains("is missing"), "{refused}");
+    let refused = running.refused(&["call", "World.are"]);
+    assert!(refused.contains("offers no operation `are`; did you mean `area`?"), "{refused}");
+    let refused = running.refused(&["call", "World"]);
+    assert!(refused.contains("expected `COMPONENT.OPERATION`"), "{refused}");
+    running.told(&["down"]);
+    assert_eq!(running.end().0, Some(0));
+}
+
+/// What came from outside, with its times, in a file of `--journal`.
+fn from_outside(file: &std::path::Path) -> Vec<(f64, String)> {
+    let journal = std::fs::read_to_string(file).unwrap();
+    let records = journal.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+    let of_outside = records.filter(|record| record["component"] == "(outside)");
+    of_outside.map(|record| (record["time_s"].as_f64().unwrap(), record["text"].as_str().unwrap().to_owned())).collect()
+}
+
+#[test]
+fn what_came_from_outside_is_in_the_journal_and_happens_again() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("events.txt"), "luggage (1,3) to (3,3)\n").unwrap();
+    let options = ["--stay", "--journal", "first.ndjson", "--events", "events.txt"];
+    let mut running = Running::start_beside(folder, &fleet(), &options);
+    running.until("Robot1", |robot| robot["values"]["state"] == "free");
+    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event taken\n");
+    assert_eq!(running.told(&["send", "start Robot2"]), "done\n");
+    running.until("Robot2", |robot| robot["state"] == "running");
+    running.told(&["topic", "pub", "RMSTOPIC", "{\"robot\":2,\"awake\":true,\"emulate\":0}"]);
+    running.told(&["call", "World.area"]);
+    running.told(&["stop", "Robot2"]);
+    let refused = running.refused(&["send", "stopp Robot2"]);
+    assert!(refused.contains("did you mean `stop`?"), "{refused}");
+    let refused = running.refused(&["send", "stop Robot"]);
+    assert!(refused.contains("the fleet has no component `Robot`"), "{refused}");
+    running.until("World", |world| world["values"]["delivered"] == 2);
+    running.told(&["down"]);
+    let folder = running.folder().to_owned();
+    let (code, text) = running.wait();
+    assert_eq!(code, Some(0), "{text}");
+    let given = from_outside(&folder.join("first.ndjson"));
+    let texts: Vec<&str> = given.iter().map(|(_, text)| text.as_str()).collect();
+    assert_eq!(
+        texts,
+        [
+            "luggage (1,3) to (3,3) number 1000001",
+            "luggage (2,1) to (4,1) number 1000002",
+            "start Robot2",
+            "publish RMSTOPIC {\"awake\":true,\"emulate\":0,\"robot\":2}",
+            "call World.area",
+            "stop Robot2",
+        ]
+    );
+
+    // At the same times in virtual time, twice with the same trace.
+    let again = |journal: &str| {
+        let replay = ["run", "fleet.composite", "--virtual", "--for", "60s", "--report", "again.json"];
+        let output = running.ask(&[&replay[..], &["--events", "first.ndjson", "--journal", journal]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", crate::support::text(&output));
+        let report: Value = serde_json::from_slice(&std::fs::read(folder.join("again.json")).unwrap()).unwrap();
+        (report["trace_hash"].clone(), from_outside(&folder.join(journal)))
+    };
+    let (trace, second) = again("second.ndjson");
+    assert_eq!(second, given);
+    assert_eq!(again("third.ndjson"), (trace, given));
+}

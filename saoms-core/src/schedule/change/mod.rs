@@ -21,7 +21,7 @@ use crate::assemble::{ChangePlan, Replacement};
 
 pub use error::{ChangeError, StartError};
 pub use live::SetError;
-pub(crate) use live::set;
+pub(crate) use live::changed;
 pub use takeover::Takeover;
 
 /// A change that was made, by the paths of components.

@@ -12,6 +12,7 @@ use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
 use crate::schedule::engine::votes::Ballot;
+use crate::schedule::order::OrderInCode;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::RegisteredStop;
 use crate::status::{Description, named_values};
@@ -71,6 +72,8 @@ pub(crate) struct Part {
     pub(crate) waits_for: Option<String>,
     /// Answer to the question what an operator wants to know.
     pub(crate) described: Option<Arc<Description>>,
+    /// The order that it carries out.
+    pub(crate) order: Option<Box<OrderInCode>>,
     /// In virtual time, the time at which the present code runs.
     pub(crate) now: u64,
     pub(crate) due: u64,
@@ -109,6 +112,8 @@ pub(crate) enum Job {
     Ask,
     /// Say what an operator wants to know.
     Describe,
+    /// Carry out an order of an operator.
+    Order,
     /// Shut down.
     Shutdown,
 }
@@ -146,6 +151,7 @@ impl Body {
             vote: None,
             waits_for: None,
             described: None,
+            order: None,
             now: 0,
             due: 0,
             execution: 0,
@@ -187,6 +193,7 @@ impl Body {
                 self.part.waits_for = waits_for;
             }),
             Job::Describe => self.describe(shared),
+            Job::Order => self.carry_out(shared),
             Job::Start => self.start(shared),
             Job::Shutdown => self.call(shared, |instance, context| instance.shutdown(context)).unwrap_or_else(Err),
         };

@@ -30,11 +30,14 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             continue;
         }
         let next = if engine.phase == RunPhase::Running && now >= engine.pause {
-            let Some(question) = engine.next_question() else {
-                engine = sleep(shared, engine);
-                continue;
-            };
-            question
+            match engine.next_while_paused(now) {
+                Some(next) => next,
+                None if engine.phase != RunPhase::Running => continue,
+                None => {
+                    engine = sleep(shared, engine);
+                    continue;
+                }
+            }
         } else {
             engine.next(now)
         };

@@ -22,7 +22,7 @@ impl Engine {
                 Job::Execute | Job::React => true,
                 Job::Start => self.phase == RunPhase::Running && slot.pending == PendingRequest::None,
                 Job::Shutdown => part.retries_shutdown,
-                Job::Ask | Job::Describe => false,
+                Job::Ask | Job::Describe | Job::Order => false,
             }
     }
 

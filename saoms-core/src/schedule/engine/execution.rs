@@ -58,6 +58,9 @@ impl Engine {
         self.out += 1;
         slot.out_since = now;
         body.part.now = now;
+        if !self.real && self.phase == RunPhase::Running && !matches!(job, Job::Ask | Job::Describe | Job::Order) {
+            self.begun = now;
+        }
         match job {
             Job::Execute => self.begin_execution(index, &mut body, now),
             Job::React => self.begin_reaction(index, &mut body),
@@ -67,6 +70,7 @@ impl Engine {
                 body.part.retries_shutdown = self.phase != RunPhase::Stopping || self.out > 1;
             }
             Job::Ask | Job::Describe => {}
+            Job::Order => self.begin_order(index, &mut body, now),
             Job::Start => {
                 let seed = if slot.instances == 0 { self.seed } else { fold(self.seed, slot.instances) };
                 slot.instances += 1;
@@ -174,6 +178,9 @@ impl Engine {
         if job == Job::Describe {
             self.note_answer(index);
         }
+        if job == Job::Order {
+            self.finish_order(index, &mut body, result.as_ref().err(), ended);
+        }
         let slot = &mut self.slots[index as usize];
         if matches!(job, Job::Execute | Job::React) && self.real {
             let slow = ended.saturating_sub(started) > self.budget && !slot.isolation.always;
@@ -202,7 +209,7 @@ impl Engine {
                 let vote = body.part.vote.take_if(|_| !held);
                 let slot = &mut self.slots[index as usize];
                 match job {
-                    Job::Execute | Job::React | Job::Shutdown => {}
+                    Job::Execute | Job::React | Job::Order | Job::Shutdown => {}
                     Job::Describe => slot.described = body.part.described.take(),
                     Job::Ask => {
                         slot.waits_for = body.part.waits_for.take();
@@ -219,7 +226,7 @@ impl Engine {
                 }
                 match job {
                     Job::Execute | Job::React => self.executed(index, ended),
-                    Job::Ask | Job::Describe => self.answered(index, ended),
+                    Job::Ask | Job::Describe | Job::Order => self.answered(index, ended),
                     Job::Start => self.started(index, ended),
                     Job::Shutdown => self.left(index, ended),
                 }
@@ -234,6 +241,10 @@ impl Engine {
             self.ending.extend(self.ending_later.drain(..));
         }
         self.has_returned |= self.awaited > 0;
+        if self.has_orders() {
+            self.look_at = 0;
+            self.wake |= self.roles.asleep_until != 0;
+        }
         self.wake |= self.phase == RunPhase::Stopping && self.roles.asleep_until != 0;
     }
 

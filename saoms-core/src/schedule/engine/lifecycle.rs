@@ -169,7 +169,7 @@ impl Engine {
         body.part.vote = None;
         let doing = match job {
             Job::Start => "could not start: ",
-            Job::Execute | Job::React | Job::Ask | Job::Describe => "",
+            Job::Execute | Job::React | Job::Ask | Job::Describe | Job::Order => "",
             Job::Shutdown => "could not shut down: ",
         };
         let mut message = format!("{doing}{failure}");

@@ -30,6 +30,7 @@ use self::trace::{Trace, TraceStep};
 use self::votes::VoteTally;
 use super::component::body::Job;
 use super::inject::Injections;
+use super::order::PendingOrders;
 use super::settings::{ClockKind, Settings, nanos};
 use super::stop::Stops;
 use super::takers::Takers;
@@ -71,6 +72,10 @@ pub(crate) struct Engine {
     pub(crate) ending_later: Vec<u32>,
     /// Messages from outside, and those that faults hold up.
     pub(crate) injections: Injections,
+    /// Orders that wait for a component whose code runs.
+    pub(crate) orders: PendingOrders,
+    /// In virtual time, the time of the newest execution.
+    pub(crate) begun: u64,
     /// The newest records of messages from outside.
     pub(crate) outside: OutsideRing,
     /// Functions that stop hardware, and the components that have some or use some.
@@ -167,6 +172,8 @@ impl Engine {
             ending: VecDeque::new(),
             ending_later: Vec::new(),
             injections: Injections::default(),
+            orders: PendingOrders::default(),
+            begun: NEVER,
             outside: OutsideRing::default(),
             stops: Arc::default(),
             with_hardware: Vec::new(),
@@ -202,8 +209,10 @@ impl Engine {
                     }
                     // One comparison in most executions.
                     if now >= self.look_at {
-                        if self.injections.earliest().is_some_and(|when| when <= now && when < self.limit) {
-                            self.deliver_injections(now);
+                        if let Some(index) = self.next_order(now) {
+                            return Next::Run(index, Job::Order);
+                        }
+                        if self.deliver_due(now) {
                             continue;
                         }
                         if self.standstill.is_quiet(now) {
@@ -249,6 +258,28 @@ impl Engine {
                 RunPhase::Ended => return Next::Ended,
             }
         }
+    }
+
+    /// The next action at a time at which the fleet pauses: what comes from outside, and questions.
+    pub(crate) fn next_while_paused(&mut self, now: u64) -> Option<Next> {
+        while self.phase == RunPhase::Running {
+            if let Some(index) = self.next_order(now) {
+                return Some(Next::Run(index, Job::Order));
+            }
+            if !self.deliver_due(now) {
+                return self.next_question();
+            }
+        }
+        None
+    }
+
+    /// Delivers what comes from outside and is due; false if there is nothing.
+    fn deliver_due(&mut self, now: u64) -> bool {
+        let is_due = self.injections.earliest().is_some_and(|when| when <= now && when < self.limit);
+        if is_due {
+            self.deliver_injections(now);
+        }
+        is_due
     }
 
     /// The earliest due time.

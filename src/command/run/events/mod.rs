@@ -1,21 +1,26 @@
 //! `saoms run --events`: events from outside, a line each, while the fleet runs.
 
+mod journal;
+
 use std::convert::Infallible;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU32;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use saoms_api::event::EventCall;
-use saoms_api::extension::{EventContent, EventLanguage, EventReader, LineFault, TimedMessage};
+use saoms_api::event::{EventCall, ORDERS};
+use saoms_api::extension::{EventContent, EventLanguage, EventReader, EventSource, LineFault, TimedMessage};
 use saoms_api::host::is_invisible;
 use saoms_api::rule::nearest;
 use saoms_api::{Level, Time};
-use saoms_core::schedule::{Handle, Hold, InjectError, InjectedContent, Injection, RaiseError};
+use saoms_core::schedule::{
+    Handle, Hold, InjectError, InjectedContent, Injection, Order, OrderTicket, RaiseError, TimedOrder,
+};
 
 use crate::output::wait_for_input;
 
@@ -45,9 +50,7 @@ const LONGEST: usize = 65_536;
 /// Lines of events that are not read yet.
 pub(super) struct Events {
     lines: Box<dyn BufRead + Send>,
-    seed: u64,
-    /// The topic of each language and its reader, from the first line on.
-    languages: Vec<(&'static str, Box<dyn EventReader>)>,
+    languages: Languages,
     /// The number of the line that was read last, from 1.
     number: usize,
 }
@@ -55,7 +58,7 @@ pub(super) struct Events {
 impl Events {
     /// Opens a file, or standard input where the path is `-`. A named pipe may have no writer yet: it is waited for
     /// when lines are read, so that the fleet runs and can be ended.
-    pub(super) fn open(path: &Path, seed: u64) -> io::Result<Events> {
+    pub(super) fn open(path: &Path, numbers: &Numbers) -> io::Result<Events> {
         let lines: Box<dyn BufRead + Send> = if path == Path::new("-") {
             Box::new(BufReader::new(io::stdin()))
         } else if fs::metadata(path)?.file_type().is_fifo() {
@@ -69,31 +72,16 @@ impl Events {
             }
             let mut lines = BufReader::new(file);
             // A device may have nothing to read yet.
-            if is_regular && lines.fill_buf()?.trim_ascii_start().starts_with(b"<") {
+            let start = if is_regular { lines.fill_buf()?.trim_ascii_start() } else { &[] };
+            if start.starts_with(b"<") {
                 return Err(io::Error::other("it is XML, expected a line for each event"));
+            }
+            if start.starts_with(b"{") && !journal::is_head(start) {
+                return Err(io::Error::other("it is JSON, expected a line for each event, or a file of `--journal`"));
             }
             Box::new(lines)
         };
-        Ok(Events { lines, seed, languages: Vec::new(), number: 0 })
-    }
-
-    /// Lines that operators send one by one.
-    pub(super) fn of_operators(seed: u64) -> Events {
-        Events { lines: Box::new(io::empty()), seed, languages: Vec::new(), number: 0 }
-    }
-
-    /// Lets the events of a line that an operator sent happen, and gives their number.
-    ///
-    /// # Errors
-    /// What is wrong with the line.
-    pub(super) fn send(&mut self, line: &str, handle: &Handle) -> Result<u64, String> {
-        let line = line.trim();
-        if line.contains(['\n', '\r']) {
-            return Err("found several lines, expected one line, with `;` between events".to_owned());
-        }
-        let count = self.inject(line, handle.progress().time, handle)?;
-        handle.count("events.taken", count);
-        Ok(u64::try_from(count).unwrap_or_default())
+        Ok(Events { lines, languages: Languages::of("(outside)", numbers), number: 0 })
     }
 
     /// Lets events happen in a fleet that has just started. In virtual time all lines are read first, so that the same
@@ -142,14 +130,19 @@ impl Events {
         Ok(count > 0)
     }
 
-    /// Injects the events of a line, or reports its fault.
+    /// Lets the events of a line happen, or reports its fault.
     fn take(&mut self, line: &[u8], handle: &Handle) {
         let now = handle.progress().time;
         let result = if line.len() > LONGEST {
             Err(format!("found more than {LONGEST} bytes in one line"))
         } else {
             match std::str::from_utf8(line) {
-                Ok(text) => self.inject(text.trim_end_matches('\r'), now, handle),
+                // A line of a journal: what came from outside happens again, and the rest follows from it.
+                Ok(text) if text.starts_with('{') => match journal::event(text) {
+                    Ok(event) => event.map_or(Ok(0), |event| self.languages.happen(&event, now, handle)),
+                    Err(problem) => Err(problem),
+                },
+                Ok(text) => self.languages.happen(text.trim_end_matches('\r'), now, handle),
                 Err(_) => Err("found bytes that are not UTF-8".to_owned()),
             }
         };
@@ -161,19 +154,77 @@ impl Events {
             }
         }
     }
+}
+
+/// What the events of all sources of a run number together.
+#[derive(Clone, Debug)]
+pub(super) struct Numbers {
+    seed: u64,
+    numbers: Arc<AtomicU32>,
+}
+
+impl Numbers {
+    pub(super) fn new(seed: u64) -> Numbers {
+        Numbers { seed, numbers: Arc::default() }
+    }
+}
+
+/// The languages of events for one source of lines.
+pub(super) struct Languages {
+    /// The topic of each language and its reader.
+    readers: Vec<(&'static str, Box<dyn EventReader>)>,
+}
+
+/// What came of a line of an operator.
+pub(super) enum Sent {
+    /// The number of its events.
+    Events(i64),
+    /// It was an order, which takes effect at the next instant, or at a later time.
+    Order(OrderTicket, Option<Time>),
+}
+
+impl Languages {
+    pub(super) fn of(name: &'static str, Numbers { seed, numbers }: &Numbers) -> Languages {
+        let source = || EventSource { name, seed: *seed, numbers: Arc::clone(numbers) };
+        let reader = |one: &EventLanguage| (one.topic.name, (one.new)(source()));
+        Languages { readers: EventLanguage::linked().map(reader).collect() }
+    }
+
+    /// Lets the events of a line that an operator sent happen, or gives its order.
+    ///
+    /// # Errors
+    /// What is wrong with the line.
+    pub(super) fn send(&mut self, line: &str, handle: &Handle) -> Result<Sent, String> {
+        let line = line.trim();
+        if line.contains(['\n', '\r']) {
+            return Err("found several lines, expected one line, with `;` between events".to_owned());
+        }
+        let now = handle.progress().time;
+        let sent = match Order::read(line) {
+            Some(order) => order_given(line, order, handle).map(|(ticket, at)| Sent::Order(ticket, at)),
+            None => self.events(line, now, handle).map(Sent::Events),
+        };
+        let count = if let Ok(Sent::Events(count)) = &sent { *count } else { i64::from(sent.is_ok()) };
+        handle.count("events.taken", count);
+        sent
+    }
+
+    /// Lets the events of a line happen, or its order, and counts them.
+    fn happen(&mut self, line: &str, now: Time, handle: &Handle) -> Result<i64, String> {
+        match Order::read(line) {
+            Some(order) => order_given(line, order, handle).map(|_| 1),
+            None => self.events(line, now, handle),
+        }
+    }
 
     /// Lets the events of a line happen, and counts them. A site may stand before the event: `North: at 3s ...`.
-    fn inject(&mut self, line: &str, now: Time, handle: &Handle) -> Result<i64, String> {
+    fn events(&mut self, line: &str, now: Time, handle: &Handle) -> Result<i64, String> {
         let (site, event) = site_of(line);
         let before = line.len() - event.len();
-        if self.languages.is_empty() {
-            let known = handle.takers();
-            let reader = |one: &EventLanguage| (one.topic.name, (one.new)(self.seed, Arc::clone(known.events())));
-            self.languages = EventLanguage::linked().map(reader).collect();
-        }
+        let takers = handle.takers();
         let mut problem = None;
-        for (topic, reader) in &mut self.languages {
-            match reader.read(event, now) {
+        for (topic, reader) in &mut self.readers {
+            match reader.read(event, now, takers.events()) {
                 Ok(messages) => {
                     let count = i64::try_from(messages.len()).unwrap_or(i64::MAX);
                     for message in messages {
@@ -185,7 +236,27 @@ impl Events {
             }
         }
         let none = || "no class of this program takes events".to_owned();
-        Err(problem.map_or_else(none, |one| shown(line, &one.moved(before))))
+        Err(problem.map_or_else(none, |one| shown(line, &or_order(line, one.moved(before)))))
+    }
+}
+
+/// Gives an order.
+fn order_given(
+    line: &str,
+    order: Result<TimedOrder, LineFault>,
+    handle: &Handle,
+) -> Result<(OrderTicket, Option<Time>), String> {
+    let TimedOrder { at, order } = order.map_err(|fault| shown(line, &fault))?;
+    let ticket = handle.order(order, at).map_err(|error| error.to_string())?;
+    Ok((ticket, at))
+}
+
+/// A fault of a word that is nearly one of an order.
+fn or_order(line: &str, fault: LineFault) -> LineFault {
+    let word = line.get(fault.bytes.clone()).unwrap_or_default();
+    match nearest(word, ORDERS) {
+        Some(order) if fault.instead.is_none() && !word.is_empty() => fault.instead(order),
+        _ => fault,
     }
 }
 
@@ -199,17 +270,18 @@ fn site_of(line: &str) -> (&str, &str) {
 }
 
 /// Lets one event happen.
-fn happen(message: TimedMessage, (site, topic): (&str, &str), handle: &Handle) -> Result<(), String> {
+fn happen(message: TimedMessage, (site, language): (&str, &str), handle: &Handle) -> Result<(), String> {
     let TimedMessage { at, content, text } = message;
+    let line = if site.is_empty() { text.clone() } else { format!("{site}: {text}") };
     match content {
         EventContent::Bytes(bytes) => {
-            let on_bus = if site.is_empty() { topic.to_owned() } else { format!("{site}/{topic}") };
-            let injection = Injection { topic: on_bus, content: InjectedContent::Bytes(bytes), at, text };
-            handle.inject(injection).map_err(|error| refused(site, topic, &error))
+            let topic = if site.is_empty() { language.to_owned() } else { format!("{site}/{language}") };
+            let injection = Injection { topic, content: InjectedContent::Bytes(bytes), at, text: line };
+            handle.inject(injection).map_err(|error| refused(site, language, &error))
         }
         EventContent::Raised => {
             let raised = EventCall::read(&text).map_err(RaiseError::Wrong);
-            let raised = raised.and_then(|call| handle.raise(site, &call, at, text.clone()));
+            let raised = raised.and_then(|call| handle.raise(site, &call, at, line));
             raised.map_err(|error| match error {
                 RaiseError::Wrong(fault) => shown(&text, &fault),
                 RaiseError::Ending => error.to_string(),
@@ -290,7 +362,7 @@ mod tests {
     fn lines_that_are_too_long_are_read_to_their_end() {
         let text = format!("one\n{}\nthree", "x".repeat(3 * LONGEST));
         let lines = Box::new(io::Cursor::new(text));
-        let mut events = Events { lines, seed: 0, languages: Vec::new(), number: 0 };
+        let mut events = Events { lines, languages: Languages::of("(outside)", &Numbers::new(0)), number: 0 };
         let (mut line, mut lengths) = (Vec::new(), Vec::new());
         while events.next(&mut line).unwrap() {
             lengths.push(line.len());

@@ -1,0 +1,76 @@
+//! Orders to the fleet and its components.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::extract::{Path, Query, State};
+use saoms_api::host::parse_duration;
+use saoms_core::schedule::{Order, OrderTicket};
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+use super::answer::{Answer, Refusal, json_text, waiting};
+use super::fleet::{ControlledFleet, SentLine};
+
+type Fleet = State<Arc<ControlledFleet>>;
+
+/// Time for which an answer is waited for.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Gives an order, and waits for its answer.
+pub(super) async fn give(fleet: Arc<ControlledFleet>, order: Order) -> Answer {
+    let ticket = waiting(move || fleet.handle.order(order, None)).await?.map_err(Refusal::unprocessable)?;
+    answered(ticket).await
+}
+
+async fn answered(ticket: OrderTicket) -> Answer {
+    let reply = waiting(move || ticket.wait(PATIENCE)).await?.map_err(Refusal::unprocessable)?;
+    json_text(json!({"reply": reply}).to_string())
+}
+
+pub(super) async fn send(State(fleet): Fleet, line: String) -> Answer {
+    match waiting(move || (fleet.send)(&line)).await?.map_err(Refusal::unprocessable)? {
+        SentLine::Events(count) => json_text(json!({"events": count}).to_string()),
+        SentLine::Order(ticket) => answered(ticket).await,
+    }
+}
+
+#[derive(Deserialize)]
+pub(super) struct StartQuery {
+    #[serde(rename = "for")]
+    duration: Option<String>,
+}
+
+pub(super) async fn start(
+    State(fleet): Fleet,
+    Path(component): Path<String>,
+    Query(query): Query<StartQuery>,
+) -> Answer {
+    let lasting = query.duration.as_deref().map(parse_duration).transpose().map_err(Refusal::unprocessable)?;
+    give(fleet, Order::Start { component, lasting }).await
+}
+
+pub(super) async fn stop(State(fleet): Fleet, Path(component): Path<String>) -> Answer {
+    give(fleet, Order::Stop { component }).await
+}
+
+pub(super) async fn set(
+    State(fleet): Fleet,
+    Path((component, property)): Path<(String, String)>,
+    value: String,
+) -> Answer {
+    give(fleet, Order::Set { component, property, value }).await
+}
+
+pub(super) async fn call(
+    State(fleet): Fleet,
+    Path((component, operation)): Path<(String, String)>,
+    body: String,
+) -> Answer {
+    let arguments: Map<String, Value> = match body.trim() {
+        "" => Map::new(),
+        body => serde_json::from_str(body)
+            .map_err(|error| Refusal::unprocessable(format!("the arguments are no object in JSON: {error}")))?,
+    };
+    give(fleet, Order::Call { component, operation, arguments: arguments.into_iter().collect() }).await
+}

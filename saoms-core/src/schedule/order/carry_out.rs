@@ -1,0 +1,289 @@
+//! The way of an order: it is checked when it comes, waits for its instant, and takes effect before the executions that
+//! are due then.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use saoms_api::host::Invocation;
+use saoms_api::host::contain::contained;
+use saoms_api::{Cause, Failure, Level, Time};
+use saoms_lang::assembly::ComponentSpec;
+use serde_json::Value;
+
+use super::call::JsonCall;
+use super::ticket::{Answering, OrderTicket, ticket};
+use super::{Order, OrderError};
+use crate::observe::Occurrence;
+use crate::schedule::change::{self, SetError};
+use crate::schedule::component::body::Body;
+use crate::schedule::engine::lifecycle::Request;
+use crate::schedule::engine::slot::{NEVER, SlotState};
+use crate::schedule::engine::{Engine, RunPhase};
+use crate::schedule::inject::{self, InjectedContent, Injection, OUTSIDE_NAME};
+use crate::schedule::settings::nanos;
+use crate::schedule::shared::Shared;
+
+/// An order that was accepted.
+#[derive(Debug)]
+pub(crate) struct PendingOrder {
+    order: Order,
+    answering: Answering,
+}
+
+/// Orders that wait for a component whose code runs, in the order in which they came.
+#[derive(Debug, Default)]
+pub(crate) struct PendingOrders {
+    waiting: VecDeque<(u32, Box<PendingOrder>)>,
+}
+
+/// An order that a component carries out itself: what its code gets, and its answer.
+pub(crate) struct OrderInCode {
+    order: Order,
+    answering: Answering,
+    /// Its record in the journal.
+    cause: Cause,
+    /// `None` once it has begun.
+    work: Option<Work>,
+    answer: Option<Result<Value, OrderError>>,
+}
+
+enum Work {
+    /// The specification with the new value.
+    Set(Box<ComponentSpec>),
+    Call(JsonCall),
+}
+
+/// Checks an order and queues it for its time, or for the next instant.
+///
+/// # Errors
+/// It is refused.
+pub(in crate::schedule) fn accept(shared: &Shared, order: Order, at: Option<Time>) -> Result<OrderTicket, OrderError> {
+    let (ticket, answering) = ticket();
+    if let Order::Publish { topic, message } = &order {
+        let (topic, content) = (topic.clone(), InjectedContent::Fields(message.clone()));
+        let injection = Injection { topic, content, at, text: order.to_string() };
+        inject::inject(shared, injection).map_err(OrderError::Message)?;
+        let _ = answering.give(Ok(Value::Null));
+        return Ok(ticket);
+    }
+    let engine = shared.lock();
+    if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
+        return Err(OrderError::Ending);
+    }
+    engine.judge(&order)?;
+    shared.release(engine);
+    inject::add_order(shared, at, PendingOrder { order, answering });
+    Ok(ticket)
+}
+
+impl Engine {
+    /// Checks an order as far as it can be checked before it takes effect.
+    fn judge(&self, order: &Order) -> Result<(), OrderError> {
+        match order {
+            Order::Start { component, .. } | Order::Stop { component } => {
+                self.periodic(component).map(drop).map_err(OrderError::Component)
+            }
+            Order::Set { component, .. } | Order::Call { component, .. } => {
+                let (number, service) = self.provider(component)?;
+                self.work(order, number, service).map(drop)
+            }
+            Order::Publish { .. } => Ok(()),
+        }
+    }
+
+    /// The component of this path, which may have the name of a service behind it.
+    fn provider<'o>(&self, path: &'o str) -> Result<(u32, Option<&'o str>), OrderError> {
+        let member = |path: &str| {
+            let number = self.numbers.get(path).copied();
+            number.filter(|number| self.slots[*number as usize].is_member())
+        };
+        if let Some(number) = member(path) {
+            return Ok((number, None));
+        }
+        let of_service = path.rsplit_once('/').and_then(|(owner, service)| Some((member(owner)?, Some(service))));
+        of_service.ok_or_else(|| OrderError::Component(self.unknown(path)))
+    }
+
+    /// What the code of a component has to do for an order.
+    fn work(&self, order: &Order, number: u32, service: Option<&str>) -> Result<Work, OrderError> {
+        let spec = &self.slots[number as usize].spec;
+        match order {
+            Order::Set { component, property, value } => match service {
+                None => change::changed(spec, property, value)
+                    .map(|changed| Work::Set(Box::new(changed)))
+                    .map_err(OrderError::Set),
+                Some(_) => Err(OrderError::Component(self.unknown(component))),
+            },
+            Order::Call { operation, arguments, .. } => {
+                JsonCall::new(spec, service, operation, arguments).map(Work::Call)
+            }
+            _ => Err(OrderError::Ending),
+        }
+    }
+
+    /// Lets an order take effect.
+    pub(in crate::schedule) fn carry_out(&mut self, when: u64, pending: PendingOrder) {
+        let request = match &pending.order {
+            Order::Start { component, lasting } => {
+                (component, Request::Schedule { lasting: lasting.map_or(NEVER, nanos) })
+            }
+            Order::Stop { component } => (component, Request::Unschedule),
+            Order::Set { component, .. } | Order::Call { component, .. } => {
+                match self.provider(component) {
+                    Ok((number, _)) => self.orders.waiting.push_back((number, Box::new(pending))),
+                    Err(error) => self.answer(when, &pending.order, pending.answering, Err(error)),
+                }
+                return;
+            }
+            Order::Publish { .. } => return,
+        };
+        if pending.answering.is_cancelled() {
+            return;
+        }
+        let answer = match self.periodic(request.0) {
+            Ok(number) => {
+                self.record_outside(when, OUTSIDE_NAME, pending.order.to_string());
+                self.request(number, request.1, when);
+                Ok(Value::Null)
+            }
+            Err(error) => Err(OrderError::Component(error)),
+        };
+        self.answer(when, &pending.order, pending.answering, answer);
+    }
+
+    /// Answers an order. A refusal that nobody waits for is logged.
+    fn answer(&mut self, now: u64, order: &Order, answering: Answering, answer: Result<Value, OrderError>) {
+        if let Some(error) = answering.give(answer) {
+            let text = format!("the order `{order}` is refused: {error}");
+            self.note(now, Occurrence::Note { level: Level::Warning, text });
+        }
+    }
+
+    /// True if an order waits for a component.
+    #[inline]
+    pub(in crate::schedule) fn has_orders(&self) -> bool {
+        !self.orders.waiting.is_empty()
+    }
+
+    /// The first component that can carry out an order now. Orders to components that do not run are refused.
+    #[inline]
+    pub(in crate::schedule) fn next_order(&mut self, now: u64) -> Option<u32> {
+        if self.has_orders() { self.ready_order(now) } else { None }
+    }
+
+    #[cold]
+    fn ready_order(&mut self, now: u64) -> Option<u32> {
+        let mut place = 0;
+        while let Some((index, pending)) = self.orders.waiting.get(place) {
+            let (index, slot) = (*index, &self.slots[*index as usize]);
+            let is_over = pending.answering.is_cancelled();
+            if !is_over && (slot.body.is_none() || slot.held) {
+                place += 1;
+                continue;
+            }
+            let is_ready = slot.is_alive() && !matches!(slot.state, SlotState::Starting | SlotState::Leaving);
+            if is_ready && !is_over {
+                return Some(index);
+            }
+            if let Some((_, pending)) = self.orders.waiting.remove(place) {
+                let refusal = not_running(&self.slots[index as usize].name, &pending.order);
+                self.answer(now, &pending.order, pending.answering, Err(refusal));
+            }
+        }
+        None
+    }
+
+    /// Gives a component's body the order that it carries out.
+    pub(in crate::schedule) fn begin_order(&mut self, index: u32, body: &mut Body, now: u64) {
+        let Some(place) = self.orders.waiting.iter().position(|(waiting, _)| *waiting == index) else { return };
+        let Some((_, pending)) = self.orders.waiting.remove(place) else { return };
+        let PendingOrder { order, answering } = *pending;
+        let work = match &order {
+            Order::Set { component, .. } | Order::Call { component, .. } => {
+                self.provider(component).and_then(|(number, service)| self.work(&order, number, service))
+            }
+            _ => return,
+        };
+        match work {
+            Ok(work) => {
+                let cause = self.record_outside(now, OUTSIDE_NAME, order.to_string());
+                body.part.order =
+                    Some(Box::new(OrderInCode { order, answering, cause, work: Some(work), answer: None }));
+            }
+            Err(error) => self.answer(now, &order, answering, Err(error)),
+        }
+    }
+
+    /// Answers an order after the code of its component has returned, or has failed.
+    pub(in crate::schedule) fn finish_order(
+        &mut self,
+        index: u32,
+        body: &mut Body,
+        failure: Option<&Failure>,
+        now: u64,
+    ) {
+        let Some(order) = body.part.order.take() else { return };
+        let slot = &mut self.slots[index as usize];
+        let answer = match (order.answer, failure) {
+            (Some(answer), _) => answer,
+            (None, Some(failure)) => Err(OrderError::Call(format!("component `{}` failed: {failure}", slot.name))),
+            (None, None) => Ok(Value::Null),
+        };
+        // It may have another value of a property.
+        slot.spec = Arc::clone(&body.part.spec);
+        let OrderInCode { order, answering, .. } = *order;
+        self.answer(now, &order, answering, answer);
+    }
+}
+
+/// The error of an order to a component that does not run.
+fn not_running(component: &str, order: &Order) -> OrderError {
+    match order {
+        Order::Set { .. } => {
+            OrderError::Set(SetError::NotNow { component: component.to_owned(), why: "it does not run".to_owned() })
+        }
+        _ => OrderError::Call(format!("component `{component}` does not run")),
+    }
+}
+
+impl Body {
+    /// Carries out the order that it was given.
+    ///
+    /// # Errors
+    /// The component panicked in a call.
+    pub(in crate::schedule) fn carry_out(&mut self, shared: &Arc<Shared>) -> Result<(), Failure> {
+        let Some(mut order) = self.part.order.take() else { return Ok(()) };
+        let answer = match order.work.take() {
+            Some(Work::Set(changed)) => Ok(self.update(*changed).map_err(OrderError::Set)),
+            Some(Work::Call(call)) => self.answer(shared, call, order.cause),
+            None => return Ok(()),
+        };
+        let result = answer.map(|answer| order.answer = Some(answer));
+        self.part.order = Some(order);
+        result
+    }
+
+    /// Gives the component new values of its properties.
+    fn update(&mut self, changed: ComponentSpec) -> Result<Value, SetError> {
+        let updated = match &mut self.instance {
+            Some(instance) => contained(|| instance.update(&changed.values)).and_then(|updated| updated),
+            None => Err(Failure::new("it has just ended")),
+        };
+        let refused = |failure| SetError::Refused { component: self.part.name.to_string(), failure };
+        updated.map_err(refused)?;
+        self.part.spec = Arc::new(changed);
+        Ok(Value::Null)
+    }
+
+    /// Answers a call. The outer error is a panic.
+    fn answer(
+        &mut self,
+        shared: &Arc<Shared>,
+        mut call: JsonCall,
+        cause: Cause,
+    ) -> Result<Result<Value, OrderError>, Failure> {
+        let service = call.service.clone();
+        let served = self.serve(shared, &mut Invocation { service: &service, call: &mut call }, cause)?;
+        Ok(served.map(|()| call.into_reply()).map_err(|error| OrderError::Call(error.to_string())))
+    }
+}
