@@ -6,15 +6,15 @@ use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::hearing::site_of;
-use super::robots::{FleetRobot, by_world, robots};
-use crate::messages::{CRITICAL_SITUATION, POSITION, ROBOT_LIST};
+use super::robots::{FleetRobot, by_world, publishers_beside_robots, robots};
+use crate::messages::{CRITICAL_SITUATION, EVENT_LUGGAGE, POSITION, ROBOT_LIST};
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5012",
         name: "robot-apart",
         meaning: "A `topicRename` or a site separates a robot from a topic that the other robots of its world use: \
-            they collide with it, or do not know its state.",
+            they collide with it, do not know its state, or it gets no work.",
         severity: Severity::Error,
         rule: None,
     },
@@ -25,8 +25,9 @@ pub(super) static RULE: FleetRule = FleetRule {
 
 /// Topics by which the robots of a world know of each other, the most important first, and what happens without. Teams
 /// may have their own names of those with warnings: a robot that is alone with its name is in none.
-const SHARED: [(&str, Severity, &str); 3] = [
+const SHARED: [(&str, Severity, &str); 4] = [
     (POSITION.name(), Severity::Error, "they do not know where it is and collide with it"),
+    (EVENT_LUGGAGE.name(), Severity::Warning, "it is never asked to bring luggage"),
     (CRITICAL_SITUATION.name(), Severity::Warning, "no other robot takes over its luggage if it breaks down"),
     (ROBOT_LIST.name(), Severity::Warning, "they do not know its state"),
 ];
@@ -53,9 +54,16 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             let most = counts.values().max().copied().unwrap_or_default();
             let Some((_, usual)) = inside.clone().find(|(_, robot)| counts[name(robot)] == most) else { continue };
             let others = name(usual);
+            // A master may serve one robot alone.
+            let served: HashSet<&str> = match topic == EVENT_LUGGAGE.name() {
+                true => publishers_beside_robots(fleet, topic).map(|at| fleet.components()[at].topic(topic)).collect(),
+                false => HashSet::new(),
+            };
             for (_, robot) in inside {
                 let own = name(robot);
-                let is_apart = own != others && (severity == Severity::Error || most > 1 && counts[own] == 1);
+                let is_apart = own != others
+                    && !served.contains(own)
+                    && (severity == Severity::Error || most > 1 && counts[own] == 1);
                 if !is_apart || !told.insert(robot.index) {
                     continue;
                 }

@@ -117,7 +117,8 @@ impl Loader<'_> {
         let is_of_sca = || parent.children.contains(&local) && !NOT_KEPT.contains(&local);
         let help = match namespace {
             XINCLUDE => "`<include name=\"...\"/>` without a prefix includes a composite by its name".to_owned(),
-            _ if !is_of_sca() || self.meant_namespace(namespace, element.document()).is_some() => return,
+            _ if !is_of_sca() => return,
+            _ if self.meant_namespace(namespace, element.document()).is_some() => return self.miss(element),
             _ => {
                 let prefix = element.document().root().prefix().map_or_else(String::new, |prefix| format!("{prefix}:"));
                 format!("write {} if you mean the element of SCA", quoted(&format!("<{prefix}{local}>")))
@@ -125,15 +126,19 @@ impl Loader<'_> {
         };
         let message = format!("{} is ignored: its namespace {} is not that of SCA", quoted(name), quoted(namespace));
         self.report(Diagnostic::new(&codes::FOREIGN_ELEMENT, element.name_location(), message).help(help));
-        if ["component", "include"].contains(&local) {
-            // What the fleet lacks without it is no fault of its own.
-            let hidden = HiddenNames { composites: false, components: true, others: true };
-            self.diagnostics.add_damage(element.span().in_file(element.document().file()), hidden);
-        }
+        self.miss(element);
         if let Some(source) = element.attribute("source").filter(|_| local == "property") {
             let (value, file) = (source.value(), element.document().file());
             let name = value.trim().strip_prefix('$').and_then(|rest| rest.split(['/', '[', ' ']).next());
             name.into_iter().for_each(|name| self.diagnostics.add_meant(file, name));
+        }
+    }
+
+    /// Notes that components are missing: what the fleet lacks without them is no fault of its own.
+    fn miss(&mut self, element: Element<'_>) {
+        if ["component", "include"].contains(&element.local_name()) {
+            let hidden = HiddenNames { composites: false, components: true, others: true };
+            self.diagnostics.add_damage(element.span().in_file(element.document().file()), hidden);
         }
     }
 

@@ -127,3 +127,17 @@ fn a_tag_or_a_name_too_many_hides_no_other_mistake() {
         }
     }
 }
+
+#[test]
+fn a_component_in_a_namespace_that_is_nearly_that_of_sca_is_told_once() {
+    let hall = fs::read_to_string("composites/hall.composite").unwrap();
+    let root = "xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\"";
+    assert!(hall.contains(root), "{hall}");
+    let place = hall.find("<component name=\"Master\"").unwrap();
+    let end = place + hall[place..].find("</component>").unwrap();
+    let slip = "http://docs.oasis-open.org/ns/openscsa/sca/200912";
+    let text = format!("{}<s:{}</s:{}", &hall[..place], &hall[place + 1..end], &hall[end + 2..]);
+    let told = Fleet::of_text(text.replacen(root, &format!("{root} xmlns:s=\"{slip}\""), 1)).diagnostics();
+    assert!(told.starts_with("warning S1013"), "{told}");
+    assert_eq!(told.lines().filter(|line| line.starts_with(char::is_alphabetic)).count(), 1, "{told}");
+}

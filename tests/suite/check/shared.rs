@@ -65,6 +65,14 @@ fn robots_of_a_world_share_their_topics() {
     assert_eq!(with("RLMSTOPIC,a::POSTOPIC,b", "", "").len(), 1);
     let apart = with("CSMSTOPIC,alone", "", "").concat();
     assert!(apart.starts_with("warning S5012 robot 1 uses the topic `alone`"), "{apart}");
+    let idle = "robot 1 uses the topic `alone` where the other robots in its world use `ELMSTOPIC`";
+    assert_eq!(with("ELMSTOPIC,alone", "", ""), [format!("warning S5012 {idle}: it is never asked to bring luggage")]);
+    // A master of its own asks it.
+    let alone = [("topicRename", "ELMSTOPIC,alone")];
+    let own = ("Own", "saoms.MasterEnvironment", &[("topicRename", "ELMSTOPIC,alone::ETOPIC,own")][..], false);
+    let fleet = [WORLD, ENVIRONMENT, MASTER, own, robot("Robot1", &alone), robot("Robot2", &[]), robot("Robot3", &[])];
+    let told = found(&fleet).concat();
+    assert!(!told.contains("S5012"), "{told}");
     // Each of two halls has topics of its own.
     let far = [("topicRename", "POSTOPIC,far")];
     let halls = [WORLD, ENVIRONMENT, MASTER, ROBOT, ("Robot2", "saoms.Robot", &far, false)];

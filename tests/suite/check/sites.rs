@@ -169,6 +169,15 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
             &["S5005 robot 7 does not receive this event"],
         ),
         (
+            "S5005: the path of a robot of another site, whose number a robot here has, too",
+            "NEnvironment:Environment:North scenario=at 1s breakdown SRobot1
+             NMaster:MasterEnvironment:North topicRename=EETOPIC,/EETOPIC
+             NRobot1:Robot:North
+             SMasterRobot:MasterRobot:South topicRename=EETOPIC,/EETOPIC
+             SRobot1:Robot:South",
+            &["S5005 robot `SRobot1` does not receive this event"],
+        ),
+        (
             "S5006: the robots of the other site do not bring it",
             "World:World:North width=60
              NEnvironment:Environment:North scenario=at 1s luggage (0,0) to (55,1)
@@ -434,4 +443,42 @@ fn a_site_that_cannot_be_read_is_one_of_its_own() {
     assert_eq!(codes("", &south("")), "S0005 S5008");
     assert_eq!(codes(&cut, &south("")), "S0103 S5008");
     assert_eq!(codes("", &south(SHARED)), "S0005");
+}
+
+#[test]
+fn a_breakdown_names_no_robot_of_a_site_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    let head =
+        "xmlns=\"http://docs.oasis-open.org/ns/opencsa/sca/200912\" xmlns:saoms=\"urn:saoms:1\" xmlns:h=\"urn:h\"";
+    let site = |name: &str, scenario: &str| {
+        format!(
+            "<component name=\"{name}\" saoms:site=\"{name}\"><implementation.composite name=\"h:hall\"/>\
+             <property name=\"scenario\">{scenario}</property></component>"
+        )
+    };
+    let hall =
+        ["Environment:Environment:", "Master:MasterEnvironment:", "Robot1:Robot:", "Robot2:Robot:"].map(component);
+    let scenario = "<property name=\"scenario\" source=\"$scenario\"/></component>";
+    let hall = format!("{}{}", hall[0].trim_end().trim_end_matches("</component>"), scenario) + &hall[1..].concat();
+    write(
+        "hall.composite",
+        format!(
+            "<composite {head} name=\"hall\" targetNamespace=\"urn:h\"><property name=\"scenario\"/>{hall}</composite>"
+        ),
+    );
+    let told = |robot: &str| {
+        let sites = site("North", "at 1s breakdown 1") + &site("South", &format!("at 1s breakdown {robot}"));
+        write(
+            "sites.composite",
+            format!("<composite {head} name=\"sites\" targetNamespace=\"urn:s\">{sites}</composite>"),
+        );
+        Fleet::of_file(folder.path().join("sites.composite")).diagnostics()
+    };
+    let other = told("North/Robot1");
+    assert!(other.starts_with("error S5005 ") && other.contains("site `South` has no robot `North/Robot1`"), "{other}");
+    assert_eq!(other.matches("S5005").count(), 1, "{other}");
+    for own in ["South/Robot1", "Robot1", "1"] {
+        assert_eq!(told(own), "", "{own}");
+    }
 }

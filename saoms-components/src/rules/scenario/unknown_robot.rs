@@ -120,6 +120,13 @@ impl<'r> Names<'r> {
         Names { robots, by_name, numbers, deaf, events }
     }
 
+    /// The robot with this ID or path among those that do not hear of the breakdowns.
+    fn deaf_of_name(&self, fleet: &FleetView<'_>, name: &str) -> Option<&'r FleetRobot> {
+        let is_named =
+            |robot: &&&FleetRobot| robot.properties.id.as_str() == name || fleet.components()[robot.index].path == name;
+        self.deaf.iter().find(is_named).copied()
+    }
+
     /// Number of robots with numbers in this range.
     fn between(&self, least: u32, most: u32) -> usize {
         let up_to = |most: u32| self.numbers.partition_point(|number| *number <= most);
@@ -162,10 +169,19 @@ fn check_name(
         let message = format!("`{text}` means robot {least} here, but the robot with this ID has the number {number}");
         return Some(finding(message).instead(number.to_string()));
     }
+    let site = site_of(ENVIRONMENT.name(), names.events).filter(|site| !site.is_empty());
+    let whole = site.map_or_else(|| "the fleet".to_owned(), |site| format!("site `{site}`"));
     let known = names.between(least, most);
     if known as u64 > u64::from(most - least) {
         if !written.is_name() {
             return None;
+        }
+        if let Some(robot) = names.deaf_of_name(fleet, text) {
+            return Some(deaf(fleet, robot, format!("robot `{text}`"), severity));
+        }
+        if text.contains('/') && are_all_known(fleet) {
+            // A path means one robot, and not the one with its number here.
+            return Some(finding(format!("{whole} has no robot `{text}`")).help(names.list()));
         }
         let robot = names.robots.iter().find(|robot| robot.number == least)?;
         let id = robot.properties.id.as_str();
@@ -173,19 +189,12 @@ fn check_name(
         return Some(finding(message).severity(Severity::Warning).instead(id));
     }
     if let Some(robot) = names.deaf.iter().find(|robot| least == most && robot.number == least) {
-        let topic = fleet.components()[robot.index].topic(FAULT.name());
-        let message =
-            format!("robot {least} does not receive this event: it receives breakdowns on the topic `{topic}`");
-        let help = "move the event to the environment whose master forwards it to this robot";
-        let place = Place::component(robot.index);
-        return Some(finding(message).label(place, format!("robot {least}")).help(help));
+        return Some(deaf(fleet, robot, format!("robot {least}"), severity));
     }
     if !are_all_known(fleet) || names.numbers.windows(2).any(|pair| pair[0] == pair[1]) {
         // Robots that share an ID or a number are told of; which are missing is not known.
         return None;
     }
-    let site = site_of(ENVIRONMENT.name(), names.events).filter(|site| !site.is_empty());
-    let whole = site.map_or_else(|| "the fleet".to_owned(), |site| format!("site `{site}`"));
     let message = match (least == most, known) {
         (true, _) => format!("{whole} has no robot {least}"),
         (false, 0) => format!("{whole} has no robot from {least} to {most}"),
@@ -200,6 +209,14 @@ fn check_name(
         None if names.robots.is_empty() => finding(message).help("add the robot to the composite, or remove the event"),
         None => finding(message).help(names.list()),
     })
+}
+
+/// The finding for a robot, with its name, that does not hear of its breakdown.
+fn deaf(fleet: &FleetView<'_>, robot: &FleetRobot, name: String, severity: Severity) -> Finding {
+    let topic = fleet.components()[robot.index].topic(FAULT.name());
+    let message = format!("{name} does not receive this event: it receives breakdowns on the topic `{topic}`");
+    let help = "move the event to the environment whose master forwards it to this robot";
+    Finding::new(Place::default(), message).severity(severity).label(Place::component(robot.index), name).help(help)
 }
 
 /// The text before the digits at the end of a name, and these digits, sorted.
