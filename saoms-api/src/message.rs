@@ -1,9 +1,12 @@
 use std::any::Any;
 use std::fmt;
+use std::mem::{self, ManuallyDrop};
+use std::panic::{self, AssertUnwindSafe};
 use std::slice;
 use std::sync::{Arc, OnceLock};
 
 use crate::host::cdr;
+use crate::host::contain::discard;
 use crate::{Cause, Field, Time};
 
 /// A message between components. Derive it: `#[derive(Clone, Debug, Message)]` on a struct whose fields are of the
@@ -126,7 +129,7 @@ impl SharedMessage {
     pub fn new<M: Message>(header: Header, value: M) -> SharedMessage {
         let (bytes, forms) = (OnceLock::new(), OnceLock::new());
         let (key, place) = (value.key(), value.place());
-        SharedMessage(Arc::new(Shared { header, key, place, to: EVERYONE, bytes, forms, payload: Typed(value) }))
+        SharedMessage(Arc::new(Shared { header, key, place, to: EVERYONE, bytes, forms, payload: Typed::new(value) }))
     }
 
     /// Takes over a message that arrived as bytes (see [`cdr`]). The schema must have been checked against the topic's.
@@ -226,12 +229,32 @@ trait Payload: Any + Send + Sync {
     fn is_value(&self) -> bool;
 }
 
-/// A value of this build of the program.
-struct Typed<M>(M);
+/// A value of this build of the program. Hosts drop messages in the midst of their own work, so a panic of the value's
+/// destructor ends there.
+struct Typed<M>(ManuallyDrop<M>);
+
+impl<M> Typed<M> {
+    fn new(value: M) -> Typed<M> {
+        Typed(ManuallyDrop::new(value))
+    }
+}
+
+impl<M> Drop for Typed<M> {
+    #[inline]
+    fn drop(&mut self) {
+        if mem::needs_drop::<M>() {
+            // SAFETY: the value is not used again.
+            let dropped = panic::catch_unwind(AssertUnwindSafe(|| unsafe { ManuallyDrop::drop(&mut self.0) }));
+            if let Err(payload) = dropped {
+                discard(payload);
+            }
+        }
+    }
+}
 
 impl<M: Message> Payload for Typed<M> {
     fn encode(&self, bytes: &mut Vec<u8>) {
-        cdr::encode_into(&self.0, bytes);
+        cdr::encode_into(&*self.0, bytes);
     }
 
     fn is_value(&self) -> bool {
@@ -263,14 +286,16 @@ fn decoded<'a, M: Message>(mut forms: &'a OnceLock<Box<Form>>, bytes: &[u8]) -> 
     loop {
         // Another thread may add a form at any time, of this type or another: the first one of a type is everybody's.
         while let Some(form) = forms.get() {
-            match form.value.downcast_ref::<M>() {
-                Some(value) => return Some(value),
+            match form.value.downcast_ref::<Typed<M>>() {
+                Some(value) => return Some(&value.0),
                 None => forms = &form.next,
             }
         }
         let form = match own.take() {
             Some(form) => form,
-            None => Box::new(Form { value: Box::new(cdr::decode::<M>(bytes).ok()?), next: OnceLock::new() }),
+            None => {
+                Box::new(Form { value: Box::new(Typed::new(cdr::decode::<M>(bytes).ok()?)), next: OnceLock::new() })
+            }
         };
         own = forms.set(form).err();
     }

@@ -368,6 +368,16 @@ impl Bench {
         })
     }
 
+    /// Events that the component [raised](Context::raise), with fields as the classes that the test links declare
+    /// them. They reach nobody: give a component the event that it takes with [`deliver`](Bench::deliver), as a message
+    /// of its topic.
+    pub fn raised(&self) -> Vec<&str> {
+        self.lines(|what| match what {
+            Action::Raised(event) => Some(event),
+            _ => None,
+        })
+    }
+
     /// Lines that the component wrote to the log.
     pub fn log(&self) -> Vec<&str> {
         self.lines(|what| match what {

@@ -5,6 +5,8 @@ use std::fmt::{self, Write as _};
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::event::{EventCall, Events};
+use saoms_api::extension::LineFault;
 use saoms_api::host::{Host, LoopVisit};
 use saoms_api::host::{NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration};
 use saoms_api::{
@@ -24,6 +26,8 @@ pub(crate) enum Action {
     Journal(String),
     Report(String),
     Work(Work),
+    /// An event that it raised.
+    Raised(String),
     /// The execution was skipped, because the component of this name was busy.
     Skipped(String),
 }
@@ -66,6 +70,8 @@ impl StageLoop {
 pub(crate) struct Stage {
     /// `None` if the stage runs only a loop.
     class: Option<Arc<RegisteredClass>>,
+    /// The events that known classes take.
+    events: Events,
     loops: Vec<StageLoop>,
     loop_names: Vec<String>,
     acting: Option<u32>,
@@ -103,13 +109,15 @@ impl Stage {
             registry.get_loop(name).cloned().ok_or_else(|| Failure::new(format!("there is no loop `{name}`")))
         };
         let loops = declaration.loops_of(values).iter().map(find).collect::<Result<_, _>>()?;
-        Ok(Stage { class: Some(Arc::clone(class)), ..Stage::of_loops(loops) })
+        let events = registry.iter().flat_map(|class| class.declaration().events());
+        Ok(Stage { class: Some(Arc::clone(class)), events: Events::of(events), ..Stage::of_loops(loops) })
     }
 
     /// The stage of loops without a component around them.
     pub(crate) fn of_loops(loops: Vec<Arc<RegisteredLoop>>) -> Stage {
         Stage {
             class: None,
+            events: Events::default(),
             loops: loops.into_iter().map(StageLoop::usual).collect(),
             loop_names: Vec::new(),
             acting: None,
@@ -244,6 +252,7 @@ impl Stage {
                 Action::Work(Work::Open) => writeln!(text, "has work left"),
                 Action::Work(Work::Done) => writeln!(text, "has no work left"),
                 Action::Work(Work::GivenUp) => writeln!(text, "gave up work"),
+                Action::Raised(event) => writeln!(text, "raises {event}"),
                 Action::Skipped(provider) => writeln!(text, "skipped: component `{provider}` is busy"),
             };
         }
@@ -315,6 +324,17 @@ impl Host for Stage {
             return Err(Failure::new("this publisher belongs to no topic: keep what `Context::publish` returned"));
         }
         self.log_action(Action::Sent(place, message));
+        Ok(())
+    }
+
+    fn raise(&mut self, event: &str) -> Result<(), Failure> {
+        let refused = |fault: LineFault| Failure::new(format!("event `{event}`: {fault}"));
+        let call = EventCall::read(event).map_err(refused)?;
+        // One that no known class takes is no failure: in a fleet, a component of another class may take it.
+        if let Some(known) = self.events.get(&call.name.text) {
+            known.check(&call).map_err(refused)?;
+        }
+        self.log_action(Action::Raised(event.to_owned()));
         Ok(())
     }
 

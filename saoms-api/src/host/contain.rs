@@ -70,14 +70,19 @@ fn describe(payload: Box<dyn Any + Send>) -> Failure {
         Some(place) => Failure::new(format!("panicked at {place}: {message}")),
         None => Failure::new(format!("panicked: {message}")),
     };
-    // Dropping it can panic, too; what that leaves is not dropped.
+    discard(payload);
+    failure
+}
+
+/// Drops what a panic left. That can panic, too; what that leaves is not dropped.
+#[cold]
+pub(crate) fn discard(payload: Box<dyn Any + Send>) {
     let outer = CAPTURING.replace(true);
     if let Err(again) = panic::catch_unwind(AssertUnwindSafe(|| drop(payload))) {
         mem::forget(again);
         PLACE.take();
     }
     CAPTURING.set(outer);
-    failure
 }
 
 /// Makes panics inside [`contained`] silent, once in the life of the process. All others go to the hook that was there

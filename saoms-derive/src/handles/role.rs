@@ -141,15 +141,16 @@ fn entry_name(attribute: &Attribute, ident: &Ident) -> Result<LitStr> {
 
 /// `("fire", FIRE)`.
 fn taken(input: syn::parse::ParseStream<'_>) -> Result<(LitStr, Path)> {
-    let event: LitStr = input.parse()?;
+    let other = |error: Error| Error::new(error.span(), "expected an event and its topic: `#[takes(\"fire\", FIRE)]`");
+    let event: LitStr = input.parse().map_err(other)?;
     let name = event.value();
     let is_sign = |sign: char| sign.is_ascii_alphanumeric() || matches!(sign, '_' | '-');
     if !name.starts_with(|sign: char| sign.is_ascii_alphabetic()) || !name.chars().all(is_sign) {
         let message = "the name of an event is a letter, then letters, digits, `_` and `-`";
         return Err(Error::new(event.span(), message));
     }
-    input.parse::<Token![,]>()?;
-    Ok((event, input.parse()?))
+    input.parse::<Token![,]>().map_err(other)?;
+    Ok((event, input.parse().map_err(other)?))
 }
 
 /// `("gps")`, `(optional)`, `("gps", optional)`.

@@ -4,6 +4,7 @@
 
 mod busy;
 mod comply;
+mod events;
 mod faults;
 mod loops;
 mod records;

@@ -15,13 +15,16 @@ use super::run::{component, composite, property, second};
 mod linked;
 
 /// The outcome of a run, in words that both ways have.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 struct Told {
     code: i32,
     /// The reasons of the outcome; what was said where nothing ran.
     reasons: String,
     /// Of each component.
     components: Vec<String>,
+    /// What `bad.Actor` reported.
+    reported: Value,
+    journal: Value,
     trace: Value,
 }
 
@@ -44,6 +47,8 @@ fn told(code: i32, report: &Value) -> Told {
         code,
         reasons: plain(&report["outcome"]["reasons"].to_string()),
         components: report["components"].as_array().unwrap().iter().map(component).collect(),
+        reported: report["bad"].clone(),
+        journal: report["journal"].clone(),
         trace: report["trace_hash"].clone(),
     }
 }
@@ -52,7 +57,7 @@ fn told(code: i32, report: &Value) -> Told {
 fn nothing_ran(code: i32, text: &str) -> Told {
     let line = text.lines().find(|line| line.starts_with("error")).unwrap_or(text);
     let line = line.strip_prefix("error: ").unwrap_or(line);
-    Told { code, reasons: plain(line), components: Vec::new(), trace: Value::Null }
+    Told { code, reasons: plain(line), components: Vec::new(), ..Told::default() }
 }
 
 fn when_linked(components: &str) -> (Told, String) {
@@ -114,6 +119,13 @@ fn each_misbehaviour_has_the_same_end_linked_and_loaded() {
         }
     }
     cases.push((1, component("Bad", "bad.Actor", &property("at", "undeclared"))));
+    // What a message does when it is dropped concerns nobody.
+    cases.push((0, component("Bad", "bad.Actor", &property("at", "message"))));
+    cases.push((0, component("Bad", "bad.Actor", &property("at", "numbers"))));
+    // Two that call each other are refused.
+    let one = component("Bad", "bad.Actor", "<reference name=\"callee\" target=\"Other/callee\"/>");
+    let other = component("Other", "bad.Actor", "<reference name=\"callee\" target=\"Bad/callee\"/>");
+    cases.push((2, one + &other));
     for (code, components) in cases {
         let ((linked, linked_text), (loaded, loaded_text)) = (when_linked(&components), when_loaded(&components));
         assert_eq!(linked, loaded, "{components}\nlinked:\n{linked_text}\nloaded:\n{loaded_text}");

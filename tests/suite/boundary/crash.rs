@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Command, Output, Stdio};
 
-use super::build::c_library;
+use super::build::{c_library, library};
 use super::run::{component, in_folder, property};
 use crate::support::{PROGRAM, saoms_in, stderr, text};
 
@@ -50,6 +50,25 @@ fn a_crash_is_told_with_component_library_and_function() {
         let output = run(at, "segv");
         assert_told(&output, at, function, "SIGSEGV");
         assert_eq!(output.status.signal(), Some(libc::SIGSEGV), "{}", text(&output));
+    }
+}
+
+/// Nothing in the process can go on after that: it is no panic any more.
+#[test]
+fn a_panic_while_a_panic_unwinds_is_told_as_a_crash() {
+    for (at, function) in [("new", "the constructor"), ("execute", "`execute`"), ("drop", "the destructor")] {
+        let folder =
+            in_folder(&component("Bad", "bad.Actor", &(property("at", at) + &property("does", "panic twice"))));
+        let line = format!(
+            "ulimit -c 0; exec '{PROGRAM}' run t.composite --virtual --for 950ms --plugin '{}'",
+            library("bad").display()
+        );
+        let output = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
+        let line = text(&output);
+        let line = line.lines().find(|line| line.starts_with("error: component `Bad` of library `"));
+        let line = line.unwrap_or_else(|| panic!("{at}: {}", text(&output)));
+        assert!(line.contains(function) && line.contains("SIGABRT: it called `abort`"), "{at}: {line}");
+        assert_eq!(output.status.signal(), Some(libc::SIGABRT), "{at}: {}", text(&output));
     }
 }
 

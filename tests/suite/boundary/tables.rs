@@ -16,7 +16,7 @@ fn assert_refused(run: &Run, expected: &[&str]) {
     assert_eq!(run.code, Some(2), "{}", run.text);
     let errors: Vec<&str> = run.text.lines().filter(|line| line.starts_with("error")).collect();
     assert_eq!(errors.len(), 1, "{}", run.text);
-    assert!(!run.text.contains("what its properties mean"), "{}", run.text);
+    assert!(!run.text.contains("describes its properties"), "{}", run.text);
     for expected in ["libactor.so` (actor) cannot be loaded: "].iter().chain(expected) {
         assert!(run.text.contains(expected), "{expected} is missing in\n{}", run.text);
     }
@@ -53,6 +53,16 @@ fn a_null_or_short_table_is_refused_by_its_name() {
     ] {
         assert_refused(&run(&[definition], ""), &[expected]);
     }
+}
+
+#[test]
+fn a_library_that_cannot_be_loaded_is_told_once_also_where_values_are_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let library = c_library(folder.path(), &["CLASS=NULL"]);
+    let unknown = property("nothing", "1");
+    let run = second(&(component("Bad", "c.Actor", &unknown) + &component("Worse", "c.Actor", &unknown)), &[library]);
+    assert_eq!((run.code, run.text.matches("cannot be loaded").count()), (Some(2), 1), "{}", run.text);
+    assert!(!run.text.contains("describes its properties"), "{}", run.text);
 }
 
 #[test]

@@ -167,7 +167,10 @@ pub(crate) fn check_all(
     let faulty = all().filter(|(member, check, _)| check.state == ComponentState::Faulty && !member.lacks_table());
     for (member, check, class) in faulty.filter(|(.., one)| is_asked(one.class.origin(), one.class.is_only_read())) {
         report.about(member);
-        partly(check.subject(member), class, &check.given.unknown, repeated, report);
+        let subject = check.subject(member);
+        if loads(class.class.origin(), class.class.load(), subject, report) {
+            partly(subject, class, &check.given.unknown, repeated, report);
+        }
     }
     report.about_all();
 }

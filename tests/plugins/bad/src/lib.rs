@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use saoms_api::{
     Class, Component, Context, Effector, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
-    Publisher, Record, Saved, Subscription, Topic, interface, record,
+    Publisher, Record, ReportValue, Saved, Subscription, Topic, interface, record,
 };
 
 /// A message.
@@ -14,7 +14,24 @@ pub struct Word {
     text: String,
 }
 
+/// A message that panics whenever one of it is dropped.
+#[derive(Clone, Debug, Message)]
+pub struct Grenade {
+    armed: bool,
+    pin: String,
+}
+
+impl Drop for Grenade {
+    fn drop(&mut self) {
+        if self.armed {
+            panic_any(Nasty(2));
+        }
+    }
+}
+
 const WORDS: Topic<Word> = Topic::event("WORDS");
+const GRENADES: Topic<Grenade> = Topic::event("GRENADES");
+const NEWEST: Topic<Grenade> = Topic::state("NEWEST");
 const SECRETS: Topic<Word> = Topic::event("SECRETS");
 
 /// Can be called.
@@ -57,6 +74,10 @@ impl ActorProperties {
             "never" => loop {
                 std::thread::sleep(Duration::from_secs(1));
             },
+            "panic twice" => {
+                let _second = Nasty(1);
+                panic!("no more of {place}")
+            }
             "fail" => return Err(format!("fails in {place}").into()),
             other => panic!("what is {other}?"),
         }
@@ -66,12 +87,35 @@ impl ActorProperties {
 
 /// Does it in one of its functions.
 #[derive(Debug, Class)]
-#[class(name = "bad.Actor", periodic, publishes(WORDS), subscribes(WORDS), service("callee": Callee), reference("callee": Callee, optional))]
+#[class(name = "bad.Actor", periodic, publishes(WORDS, GRENADES, NEWEST), subscribes(WORDS, GRENADES, NEWEST), service("callee": Callee), reference("callee": Callee, optional))]
 pub struct Actor {
     properties: ActorProperties,
     said: Publisher<Word>,
     heard: Subscription<Word>,
+    thrown: (Publisher<Grenade>, Publisher<Grenade>),
+    caught: (Subscription<Grenade>, Subscription<Grenade>),
     callee: CalleeReference,
+}
+
+impl Actor {
+    /// Sends messages that cannot be dropped, and reads them.
+    fn throw(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let armed = |caught: &Subscription<Grenade>| context.receive(caught).filter(|one| one.armed).count();
+        let caught = armed(&self.caught.0) + armed(&self.caught.1);
+        context.count("bad.caught", caught as i64);
+        let grenade = || Grenade { armed: true, pin: "a text that is longer than the others".to_owned() };
+        context.send(&self.thrown.0, grenade())?;
+        context.send(&self.thrown.1, grenade())
+    }
+
+    /// Says numbers that are none.
+    fn say_no_numbers(context: &mut Context<'_>) {
+        for number in [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, f64::MIN_POSITIVE / 2.0] {
+            context.symptom(record!(odd: "sees {number} and {half}", number, half = number as f32));
+            context.effect(record!(odd_effect: "does {number}", number));
+            context.report(&format!("bad.odd.n{}", number.to_bits()), number);
+        }
+    }
 }
 
 impl Component for Actor {
@@ -80,13 +124,16 @@ impl Component for Actor {
     fn new(properties: ActorProperties) -> Result<Self, Failure> {
         properties.act("new")?;
         let (said, heard, callee) = Default::default();
-        Ok(Actor { properties, said, heard, callee })
+        let (thrown, caught) = Default::default();
+        Ok(Actor { properties, said, heard, thrown, caught, callee })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.properties.act("initialize")?;
         self.said = context.publish(&WORDS)?;
         self.heard = context.subscribe(&WORDS)?;
+        self.thrown = (context.publish(&GRENADES)?, context.publish(&NEWEST)?);
+        self.caught = (context.subscribe(&GRENADES)?, context.subscribe(&NEWEST)?);
         self.callee = context.reference("callee")?;
         if self.properties.at == "undeclared" {
             context.publish(&SECRETS)?;
@@ -104,6 +151,11 @@ impl Component for Actor {
         if context.is_wired(&self.callee) && context.execution() > 1 {
             self.callee.call(context)?;
         }
+        match &*self.properties.at {
+            "message" => self.throw(context)?,
+            "numbers" => Self::say_no_numbers(context),
+            _ => {}
+        }
         context.count("bad.executions", 1);
         context.send(&self.said, Word { text: "word".to_owned() })
     }
@@ -111,6 +163,10 @@ impl Component for Actor {
     fn shutdown(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
         self.properties.act("shutdown")?;
         Ok(())
+    }
+
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        ReportValue::named([("most", f64::INFINITY.into()), ("none", f64::NAN.into())])
     }
 
     fn save(&mut self) -> Result<Saved, Failure> {
