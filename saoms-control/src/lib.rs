@@ -5,8 +5,10 @@
 //! `saoms status` use the [`Client`]; so does any program that speaks HTTP, such as `curl --unix-socket`.
 
 mod client;
+mod counts;
 mod description;
 mod log;
+mod metrics;
 mod network;
 mod place;
 mod server;
@@ -16,6 +18,7 @@ mod topics;
 pub use client::{Client, ClientError, Response, running};
 pub use description::FleetDescription;
 pub use log::{LogLine, LogTail};
+pub use metrics::{METRICS, Metric};
 pub use network::{NetworkError, NetworkListener};
 pub use place::{Listener, default_socket, token_beside};
 pub use server::{ControlServer, ControlledFleet, Places, SentLine, openapi};

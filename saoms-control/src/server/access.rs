@@ -12,7 +12,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
 use super::answer::Refusal;
-use super::connections::ClientCounts;
+use crate::counts::ClientCounts;
 use crate::network::HostNames;
 use crate::token::TokenFile;
 

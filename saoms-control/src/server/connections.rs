@@ -4,7 +4,7 @@ use std::future::{Future, poll_fn};
 use std::io::{self, ErrorKind};
 use std::pin::Pin;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
@@ -16,6 +16,8 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, UnixListener};
 use tokio::sync::Semaphore;
 use tokio::time::{Sleep, sleep, timeout};
+
+use crate::counts::ClientCounts;
 
 /// The most connections at each place; further ones are refused.
 const MOST: usize = 512;
@@ -35,21 +37,6 @@ const AGAIN: Duration = Duration::from_millis(100);
 const GOODBYE: Duration = Duration::from_millis(200);
 const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n\
     Content-Length: 42\r\n\r\n{\"error\": \"the server has no more places\"}";
-
-/// What the server counts of its clients.
-#[derive(Debug, Default)]
-pub(crate) struct ClientCounts {
-    /// Connections at present.
-    pub(crate) open: AtomicU64,
-    /// Connections that were refused because there were too many.
-    pub(crate) refused: AtomicU64,
-    /// Requests without the token, or from another site.
-    pub(crate) denied: AtomicU64,
-    /// Clients that were dropped because they took nothing of their answer.
-    pub(crate) dropped: AtomicU64,
-    /// Lines and messages that clients missed because they were too slow.
-    pub(crate) lost: AtomicU64,
-}
 
 /// A place at which clients connect.
 pub(super) trait Door: Send + 'static {

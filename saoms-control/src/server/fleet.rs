@@ -1,14 +1,17 @@
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use saoms_core::schedule::{Handle, OrderTicket};
 use serde_json::json;
+use tokio::sync::Mutex;
 
-use super::connections::ClientCounts;
+use super::answer::{Refusal, waiting};
+use crate::counts::ClientCounts;
 use crate::description::FleetDescription;
 use crate::log::LogTail;
+use crate::metrics::{self, Measured};
 use crate::topics::TopicWatch;
 
 /// Time for which a snapshot is given to further clients.
@@ -42,8 +45,10 @@ pub struct ControlledFleet {
     pub(super) down: Box<dyn Fn() + Send + Sync>,
     /// What is counted of its clients.
     pub(super) counts: Arc<ClientCounts>,
-    /// The last snapshot and its time.
-    snapshot: Mutex<Option<(Instant, Bytes)>>,
+    /// The last snapshot.
+    pub(super) snapshot: Kept,
+    /// The last metrics.
+    pub(super) metrics: Kept,
 }
 
 impl ControlledFleet {
@@ -65,27 +70,40 @@ impl ControlledFleet {
             send,
             down,
             counts: Arc::default(),
-            snapshot: Mutex::default(),
+            snapshot: Kept::default(),
+            metrics: Kept::default(),
         }
     }
 
-    /// The snapshot, if it is new enough.
-    pub(super) fn cached(&self) -> Option<Bytes> {
-        let snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner);
-        snapshot.as_ref().filter(|(at, _)| at.elapsed() < FRESH).map(|(_, bytes)| bytes.clone())
+    /// A snapshot as JSON.
+    pub(super) fn snapshot_text(&self) -> String {
+        json!({"fleet": self.description, "status": self.handle.status()}).to_string()
     }
 
-    /// A snapshot as JSON. However many clients ask, the fleet is asked once.
-    pub(super) fn snapshot(&self) -> Bytes {
-        let mut snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((at, bytes)) = &*snapshot
+    /// The metrics as text.
+    pub(super) fn metrics_text(&self) -> String {
+        let fleet = self.handle.metrics();
+        metrics::text(&Measured { description: &self.description, fleet: &fleet, clients: &self.counts })
+    }
+}
+
+/// An answer that is given to all who ask within a short time: however many clients ask, the fleet is asked once.
+#[derive(Default)]
+pub(super) struct Kept(Mutex<Option<(Instant, Bytes)>>);
+
+impl Kept {
+    /// The answer if it is new enough, or else a new one, which is made beside the thread of the server.
+    pub(super) async fn get(&self, make: impl FnOnce() -> String + Send + 'static) -> Result<Bytes, Refusal> {
+        // Who asks meanwhile waits for the same answer.
+        let mut kept = self.0.lock().await;
+        if let Some((at, bytes)) = &*kept
             && at.elapsed() < FRESH
         {
-            return bytes.clone();
+            return Ok(bytes.clone());
         }
-        let bytes = Bytes::from(json!({"fleet": self.description, "status": self.handle.status()}).to_string());
-        *snapshot = Some((Instant::now(), bytes.clone()));
-        bytes
+        let bytes = Bytes::from(waiting(make).await?);
+        *kept = Some((Instant::now(), bytes.clone()));
+        Ok(bytes)
     }
 }
 

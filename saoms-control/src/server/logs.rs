@@ -13,8 +13,8 @@ use tokio::sync::broadcast::Receiver;
 use tokio::sync::broadcast::error::RecvError;
 
 use super::answer::{Answer, json_text};
-use super::connections::ClientCounts;
 use super::fleet::ControlledFleet;
+use crate::counts::ClientCounts;
 use crate::log::{LogLine, LogTail};
 
 /// The newest lines as a JSON list.

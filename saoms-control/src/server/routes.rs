@@ -6,12 +6,13 @@ use std::time::Duration;
 use axum::Router;
 use axum::extract::{Query, State};
 use axum::middleware::from_fn;
+use axum::response::IntoResponse;
 use axum::routing::{MethodRouter, get, post, put};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::access::with_body;
-use super::answer::{Answer, Refusal, done, json_text, waiting};
+use super::answer::{Answer, Refusal, done, json_text};
 use super::fleet::ControlledFleet;
 use super::{logs, orders, topics};
 
@@ -135,6 +136,14 @@ const ROUTES: &[Route] = &[
     },
     Route {
         method: "get",
+        path: "/metrics",
+        doc: "The metrics of the fleet in the text format of Prometheus, at most 100 ms old.",
+        query: &[],
+        body: None,
+        serve: || get(metrics),
+    },
+    Route {
+        method: "get",
         path: "/v1/openapi.json",
         doc: "This document.",
         query: &[],
@@ -187,10 +196,8 @@ async fn describe(State(fleet): Fleet) -> Answer {
 }
 
 async fn status(State(fleet): Fleet) -> Answer {
-    match fleet.cached() {
-        Some(snapshot) => json_text(snapshot),
-        None => json_text(waiting(move || fleet.snapshot()).await?),
-    }
+    let asked = Arc::clone(&fleet);
+    json_text(fleet.snapshot.get(move || asked.snapshot_text()).await?)
 }
 
 #[derive(Deserialize)]
@@ -206,6 +213,12 @@ async fn log_lines(State(fleet): Fleet, Query(query): Query<LogQuery>) -> Answer
         true => logs::followed(&fleet, most),
         false => logs::newest(&fleet.log, most),
     }
+}
+
+async fn metrics(State(fleet): Fleet) -> Answer {
+    let asked = Arc::clone(&fleet);
+    let text = fleet.metrics.get(move || asked.metrics_text()).await?;
+    Ok(([("content-type", "text/plain; version=0.0.4; charset=utf-8")], text).into_response())
 }
 
 async fn down(State(fleet): Fleet) -> Answer {

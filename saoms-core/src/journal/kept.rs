@@ -80,6 +80,19 @@ impl LoopCounts {
         all
     }
 
+    /// The counts of the loops of a component that wrote any record.
+    pub(crate) fn of_ring<'a>(component: &'a str, ring: &'a Ring) -> impl Iterator<Item = LoopCounts> + 'a {
+        let tallies = ring.tallies.iter().enumerate().filter(|(_, tally)| tally.total() > 0);
+        tallies.map(|(index, tally)| LoopCounts {
+            component: component.to_owned(),
+            loop_name: ring.name((index as u16).wrapping_sub(1)).map(|name| name.to_string()),
+            symptoms: tally.symptoms,
+            decisions: tally.decisions,
+            effects: tally.effects,
+            without_effect: Some(tally.without_effect()),
+        })
+    }
+
     /// All records together.
     pub fn records(&self) -> u64 {
         self.symptoms + self.decisions + self.effects
@@ -102,17 +115,9 @@ impl Journal {
         let mut journal = Journal::default();
         for (component, ring) in rings {
             journal.overwritten += ring.overwritten;
-            for (index, tally) in ring.tallies.iter().enumerate().filter(|(_, tally)| tally.total() > 0) {
-                journal.records += tally.total();
-                journal.loops.push(LoopCounts {
-                    component: component.to_string(),
-                    loop_name: ring.name((index as u16).wrapping_sub(1)).map(|name| name.to_string()),
-                    symptoms: tally.symptoms,
-                    decisions: tally.decisions,
-                    effects: tally.effects,
-                    without_effect: Some(tally.without_effect()),
-                });
-            }
+            let before = journal.loops.len();
+            journal.loops.extend(LoopCounts::of_ring(component, ring));
+            journal.records += journal.loops[before..].iter().map(LoopCounts::records).sum::<u64>();
             for batch in ring.batches() {
                 journal.entries.extend(batch.heads().iter().map(|head| JournalEntry {
                     id: head.id,

@@ -7,7 +7,7 @@ mod standstill;
 #[cfg(test)]
 mod tests;
 
-pub use lateness::{Lateness, LatenessSummary};
+pub use lateness::{Lateness, LatenessSteps, LatenessSummary};
 pub use run::{ComponentReport, MessageCounts, Outcome, RunReport, RunStatus, Votes};
 pub use sections::Sections;
 pub(crate) use sections::json;

@@ -84,6 +84,15 @@ impl Sections {
         }
     }
 
+    /// The paths with a number, with that.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.entries.iter().filter_map(|(path, entry)| match entry {
+            Entry::Count(count) | Entry::Value(ReportValue::Integer(count)) => Some((path.as_str(), *count as f64)),
+            Entry::Value(ReportValue::Float(value)) => Some((path.as_str(), *value)),
+            Entry::Value(_) => None,
+        })
+    }
+
     /// All sections as nested objects. If a path has both a value and paths below it, the value stands beside those as
     /// `value`.
     pub fn to_json(&self) -> Map<String, Value> {

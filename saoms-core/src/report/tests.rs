@@ -2,7 +2,7 @@ use saoms_api::ReportValue;
 use saoms_api::extension::{RunSummary, submit};
 use serde_json::json;
 
-use super::{Lateness, Sections};
+use super::{Lateness, LatenessSteps, Sections};
 
 #[test]
 fn quantiles_are_within_a_sixteenth() {
@@ -18,6 +18,21 @@ fn quantiles_are_within_a_sixteenth() {
         assert!(estimate.abs_diff(exact) <= exact / 16 + 1, "{share}: {estimate} instead of {exact}");
     }
     assert_eq!(lateness.summary().max, *values.last().unwrap());
+}
+
+#[test]
+fn steps_count_what_is_below_their_bounds() {
+    let mut lateness = Lateness::default();
+    let values: Vec<u64> = (0..10_000_u64).map(|n| n * n * 37 % 3_000_000_000).collect();
+    values.iter().for_each(|nanos| lateness.record(*nanos));
+    let steps = lateness.steps();
+    assert_eq!(steps.count, 10_000);
+    for (below, bound) in steps.below.into_iter().zip(LatenessSteps::BOUNDS) {
+        assert_eq!(below, values.iter().filter(|nanos| **nanos < bound * 1_000).count() as u64, "{bound} us");
+    }
+    let sum = values.iter().sum::<u64>() / 1_000;
+    assert!(steps.sum_us.abs_diff(sum) <= sum / 16, "{} instead of {sum}", steps.sum_us);
+    assert_eq!(Lateness::default().steps(), LatenessSteps::default());
 }
 
 #[test]

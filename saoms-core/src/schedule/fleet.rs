@@ -22,11 +22,11 @@ use super::os::realtime;
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::takers::{RaiseError, Takers};
-use super::topics;
+use super::{metrics, topics};
 use crate::journal::ComponentName;
 use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;
-use crate::status::{FleetStatus, TopicStatus};
+use crate::status::{FleetMetrics, FleetStatus, TopicStatus};
 use saoms_api::host::contain;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
@@ -419,6 +419,11 @@ impl Handle {
         let status = engine.status(&shared.sections(), shared.clock.now());
         shared.release(engine);
         status
+    }
+
+    /// What can be counted in the fleet. Components are asked as for [`status`](Handle::status).
+    pub fn metrics(&self) -> FleetMetrics {
+        metrics::metrics(self.status(), &self.shared)
     }
 
     /// The topics of the fleet, with who publishes and reads each, and how many events wait for whom.

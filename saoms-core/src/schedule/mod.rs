@@ -16,6 +16,7 @@ mod engine;
 mod fleet;
 mod inject;
 mod members;
+mod metrics;
 mod names;
 mod order;
 mod os;

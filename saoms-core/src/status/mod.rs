@@ -1,11 +1,15 @@
 //! The status of a running fleet, as operators see it.
 
+mod metrics;
+
 use std::collections::HashSet;
 
 use saoms_api::extension::RunSummary;
 use saoms_api::{Failure, ReportValue, Time};
 use serde::Serialize;
 use serde_json::{Map, Value};
+
+pub use metrics::FleetMetrics;
 
 use crate::report::{ComponentReport, json};
 
@@ -72,6 +76,18 @@ pub enum ComponentState {
     Failed,
     /// Its code did not return in time, and it was given up.
     Abandoned,
+}
+
+impl FleetPhase {
+    /// The phase as a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            FleetPhase::Starting => "starting",
+            FleetPhase::Running => "running",
+            FleetPhase::Ending => "ending",
+            FleetPhase::Ended => "ended",
+        }
+    }
 }
 
 impl ComponentState {

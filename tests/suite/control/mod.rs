@@ -1,6 +1,8 @@
 //! Commands that reach a running fleet, against real processes.
 
+mod exposition;
 mod hang;
+mod metrics;
 mod network;
 mod orders;
 mod places;

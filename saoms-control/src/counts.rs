@@ -1,0 +1,16 @@
+use std::sync::atomic::AtomicU64;
+
+/// What the server counts of its clients.
+#[derive(Debug, Default)]
+pub(crate) struct ClientCounts {
+    /// Connections at present.
+    pub(crate) open: AtomicU64,
+    /// Connections that were refused because there were too many.
+    pub(crate) refused: AtomicU64,
+    /// Requests without the token, or from another site.
+    pub(crate) denied: AtomicU64,
+    /// Clients that were dropped because they took nothing of their answer.
+    pub(crate) dropped: AtomicU64,
+    /// Lines and messages that clients missed because they were too slow.
+    pub(crate) lost: AtomicU64,
+}
