@@ -122,6 +122,16 @@ fn as_setting(error: &clap::Error, option: &str) -> Option<String> {
     (sets && is_free).then(|| format!("a property of the composite is set with `--set {name}=...`"))
 }
 
+/// The option of `saoms run` that has another name in other programs.
+fn meant_option(option: &str) -> Option<&'static str> {
+    std::env::args().nth(1).filter(|command| command == "run")?;
+    match option {
+        "--time" | "--duration" | "--until" | "--timeout" | "--limit" => Some("--for"),
+        "--simulate" | "--simulation" | "--sim" | "--fast" => Some("--virtual"),
+        _ => None,
+    }
+}
+
 /// Help for an option with one dash, of which the parser names the first letter alone.
 fn with_one_dash(letter: &str) -> Option<String> {
     let mut words = std::env::args().skip(1);
@@ -165,6 +175,13 @@ fn parsed() -> Arguments {
         {
             let tip = "this command writes to standard output: write `> FILE` behind it".to_owned();
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        if error.kind() == ErrorKind::UnknownArgument
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
+            && let Some(own) = meant_option(word)
+        {
+            error.remove(ContextKind::Suggested);
+            error.insert(ContextKind::SuggestedArg, ContextValue::String(own.to_owned()));
         }
         if error.kind() == ErrorKind::UnknownArgument
             && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)

@@ -162,6 +162,10 @@ impl Map {
 /// The fault of all rows with unknown signs, of each its first: they have one cause.
 fn unknown_signs(text: &str, signs: &[&str]) -> Option<TextFault> {
     let sign = *signs.first()?;
+    if let Some(comment) = comment(text, sign) {
+        let message = "found a comment, expected a row of `.` and `@`: a map has no comments";
+        return Some(TextFault::of(text, comment, message.to_owned()).help("remove this line"));
+    }
     let also = match signs.len() {
         1 => String::new(),
         rows => format!(" (in this row and {} more)", rows - 1),
@@ -177,6 +181,15 @@ fn unknown_signs(text: &str, signs: &[&str]) -> Option<TextFault> {
         1 => fault.instead(Some(meant)),
         _ => fault.help(format!("replace each `{sign}` with `{meant}`")),
     })
+}
+
+/// The line of a sign if it is a comment, as other files have them: it begins with the sign, and has words.
+fn comment<'t>(text: &'t str, sign: &str) -> Option<&'t str> {
+    let before = &text[..bytes(text, sign).start];
+    let line = text[before.rfind('\n').map_or(0, |end| end + 1)..].lines().next()?.trim();
+    let is_word = |sign: char| sign.is_alphabetic() && !"GESOTWXx".contains(sign) || sign == ' ';
+    let starts = ["#", "//", ";", "<!--"].iter().any(|start| line.starts_with(start));
+    (starts && line.contains(is_word)).then_some(line)
 }
 
 /// The most frequent length of a row; of equally frequent ones the first.

@@ -89,6 +89,13 @@ fn wrong_maps_say_where_and_why() {
     let faults = |text| Map::read(text).unwrap_err();
     assert_eq!(faults("..\n.#")[0].instead.as_deref(), Some("@"));
     assert_eq!(faults("##\n.#")[0].help.as_deref(), Some("replace each `#` with `@`"));
+    let comment = "found a comment, expected a row of `.` and `@`: a map has no comments";
+    for text in ["# my map\n..\n..", "..\n  // the south\n..", "..\n..\n; end"] {
+        let told = faults(text);
+        assert_eq!((told.len(), &*told[0].message), (1, comment), "{text}");
+        assert_eq!(told[0].help.as_deref(), Some("remove this line"), "{text}");
+        assert!(text[told[0].bytes.clone()].starts_with(['#', '/', ';']), "{text}");
+    }
     let wide = ".".repeat(9000);
     assert!(Map::read(&wide).unwrap_err()[0].message.contains("expected at most 8192 on a side"));
 }

@@ -331,7 +331,7 @@ fn robots_of_one_id_are_told_before_those_that_are_missing() {
     let fleet = fleet.replace("at 10s landing 8", "at 10s breakdown 2");
     let table = include_str!("../../../composites/hangar.csv");
     let told = told("one id", &[("fleet.composite", &fleet), ("hangar.csv", table)]);
-    assert_hint("one id", &told, "S3013", "replace `Robot01` with `Robot01${index}`");
+    assert_hint("one id", &told, "S3013", "replace `Robot01` with `Robot${index:02}`");
 }
 
 #[test]

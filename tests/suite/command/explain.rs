@@ -91,6 +91,11 @@ fn several_files_need_a_folder() {
     assert!(stderr(&output).contains("tip: this command writes to standard output: write `> FILE` behind it"));
     let output = saoms(&["run", "composites/hall.composite", "--wiring"]);
     assert!(stderr(&output).contains("tip: this option belongs to `saoms check`"), "{}", stderr(&output));
+    for (written, meant) in [("--time", "--for"), ("--duration", "--for"), ("--simulation", "--virtual")] {
+        let told = stderr(&saoms(&["run", "composites/hall.composite", written, "10s"]));
+        assert!(told.contains(&format!("tip: a similar argument exists: '{meant}'")), "{told}");
+        assert_eq!(told.matches("tip:").count(), 1, "{told}");
+    }
     for version in ["-v", "-V"] {
         let output = saoms(&["run", "composites/hall.composite", version]);
         let told = stderr(&output);

@@ -242,9 +242,19 @@ fn has_index(component: &ComponentElement, names: &Rc<Names>, report: &mut Repor
     false
 }
 
-/// A text of replicas that lacks their index, with it: in place of what looks like it, or else at the end.
+/// A text of replicas that lacks their index, with it: in place of what looks like it or is the number of the first one
+/// (`Robot01`), or else at the end.
 pub(crate) fn with_index(text: &str) -> String {
-    as_index(text).unwrap_or_else(|| format!("{text}${{index}}"))
+    as_index(text).unwrap_or_else(|| {
+        let stem = text.trim_end_matches(|sign: char| sign.is_ascii_digit());
+        match text.len() - stem.len() {
+            1 if text.ends_with('1') => format!("{stem}${{index}}"),
+            digits if digits > 1 && text[stem.len()..].trim_start_matches('0') == "1" => {
+                format!("{stem}${{index:0{digits}}}")
+            }
+            _ => format!("{text}${{index}}"),
+        }
+    })
 }
 
 /// A text with the index in place of what looks like it.

@@ -11,13 +11,13 @@ use crate::check::support::{compiled, faults, fleet, outcome, part};
 
 pub(crate) fn add(registry: &mut Registry) {
     let all = [Registration::of::<Hall>(), Registration::of::<Tower>(), Registration::of::<Player>()];
-    for one in all.into_iter().chain([Registration::of::<Stop>()]) {
+    for one in all.into_iter().chain([Registration::of::<Halt>()]) {
         registry.add(one).unwrap();
     }
 }
 
 submit! {
-    PropertyLanguage { name: "example", words: &["stop"], check: judge, complete: |_| Vec::new(), explain: |_| None }
+    PropertyLanguage { name: "example", words: &["halt"], check: judge, complete: |_| Vec::new(), explain: |_| None }
 }
 
 /// A line is an event.
@@ -73,10 +73,10 @@ struct Tower {
 }
 
 #[derive(Class)]
-#[class(name = "example.Stop", periodic)]
-struct Stop {
+#[class(name = "example.Halt", periodic)]
+struct Halt {
     /// It begins to burn.
-    #[takes("stop", FIRE)]
+    #[takes("halt", FIRE)]
     taken: Subscription<Fire>,
 }
 
@@ -92,7 +92,7 @@ macro_rules! idle {
     )*};
 }
 
-idle! { Hall Tower Stop }
+idle! { Hall Tower Halt }
 
 /// Plays events.
 #[derive(Class)]
@@ -187,7 +187,7 @@ fn an_event_has_the_same_fields_for_all_and_is_no_word_of_a_language() {
         3:18-19 error S4017: component `B` takes the event `fire` with the fields `height=0.5`, and class `example.Hall` with the fields `size=1`, `cause="text"`
           2:18-19 a component of that class
           help: an event has the same fields for all classes; give it another name under `takes` in one of them
-        5:18-19 error S4017: component `D` takes the event `stop`, which is a word of the language `example`
-          help: give it another name under `takes` in the declaration of class `example.Stop`
-    "#]].assert_eq(&faults(&(all + &component("D", "Stop", ""))));
+        5:18-19 error S4017: component `D` takes the event `halt`, which is a word of the language `example`
+          help: give it another name under `takes` in the declaration of class `example.Halt`
+    "#]].assert_eq(&faults(&(all + &component("D", "Halt", ""))));
 }

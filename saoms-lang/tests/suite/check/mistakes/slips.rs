@@ -107,6 +107,13 @@ fn replicas_that_lack_their_index_get_it() {
           fix: replace `R` with `R${index}` [2:18-19 "R${index}"]
     "#]]
     .assert_eq(&replicas("R", "S", "${index}"));
+    // The first one, copied: the others follow it. Another number is part of the name.
+    for (written, meant) in
+        [("R1", "R${index}"), ("R001", "R${index:03}"), ("R7", "R7${index}"), ("R21", "R21${index}")]
+    {
+        let told = replicas(written, "S", "${index}");
+        assert!(told.contains(&format!("fix: replace `{written}` with `{meant}`")), "{told}");
+    }
     expect![[r#"
         2:18-27 error S2046: `R${index}` is a name for replicas, but the number of replicas is missing
           help: add `saoms:count="..."` to the component
