@@ -37,6 +37,9 @@ impl Outcome {
 impl RobotKnowledge {
     /// Starts an action; if it is done at once, updates the robot's knowledge.
     pub(crate) fn begin(&mut self, context: &mut Context<'_>, action: Action) -> Result<Outcome, Failure> {
+        if self.stopped {
+            return Ok(Outcome::NotBegun);
+        }
         if action.kind != ActionKind::Move {
             self.show_ready(context, action);
         }
@@ -157,7 +160,8 @@ impl RobotKnowledge {
     }
 
     fn failed(&mut self, context: &mut Context<'_>, action: Action) {
-        self.failures += 1;
+        // What an operator stopped is no fault of the hardware.
+        self.failures += u32::from(!self.stopped);
         if self.failures == MOST_FAILURES && action.kind != ActionKind::Collect {
             self.trouble = Some(Trouble::Hardware);
         }

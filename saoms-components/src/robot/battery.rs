@@ -135,6 +135,11 @@ impl Battery {
         self.level = self.level.saturating_sub(discharge);
     }
 
+    /// True if each execution off the charger discharges it.
+    pub(super) fn drains_by_execution(&self) -> bool {
+        matches!(self.consumption, Consumption::PerExecution { .. })
+    }
+
     /// Discharges the battery by a move to the next block.
     pub fn drive(&mut self) {
         if let Consumption::Physical { per_block, .. } = self.consumption {

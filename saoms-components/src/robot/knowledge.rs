@@ -87,6 +87,9 @@ pub struct RobotKnowledge {
     /// State of the robot.
     #[entry(flatten)]
     pub variables: Variables,
+    /// True if an operator stopped it: it orders nothing of its hardware until it is released.
+    #[entry(quiet)]
+    pub(super) stopped: bool,
     /// True if the robot broke and does nothing any more.
     pub shut_down: bool,
     /// Robot that it substitutes, if it was woken for that.
@@ -173,6 +176,7 @@ impl RobotKnowledge {
             must_charge: false,
             job: None,
             variables: Variables::default(),
+            stopped: false,
             shut_down: false,
             stands_in_for: None,
             relieved: false,
@@ -214,6 +218,9 @@ impl RobotKnowledge {
     pub(super) fn waits_for(&self) -> Option<String> {
         if self.shut_down {
             return Some("assistance".to_owned());
+        }
+        if self.stopped {
+            return Some("its release after a stop".to_owned());
         }
         if self.hardware.is_absent() {
             return Some("its world, which is not started".to_owned());

@@ -110,6 +110,7 @@ impl Component for Robot {
         knowledge.policy = properties.policy;
         knowledge.variables.asleep = properties.asleep;
         knowledge.variables.in_charge = properties.asleep;
+        knowledge.stopped = properties.stopped;
         Ok(Robot { knowledge, loops: Loops::default(), topics: Topics::default() })
     }
 
@@ -158,6 +159,11 @@ impl Component for Robot {
                 self.knowledge.show_battery(context);
             }
         }
+        Ok(())
+    }
+
+    fn update(&mut self, properties: RobotProperties) -> Result<(), Failure> {
+        self.knowledge.stopped = properties.stopped;
         Ok(())
     }
 

@@ -20,7 +20,7 @@ impl RobotKnowledge {
     /// Carries out the orders of this execution. The wheels go first: a robot cannot use its gripper while it moves.
     pub(super) fn carry_out(&mut self, loops: &Loops, context: &mut Context<'_>) -> Result<(), Failure> {
         let (drive, grip) = (self.orders.drive.take(), std::mem::take(&mut self.orders.grip));
-        if self.hardware.running().is_some() || self.variables.critical {
+        if self.hardware.running().is_some() || self.variables.critical || self.stopped {
             return Ok(());
         }
         if let Some(to) = drive.filter(|to| *to != self.block) {

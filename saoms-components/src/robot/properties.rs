@@ -51,6 +51,10 @@ pub struct RobotProperties {
     /// True if the robot starts asleep at its charger and takes no jobs until it is woken.
     #[property(default = false)]
     pub(crate) asleep: bool,
+    /// True if the robot is stopped: it keeps its block and its job, and orders nothing of its hardware. `saoms estop`
+    /// sets it, and `saoms release` removes it.
+    #[property(default = false, live)]
+    pub(crate) stopped: bool,
     /// Rules by which the robot acts: `safe`, which neither collides nor runs out of battery, or `classic`, the
     /// manual's.
     #[property(default = "safe")]

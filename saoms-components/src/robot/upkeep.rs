@@ -50,7 +50,8 @@ impl RobotKnowledge {
             // The level is known.
         } else if charges {
             self.battery.charge(self.elapsed);
-        } else if drains {
+        } else if drains && !(self.stopped && self.battery.drains_by_execution()) {
+            // An execution stands for driving, which a stopped robot does not; time goes on.
             self.battery.drain(self.elapsed);
         }
         self.charge = self.battery.percent();

@@ -74,3 +74,27 @@ pub(super) async fn call(
     };
     give(fleet, Order::Call { component, operation, arguments: arguments.into_iter().collect() }).await
 }
+
+#[derive(Deserialize)]
+pub(super) struct ByQuery {
+    by: Option<String>,
+}
+
+pub(super) async fn stop_at_once(State(fleet): Fleet, Query(query): Query<ByQuery>, body: String) -> Answer {
+    give(fleet, Order::EmergencyStop { components: paths(&body), by: query.by.as_deref().and_then(word) }).await
+}
+
+pub(super) async fn release(State(fleet): Fleet, Query(query): Query<ByQuery>, body: String) -> Answer {
+    give(fleet, Order::Release { components: paths(&body), by: query.by.as_deref().and_then(word) }).await
+}
+
+fn paths(body: &str) -> Vec<String> {
+    body.split_whitespace().map(str::to_owned).collect()
+}
+
+/// A name as one word of a line.
+fn word(name: &str) -> Option<String> {
+    let word: String =
+        name.chars().map(|letter| if letter.is_alphanumeric() { letter } else { '-' }).take(64).collect();
+    (!word.is_empty()).then_some(word)
+}

@@ -128,6 +128,22 @@ const ROUTES: &[Route] = &[
     },
     Route {
         method: "post",
+        path: "/v1/estop",
+        doc: "Stops components and their hardware at once, until they are released; `reply` has their names.",
+        query: &[("by", "who does it, for the journal")],
+        body: Some("the paths of the components, separated by blanks; without any, all that move something"),
+        serve: || post(orders::stop_at_once),
+    },
+    Route {
+        method: "post",
+        path: "/v1/release",
+        doc: "Releases components that were stopped; `reply` has their names.",
+        query: &[("by", "who does it, for the journal")],
+        body: Some("the paths of the components, separated by blanks; without any, all that are stopped"),
+        serve: || post(orders::release),
+    },
+    Route {
+        method: "post",
         path: "/v1/down",
         doc: "Ends the fleet: its components shut down. The answer comes before the end.",
         query: &[],

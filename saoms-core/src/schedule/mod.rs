@@ -35,5 +35,5 @@ pub use members::UnknownComponent;
 pub use order::{Order, OrderError, OrderTicket, TimedOrder};
 pub use os::realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
-pub use stop::stop_hardware;
+pub use stop::{hears_stops, stop_hardware};
 pub use takers::{EventMessage, RaiseError, Takers};

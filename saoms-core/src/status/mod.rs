@@ -48,6 +48,8 @@ pub struct ComponentStatus {
     pub report: ComponentReport,
     /// What it does.
     pub state: ComponentState,
+    /// True from an emergency stop to its release.
+    pub emergency_stop: bool,
     /// Its period in milliseconds; a passive component has none.
     pub period_ms: Option<f64>,
     /// Seconds since its present code was called, if that has not returned: long if it hangs. Not in virtual time.

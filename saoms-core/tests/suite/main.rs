@@ -7,6 +7,7 @@ mod bus;
 mod busy;
 mod change;
 mod chaos;
+mod emergency;
 mod endings;
 mod events;
 mod failures;

@@ -40,6 +40,9 @@ fn orders_are_read_as_they_are_written() {
         "call A.where",
         "call A/gps.where robot=3 name=\"x y\" at={\"x\":1,\"y\":[2]}",
         "publish TALK {\"words\":\"a b\"}",
+        "estop",
+        "estop A North/B by ada",
+        "release by ada",
     ] {
         assert_eq!(order(line).to_string(), line);
     }

@@ -16,18 +16,18 @@ use crate::fleet::{Diary, assembly_of, outcome, real, simulated};
 
 /// What hardware of a name heard.
 #[derive(Default)]
-struct Wire {
+pub(crate) struct Wire {
     heard: Mutex<Vec<String>>,
     news: Condvar,
 }
 
 impl Wire {
-    fn of(name: &str) -> Arc<Wire> {
+    pub(crate) fn of(name: &str) -> Arc<Wire> {
         static ALL: LazyLock<Mutex<HashMap<String, Arc<Wire>>>> = LazyLock::new(Mutex::default);
         Arc::clone(ALL.lock().unwrap().entry(name.to_owned()).or_default())
     }
 
-    fn hear(&self, what: impl Into<String>) {
+    pub(crate) fn hear(&self, what: impl Into<String>) {
         self.heard.lock().unwrap().push(what.into());
         self.news.notify_all();
     }
@@ -36,12 +36,12 @@ impl Wire {
         self.heard.lock().unwrap().clone()
     }
 
-    fn count(&self, what: &str) -> usize {
+    pub(crate) fn count(&self, what: &str) -> usize {
         self.heard().iter().filter(|heard| *heard == what).count()
     }
 
     /// Waits until it has heard this, for ten seconds at most.
-    fn wait_for(&self, what: &str) {
+    pub(crate) fn wait_for(&self, what: &str) {
         let missing = |heard: &mut Vec<String>| !heard.iter().any(|heard| heard == what);
         let waited = self.news.wait_timeout_while(self.heard.lock().unwrap(), Duration::from_secs(10), missing);
         assert!(!waited.unwrap().1.timed_out(), "{what} was never heard");
@@ -49,7 +49,7 @@ impl Wire {
 }
 
 #[derive(Clone, Properties)]
-struct MotorProperties {
+pub(crate) struct MotorProperties {
     /// Name of the hardware.
     wire: String,
     /// Work of an execution or a call: nothing, `fail`, `panic` or `hang`.
@@ -60,7 +60,7 @@ struct MotorProperties {
     stop: String,
 }
 
-struct Motor {
+pub(crate) struct Motor {
     properties: MotorProperties,
     peer: EchoReference,
 }
@@ -111,7 +111,7 @@ macro_rules! motor {
     ($name:ident, $($class:tt)*) => {
         #[derive(Class)]
         #[class($($class)*)]
-        struct $name(Motor);
+        pub(crate) struct $name(Motor);
 
         impl Component for $name {
             type Properties = MotorProperties;
@@ -149,7 +149,11 @@ motor!(Arm, name = "arm", passive, stops, service("echo": Echo), reference("peer
 motor!(Undeclared, name = "undeclared", periodic, service("echo": Echo), reference("peer": Echo, optional));
 
 /// Starts a fleet in which `@` stands for the name of the wire.
-fn start(wire: &str, fleet: &str, settings: Settings) -> (Result<RunningFleet, String>, Arc<Wire>, Arc<Diary>) {
+pub(crate) fn start(
+    wire: &str,
+    fleet: &str,
+    settings: Settings,
+) -> (Result<RunningFleet, String>, Arc<Wire>, Arc<Diary>) {
     let mut registry = Registry::new();
     for class in [
         Registration::of::<Actor>(),

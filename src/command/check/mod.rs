@@ -1,5 +1,6 @@
 //! `saoms check`: finds every mistake, starts nothing.
 
+mod stops;
 mod wiring;
 
 use std::path::Path;

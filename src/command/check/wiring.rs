@@ -1,4 +1,4 @@
-//! The wiring report of `saoms check --wiring`: every topic with its writers and readers.
+//! The wiring report of `saoms check --wiring`: every topic with its writers and readers, and what a stop reaches.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -8,6 +8,8 @@ use saoms_api::host::{format_duration, one_line};
 use saoms_lang::assembly::{Assembly, TopicEnd, Traffic, TrafficTopic};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
+
+use super::stops::{StopReport, stopped};
 
 /// Components of one class that use a topic in the same way.
 struct Group<'a> {
@@ -41,7 +43,7 @@ impl fmt::Display for Wiring<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let traffic = Traffic::of(self.0);
         if traffic.topics.is_empty() {
-            return out.write_str("no topics\n\n");
+            return write!(out, "no topics\n\n{}", StopReport(self.0));
         }
         for topic in &traffic.topics {
             write!(out, "{}  {} topic of {}", one_line(&topic.name), topic.kind.name(), topic.message)?;
@@ -59,7 +61,7 @@ impl fmt::Display for Wiring<'_> {
                 }
             }
         }
-        writeln!(out)
+        write!(out, "\n{}", StopReport(self.0))
     }
 }
 
@@ -109,7 +111,8 @@ impl Serialize for Wiring<'_> {
                 }))
             }
         }
-        let mut object = to.serialize_map(Some(1))?;
+        let mut object = to.serialize_map(Some(2))?;
+        object.serialize_entry("emergency_stop", &stopped(self.0))?;
         object.serialize_entry("topics", &Rows(&Traffic::of(self.0), self.0))?;
         object.end()
     }

@@ -1,5 +1,6 @@
 //! Commands that reach a running fleet: each is a client of the server in the program that runs it.
 
+mod emergency;
 mod fleet;
 mod logs;
 mod orders;
@@ -8,6 +9,7 @@ mod status;
 mod table;
 mod topic;
 
+pub(super) use emergency::{EmergencyStopArguments, ReleaseArguments, estop, release};
 pub(super) use logs::{LogsArguments, logs};
 pub(super) use orders::{
     CallArguments, DownArguments, SendArguments, SetArguments, StartArguments, StopArguments, call, down, send, set,

@@ -73,6 +73,7 @@ fn shown(answer: &Value) -> String {
         let number = |field: &str| component[field].to_string();
         let state = match component["in_code_s"].as_f64() {
             Some(seconds) if seconds >= 1.0 => format!("in its code for {seconds:.0} s"),
+            _ if component["emergency_stop"] == true => "stopped at once".to_owned(),
             _ => word(&component["state"]),
         };
         table.row([

@@ -114,7 +114,7 @@ impl Loop for SafeGripper {
                 SafeGripperSymptom::Failed(job)
             }));
         }
-        if knowledge.hardware.running().is_some() || knowledge.variables.critical {
+        if knowledge.hardware.running().is_some() || knowledge.variables.critical || knowledge.stopped {
             return Ok(None);
         }
         let has_luggage = knowledge.variables.has_luggage;

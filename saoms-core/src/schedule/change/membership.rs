@@ -11,6 +11,7 @@ use crate::schedule::engine::slot::{NEVER, PendingRequest, Slot, SlotState, Task
 use crate::schedule::engine::trace::TraceStep;
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::shared::Shared;
+use crate::schedule::stop::hears_stops;
 
 impl Engine {
     /// The specifications of the fleet by their numbers.
@@ -218,6 +219,7 @@ impl Slot {
     /// Sets a new specification.
     pub(super) fn renew(&mut self, spec: Arc<ComponentSpec>) {
         self.policy = TaskPolicy::of(&spec);
+        self.hears_stops = hears_stops(&spec);
         self.spec = spec;
     }
 

@@ -39,7 +39,10 @@ pub struct Changed {
 pub(crate) fn apply(shared: &Arc<Shared>, wanted: Assembly) -> Result<Changed, ChangeError> {
     let _one_at_a_time = shared.lock_changes();
     let current = shared.lock().specs();
-    let wanted: Vec<_> = wanted.components.into_iter().map(|spec| Some(Arc::new(spec))).collect();
+    let wanted: Vec<_> = {
+        let engine = shared.lock();
+        wanted.components.into_iter().map(|spec| Some(Arc::new(engine.still_stopped(spec)))).collect()
+    };
     let plan = ChangePlan::between(&as_members(&current), &as_members(&wanted));
     Change::new(shared).make(&plan, wanted)
 }
@@ -53,6 +56,7 @@ pub(crate) fn replace(shared: &Arc<Shared>, spec: ComponentSpec) -> Result<Takeo
         return Err(ChangeError::Unknown(spec.path));
     };
     let task = known.as_ref().and_then(|known| known.task.clone());
+    let spec = shared.lock().still_stopped(spec);
     *known = Some(Arc::new(ComponentSpec { task, ..spec }));
     let differences = Vec::new();
     let replace = vec![Replacement { current: number, wanted: number, differences }];

@@ -109,6 +109,7 @@ impl Body {
     fn successor(&self, spec: Arc<ComponentSpec>) -> Box<Body> {
         let part = &self.part;
         let mut body = Body::new(part.index, spec, Arc::clone(&part.name), part.period, Arc::clone(&part.cancelled));
+        body.part.emergency = Arc::clone(&part.emergency);
         body.part.chance = part.chance.clone();
         body.part.kept_bytes = part.kept_bytes.clone();
         (body.part.now, body.part.due, body.part.execution) = (part.now, part.due, part.execution);

@@ -67,6 +67,8 @@ pub(crate) struct Part {
     pub(crate) call_depth: u32,
     pub(crate) chance: Chance,
     pub(crate) cancelled: Arc<AtomicBool>,
+    /// True while it is stopped in an emergency: its hardware hears no heartbeat.
+    pub(crate) emergency: Arc<AtomicBool>,
     pub(crate) vote: Option<Ballot>,
     /// Answer to the question what it waits for.
     pub(crate) waits_for: Option<String>,
@@ -148,6 +150,7 @@ impl Body {
             call_depth: 0,
             chance: Chance::new(0),
             cancelled,
+            emergency: Arc::default(),
             vote: None,
             waits_for: None,
             described: None,
@@ -207,7 +210,7 @@ impl Body {
             self.part.lasting.touch();
             return result;
         }
-        if result.is_ok() && job == Job::Execute && !self.part.heartbeats.is_empty() {
+        if result.is_ok() && job == Job::Execute && self.part.beats() {
             result = shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
         }
         if result.is_ok() && self.part.lasting.saves && matches!(job, Job::Execute | Job::React) {
@@ -394,6 +397,11 @@ impl Part {
             Some(one) => Failure::new(format!("loop `{}`: {panic}", one.name)),
             None => panic,
         }
+    }
+
+    /// True if hardware hears that it has executed.
+    fn beats(&self) -> bool {
+        !self.heartbeats.is_empty() && !self.emergency.load(Ordering::Relaxed)
     }
 
     pub(crate) fn is_cancelled(&self) -> bool {

@@ -23,6 +23,10 @@ impl Engine {
                 slot.state = SlotState::Leaving;
                 Some(Job::Shutdown)
             }
+            SlotState::Active if slot.is_suspended() => {
+                self.leave_out(index, now);
+                None
+            }
             SlotState::Active if now >= slot.react_due => self.reaction(index),
             SlotState::Active if now < slot.due => {
                 let when = slot.next_time();
@@ -178,6 +182,7 @@ impl Engine {
         if job == Job::Describe {
             self.note_answer(index);
         }
+        self.stop_again(index);
         if job == Job::Order {
             self.finish_order(index, &mut body, result.as_ref().err(), ended);
         }

@@ -1,5 +1,5 @@
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::overrun::{self, Decision};
@@ -7,6 +7,7 @@ use crate::journal::Ring;
 use crate::report::Lateness;
 use crate::schedule::component::body::Body;
 use crate::schedule::settings::nanos;
+use crate::schedule::stop::hears_stops;
 use crate::status::Description;
 use saoms_lang::assembly::{ComponentSpec, Loss, Overrun};
 
@@ -76,6 +77,12 @@ pub(crate) struct Slot {
     pub(crate) overrun_failure: Option<String>,
     pub(crate) name: Arc<str>,
     pub(crate) cancelled: Arc<AtomicBool>,
+    /// True from an emergency stop to its release.
+    pub(crate) emergency: Arc<AtomicBool>,
+    /// True if it hears of an emergency stop by a property, and goes on.
+    pub(crate) hears_stops: bool,
+    /// True if its hardware is stopped once more when its code returns.
+    pub(crate) stops_again: bool,
     /// Number of instances so far.
     pub(crate) instances: u64,
     pub(crate) restarts: u32,
@@ -222,9 +229,14 @@ impl Slot {
         let name: Arc<str> = Arc::from(spec.path.as_str());
         let policy = TaskPolicy::of(&spec);
         let cancelled = Arc::new(AtomicBool::new(false));
-        let body = Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
+        let mut body = Body::new(index, Arc::clone(&spec), Arc::clone(&name), policy.period, Arc::clone(&cancelled));
+        let emergency = Arc::new(AtomicBool::new(false));
+        body.part.emergency = Arc::clone(&emergency);
         Slot {
             body: Some(Box::new(body)),
+            emergency,
+            hears_stops: hears_stops(&spec),
+            stops_again: false,
             spec,
             held: true,
             joined: false,
@@ -275,6 +287,18 @@ impl Slot {
     #[inline]
     pub(crate) fn decide(&self, now: u64, limit: u64) -> Decision {
         overrun::decide(self.policy.overrun, self.due, now, self.policy.period, limit)
+    }
+
+    /// True from an emergency stop to its release.
+    #[inline]
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.emergency.load(Ordering::Relaxed)
+    }
+
+    /// True if its executions are left out, since it is stopped and does not hear of it.
+    #[inline]
+    pub(crate) fn is_suspended(&self) -> bool {
+        !self.hears_stops && self.is_stopped()
     }
 
     /// True if it is part of the fleet, or is about to be.

@@ -131,6 +131,7 @@ impl Engine {
                 SlotState::Failed => ComponentState::Failed,
                 SlotState::Abandoned => ComponentState::Abandoned,
             },
+            emergency_stop: slot.is_stopped(),
             period_ms: slot.policy.periodic.then_some(slot.policy.period as f64 / 1e6),
             in_code_s: is_in_code.then(|| now.saturating_sub(slot.out_since) as f64 / 1e9),
             waits_for: described.as_ref().and_then(|one| one.waits_for.clone()),

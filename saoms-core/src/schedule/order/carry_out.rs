@@ -22,12 +22,16 @@ use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::inject::{self, InjectedContent, Injection, OUTSIDE_NAME};
 use crate::schedule::settings::nanos;
 use crate::schedule::shared::Shared;
+use crate::schedule::stop::STOPPED;
 
 /// An order that was accepted.
 #[derive(Debug)]
 pub(crate) struct PendingOrder {
     order: Order,
-    answering: Answering,
+    /// Where the answer goes; `None` if it was given.
+    answering: Option<Answering>,
+    /// The record in the journal of the order of which this is a part.
+    part_of: Option<Cause>,
 }
 
 /// Orders that wait for a component whose code runs, in the order in which they came.
@@ -39,7 +43,7 @@ pub(crate) struct PendingOrders {
 /// An order that a component carries out itself: what its code gets, and its answer.
 pub(crate) struct OrderInCode {
     order: Order,
-    answering: Answering,
+    answering: Option<Answering>,
     /// Its record in the journal.
     cause: Cause,
     /// `None` once it has begun.
@@ -66,14 +70,27 @@ pub(in crate::schedule) fn accept(shared: &Shared, order: Order, at: Option<Time
         let _ = answering.give(Ok(Value::Null));
         return Ok(ticket);
     }
-    let engine = shared.lock();
+    let mut engine = shared.lock();
     if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
         return Err(OrderError::Ending);
     }
     engine.judge(&order)?;
+    let answering = match engine.begin_stop_order(&order, at) {
+        Some(names) => {
+            let _ = answering.give(Ok(names));
+            None
+        }
+        None => Some(answering),
+    };
     shared.release(engine);
-    inject::add_order(shared, at, PendingOrder { order, answering });
+    inject::add_order(shared, at, PendingOrder { order, answering, part_of: None });
     Ok(ticket)
+}
+
+impl PendingOrder {
+    fn is_cancelled(&self) -> bool {
+        self.answering.as_ref().is_some_and(Answering::is_cancelled)
+    }
 }
 
 impl Engine {
@@ -87,8 +104,56 @@ impl Engine {
                 let (number, service) = self.provider(component)?;
                 self.work(order, number, service).map(drop)
             }
+            Order::EmergencyStop { components, .. } => {
+                self.to_stop(components).map(drop).map_err(OrderError::Component)
+            }
+            Order::Release { components, .. } => self.to_release(components).map(drop).map_err(OrderError::Component),
             Order::Publish { .. } => Ok(()),
         }
+    }
+
+    /// The components of an emergency stop, or of a release, that takes effect at the next instant. A stop waits for
+    /// nothing: its components are stopped already.
+    fn begin_stop_order(&mut self, order: &Order, at: Option<Time>) -> Option<Value> {
+        let components = match order {
+            _ if at.is_some() => return None,
+            Order::EmergencyStop { components, .. } => {
+                let components = self.to_stop(components).ok()?;
+                self.stop_at_once(&components);
+                components
+            }
+            Order::Release { components, .. } => self.to_release(components).ok()?,
+            _ => return None,
+        };
+        Some(components.iter().map(|index| Value::from(&*self.slots[*index as usize].name)).collect())
+    }
+
+    /// Lets an emergency stop or a release take effect.
+    fn carry_out_stop(&mut self, when: u64, order: &Order) -> Result<(), OrderError> {
+        let (components, is_stopped, by) = match order {
+            Order::EmergencyStop { components, by } => (self.to_stop(components), true, by),
+            Order::Release { components, by } => (self.to_release(components), false, by),
+            _ => return Ok(()),
+        };
+        let components = components.map_err(OrderError::Component)?;
+        let cause = self.record_outside(when, OUTSIDE_NAME, order.to_string());
+        if is_stopped {
+            let begun = |index: &u32| self.slots[*index as usize].is_stopped();
+            let new: Vec<u32> = components.iter().copied().filter(|index| !begun(index)).collect();
+            self.stop_at_once(&new);
+        }
+        self.tell_stopped(&components, is_stopped, cause, when);
+        let what = if is_stopped { "emergency stop" } else { "release" };
+        self.log_stopped(&components, what, by.as_deref(), when);
+        Ok(())
+    }
+
+    /// Has a component told that it is stopped, or released.
+    pub(in crate::schedule) fn queue_stopped(&mut self, index: u32, is_stopped: bool, cause: Cause) {
+        let component = self.slots[index as usize].name.to_string();
+        let order = Order::Set { component, property: STOPPED.to_owned(), value: is_stopped.to_string() };
+        let pending = PendingOrder { order, answering: None, part_of: Some(cause) };
+        self.orders.waiting.push_back((index, Box::new(pending)));
     }
 
     /// The component of this path, which may have the name of a service behind it.
@@ -135,9 +200,13 @@ impl Engine {
                 }
                 return;
             }
+            Order::EmergencyStop { .. } | Order::Release { .. } => {
+                let result = self.carry_out_stop(when, &pending.order).map(|()| Value::Null);
+                return self.answer(when, &pending.order, pending.answering, result);
+            }
             Order::Publish { .. } => return,
         };
-        if pending.answering.is_cancelled() {
+        if pending.is_cancelled() {
             return;
         }
         let answer = match self.periodic(request.0) {
@@ -152,8 +221,12 @@ impl Engine {
     }
 
     /// Answers an order. A refusal that nobody waits for is logged.
-    fn answer(&mut self, now: u64, order: &Order, answering: Answering, answer: Result<Value, OrderError>) {
-        if let Some(error) = answering.give(answer) {
+    fn answer(&mut self, now: u64, order: &Order, answering: Option<Answering>, answer: Result<Value, OrderError>) {
+        let untold = match answering {
+            Some(answering) => answering.give(answer),
+            None => answer.err(),
+        };
+        if let Some(error) = untold {
             let text = format!("the order `{order}` is refused: {error}");
             self.note(now, Occurrence::Note { level: Level::Warning, text });
         }
@@ -176,7 +249,7 @@ impl Engine {
         let mut place = 0;
         while let Some((index, pending)) = self.orders.waiting.get(place) {
             let (index, slot) = (*index, &self.slots[*index as usize]);
-            let is_over = pending.answering.is_cancelled();
+            let is_over = pending.is_cancelled();
             if !is_over && (slot.body.is_none() || slot.held) {
                 place += 1;
                 continue;
@@ -186,6 +259,10 @@ impl Engine {
                 return Some(index);
             }
             if let Some((_, pending)) = self.orders.waiting.remove(place) {
+                if let (Some(_), Order::Set { property, value, .. }) = (pending.part_of, &pending.order) {
+                    self.set_at_rest(index, property, value);
+                    continue;
+                }
                 let refusal = not_running(&self.slots[index as usize].name, &pending.order);
                 self.answer(now, &pending.order, pending.answering, Err(refusal));
             }
@@ -197,7 +274,7 @@ impl Engine {
     pub(in crate::schedule) fn begin_order(&mut self, index: u32, body: &mut Body, now: u64) {
         let Some(place) = self.orders.waiting.iter().position(|(waiting, _)| *waiting == index) else { return };
         let Some((_, pending)) = self.orders.waiting.remove(place) else { return };
-        let PendingOrder { order, answering } = *pending;
+        let PendingOrder { order, answering, part_of } = *pending;
         let work = match &order {
             Order::Set { component, .. } | Order::Call { component, .. } => {
                 self.provider(component).and_then(|(number, service)| self.work(&order, number, service))
@@ -206,7 +283,7 @@ impl Engine {
         };
         match work {
             Ok(work) => {
-                let cause = self.record_outside(now, OUTSIDE_NAME, order.to_string());
+                let cause = part_of.unwrap_or_else(|| self.record_outside(now, OUTSIDE_NAME, order.to_string()));
                 body.part.order =
                     Some(Box::new(OrderInCode { order, answering, cause, work: Some(work), answer: None }));
             }

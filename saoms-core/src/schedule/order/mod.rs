@@ -62,6 +62,20 @@ pub enum Order {
         /// Its arguments by name.
         arguments: Vec<(String, Value)>,
     },
+    /// Stops components and their hardware at once, until they are released.
+    EmergencyStop {
+        /// Their paths; without any, all that move something.
+        components: Vec<String>,
+        /// Who stops them.
+        by: Option<String>,
+    },
+    /// Releases components that were stopped.
+    Release {
+        /// Their paths; without any, all that are stopped.
+        components: Vec<String>,
+        /// Who releases them.
+        by: Option<String>,
+    },
     /// Publishes a message on a topic.
     Publish {
         /// The topic, by the name that it has after renaming.
@@ -88,9 +102,17 @@ impl fmt::Display for Order {
                 write!(formatter, "call {component}.{operation}")?;
                 arguments.iter().try_for_each(|(name, value)| write!(formatter, " {name}={value}"))
             }
+            Order::EmergencyStop { components, by } => write_stop(formatter, "estop", components, by.as_deref()),
+            Order::Release { components, by } => write_stop(formatter, "release", components, by.as_deref()),
             Order::Publish { topic, message } => write!(formatter, "publish {topic} {message}"),
         }
     }
+}
+
+fn write_stop(formatter: &mut fmt::Formatter<'_>, word: &str, components: &[String], by: Option<&str>) -> fmt::Result {
+    formatter.write_str(word)?;
+    components.iter().try_for_each(|component| write!(formatter, " {component}"))?;
+    by.map_or(Ok(()), |name| write!(formatter, " by {name}"))
 }
 
 /// True if a value stands in a line without quotes.

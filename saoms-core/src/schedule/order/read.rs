@@ -60,6 +60,14 @@ fn read(line: &str, word: &str, mut words: Words<'_>, time: Option<&str>) -> Res
             let (property, value) = words.assignment()?;
             return Ok(TimedOrder { at: at.transpose()?, order: Order::Set { component, property, value } });
         }
+        "estop" => {
+            let (components, by) = words.stopped()?;
+            Order::EmergencyStop { components, by }
+        }
+        "release" => {
+            let (components, by) = words.stopped()?;
+            Order::Release { components, by }
+        }
         "call" => words.call()?,
         "publish" => {
             let topic = words.expected("a topic")?.to_owned();
@@ -143,6 +151,18 @@ impl<'l> Words<'l> {
         }
         self.at = self.line.len();
         Ok((name.to_owned(), value.trim().to_owned()))
+    }
+
+    /// `COMPONENT... by NAME`
+    fn stopped(&mut self) -> Result<(Vec<String>, Option<String>), LineFault> {
+        let mut components = Vec::new();
+        while !self.is_over() {
+            if self.take("by") {
+                return Ok((components, Some(self.expected("the name of somebody")?.to_owned())));
+            }
+            components.push(self.component()?);
+        }
+        Ok((components, None))
     }
 
     /// `COMPONENT.OPERATION ARGUMENT=VALUE...`

@@ -4,6 +4,7 @@
 //! They are called on threads of their own, so that one that hangs holds up neither the fleet nor the others. All are
 //! requested when a run ends; [`stop_hardware`] does that for a process that ends without its runs.
 
+mod emergency;
 mod hang;
 mod threads;
 
@@ -15,6 +16,8 @@ use std::time::{Duration, Instant};
 use saoms_api::host::contain::contained;
 use saoms_api::{Failure, StopFunction};
 
+pub(crate) use self::emergency::STOPPED;
+pub use self::emergency::hears_stops;
 use self::threads::StopThreads;
 use super::engine::Engine;
 use super::shared::Shared;
@@ -174,7 +177,8 @@ impl Engine {
             wires.iter().flat_map(|wire| &wire.targets).any(|target| target.component as u32 == provider)
         };
         for provider in self.heartbeats_of(index) {
-            let is_used = |user: u32| user != index && self.slots[user as usize].is_alive() && uses(user, provider);
+            let goes_on = |user: u32| self.slots[user as usize].is_alive() && !self.slots[user as usize].is_stopped();
+            let is_used = |user: u32| user != index && goes_on(user) && uses(user, provider);
             let is_passive = !self.slots[provider as usize].policy.periodic;
             if is_passive && !(0..self.slots.len() as u32).any(is_used) {
                 self.stops.request_of(provider);

@@ -151,6 +151,9 @@ impl Loop for SafeCriticalSituation {
             context.because(cause);
             return Ok(Some(SafeCriticalSymptom::InVain(situation)));
         }
+        if knowledge.stopped {
+            return Ok(None);
+        }
         let mut found = look_for_help_requests(knowledge);
         if found.is_none() && (knowledge.must_charge || knowledge.relieved) {
             found = look_for_hopeless_requests(knowledge);

@@ -98,6 +98,10 @@ impl Loop for SafeEventLuggage {
             context.because(self.said);
             return Ok(self.look_at_claimed(knowledge));
         }
+        if knowledge.stopped {
+            // It keeps what it has, and what waits is for others.
+            return Ok(None);
+        }
         if in_vain.is_some() {
             return Ok(in_vain);
         }

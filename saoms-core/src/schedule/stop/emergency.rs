@@ -1,0 +1,134 @@
+//! Emergency stops: hardware stops at once, whatever its component does, and stays stopped until the release.
+//!
+//! The functions that stop hardware are called from threads of their own, and its heartbeat ends. A component whose
+//! class has a live property `stopped` gets the value `true`, so that it goes on without ordering anything of its
+//! hardware; executions of others are left out.
+
+use std::sync::atomic::Ordering;
+
+use saoms_api::host::declaration::PropertyKind;
+use saoms_api::{Cause, Level};
+use saoms_lang::assembly::ComponentSpec;
+
+use crate::observe::Occurrence;
+use crate::schedule::change;
+use crate::schedule::engine::Engine;
+use crate::schedule::engine::slot::{NEVER, SlotState};
+use crate::schedule::members::UnknownComponent;
+
+/// The property by which a component hears that it is stopped.
+pub(crate) const STOPPED: &str = "stopped";
+
+/// True if components of this specification hear of an emergency stop by a live property `stopped`, and go on;
+/// executions of others are left out.
+pub fn hears_stops(spec: &ComponentSpec) -> bool {
+    let declared = spec.class.declaration().property(STOPPED);
+    declared.is_some_and(|one| one.live && one.kind == PropertyKind::Boolean)
+}
+
+impl Engine {
+    /// The components that an emergency stop is for: those of these paths, or all that move something.
+    pub(in crate::schedule) fn to_stop(&self, paths: &[String]) -> Result<Vec<u32>, UnknownComponent> {
+        if !paths.is_empty() {
+            return paths.iter().map(|path| self.periodic(path)).collect();
+        }
+        let moves = |index: &u32| {
+            let slot = &self.slots[*index as usize];
+            slot.is_member() && slot.policy.periodic && (slot.hears_stops || !self.heartbeats_of(*index).is_empty())
+        };
+        Ok((0..self.slots.len() as u32).filter(moves).collect())
+    }
+
+    /// The components that are stopped, among those of these paths or among all.
+    pub(in crate::schedule) fn to_release(&self, paths: &[String]) -> Result<Vec<u32>, UnknownComponent> {
+        if !paths.is_empty() {
+            return paths.iter().map(|path| self.periodic(path)).collect();
+        }
+        Ok((0..self.slots.len() as u32).filter(|index| self.slots[*index as usize].is_stopped()).collect())
+    }
+
+    /// Stops the hardware of components at once: its functions are called and its heartbeat ends. It may be called in
+    /// any phase of the run.
+    pub(in crate::schedule) fn stop_at_once(&mut self, components: &[u32]) {
+        for index in components {
+            let slot = &mut self.slots[*index as usize];
+            slot.emergency.store(true, Ordering::Relaxed);
+            // What its code has begun may still reach the hardware.
+            slot.stops_again = slot.body.is_none();
+        }
+        components.iter().for_each(|index| self.stop_hardware_of(*index));
+    }
+
+    /// Has the hardware of a component stopped: its own, and what only stopped components use.
+    fn stop_hardware_of(&mut self, index: u32) {
+        self.stops.request_of(index);
+        self.stop_its_hardware(index);
+    }
+
+    /// Stops the hardware of a component once more, whose code was running when it was stopped.
+    pub(in crate::schedule) fn stop_again(&mut self, index: u32) {
+        if std::mem::take(&mut self.slots[index as usize].stops_again) {
+            self.stop_hardware_of(index);
+        }
+    }
+
+    /// Tells components that they are stopped or released, which the journal has as this record.
+    pub(in crate::schedule) fn tell_stopped(&mut self, components: &[u32], is_stopped: bool, cause: Cause, now: u64) {
+        for index in components {
+            let slot = &mut self.slots[*index as usize];
+            slot.emergency.store(is_stopped, Ordering::Relaxed);
+            slot.stops_again &= is_stopped;
+            if slot.hears_stops {
+                self.queue_stopped(*index, is_stopped, cause);
+            } else if !is_stopped && slot.state == SlotState::Active && slot.body.is_some() {
+                self.react_to_news(*index, now);
+            }
+        }
+    }
+
+    /// Gives a component that does not run the value with which it will start.
+    pub(in crate::schedule) fn set_at_rest(&mut self, index: u32, property: &str, value: &str) {
+        let slot = &mut self.slots[index as usize];
+        if let Ok(changed) = change::changed(&slot.spec, property, value) {
+            slot.spec = std::sync::Arc::new(changed);
+            if let Some(body) = &mut slot.body {
+                body.part.spec = std::sync::Arc::clone(&slot.spec);
+            }
+        }
+    }
+
+    /// The specification of a component that replaces one: where that is stopped, the new one is, too.
+    pub(in crate::schedule) fn still_stopped(&self, spec: ComponentSpec) -> ComponentSpec {
+        let known = self.numbers.get(spec.path.as_str()).map(|number| &self.slots[*number as usize]);
+        match known {
+            Some(slot) if slot.is_stopped() && hears_stops(&spec) => {
+                change::changed(&spec, STOPPED, "true").unwrap_or(spec)
+            }
+            _ => spec,
+        }
+    }
+
+    /// Leaves out the execution of a component that is stopped and does not hear of it: its phase stays.
+    #[cold]
+    pub(in crate::schedule) fn leave_out(&mut self, index: u32, now: u64) {
+        let slot = &mut self.slots[index as usize];
+        slot.react_due = NEVER;
+        if slot.due <= now {
+            let periods = (now - slot.due) / slot.policy.period + 1;
+            slot.due = slot.due.saturating_add(periods.saturating_mul(slot.policy.period));
+        }
+        let when = slot.next_time();
+        self.enqueue(index, when);
+    }
+
+    /// Logs an emergency stop or a release.
+    pub(in crate::schedule) fn log_stopped(&mut self, components: &[u32], what: &str, by: Option<&str>, now: u64) {
+        let names: Vec<&str> = components.iter().map(|index| &*self.slots[*index as usize].name).collect();
+        let by = by.map(|name| format!(" by {name}")).unwrap_or_default();
+        let whom = match names[..] {
+            [] => "no component moves anything".to_owned(),
+            _ => names.join(", "),
+        };
+        self.note(now, Occurrence::Note { level: Level::Warning, text: format!("{what}{by}: {whom}") });
+    }
+}

@@ -1,0 +1,71 @@
+//! `saoms estop` and `saoms release`: robots and other machines stop at once, and go on.
+
+use clap::Args;
+use saoms_api::host::one_line;
+use serde_json::Value;
+
+use super::fleet::{RunningFleetArguments, escape};
+use crate::Exit;
+
+const STOP_CODES: &str = "\
+Exit codes:
+  0  they are stopped
+  2  there is no such component, no fleet runs, or it is not clear which one is meant";
+
+/// Stop machines of a running fleet at once, until they are released
+///
+/// The functions that stop their hardware are called, whatever their code does, and the heartbeat of the hardware ends.
+#[derive(Debug, Args)]
+#[command(after_help = STOP_CODES)]
+pub(crate) struct EmergencyStopArguments {
+    /// The paths of the components; without any, all that move something
+    #[arg(value_name = "COMPONENT")]
+    components: Vec<String>,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+const RELEASE_CODES: &str = "\
+Exit codes:
+  0  they are released
+  2  there is no such component, no fleet runs here, or it is not clear which one is meant";
+
+/// Release machines of a running fleet that `saoms estop` stopped
+#[derive(Debug, Args)]
+#[command(after_help = RELEASE_CODES)]
+pub(crate) struct ReleaseArguments {
+    /// The paths of the components; without any, all that are stopped
+    #[arg(value_name = "COMPONENT")]
+    components: Vec<String>,
+
+    #[command(flatten)]
+    fleet: RunningFleetArguments,
+}
+
+pub(crate) fn estop(arguments: &EmergencyStopArguments) -> Exit {
+    give(&arguments.fleet, "estop", &arguments.components, "stopped")
+}
+
+pub(crate) fn release(arguments: &ReleaseArguments) -> Exit {
+    give(&arguments.fleet, "release", &arguments.components, "released")
+}
+
+fn give(fleet: &RunningFleetArguments, order: &str, components: &[String], done: &str) -> Exit {
+    // The journal says who it was; whoever can order that may also name somebody else.
+    let by = std::env::var("USER").or_else(|_| std::env::var("LOGNAME")).unwrap_or_default();
+    let query = if by.is_empty() { String::new() } else { format!("?by={}", escape(&by)) };
+    let answer = match fleet.ask("POST", &format!("/v1/{order}{query}"), &components.join(" ")) {
+        Ok(answer) => answer,
+        Err(exit) => return exit,
+    };
+    fleet.show(&answer, || {
+        let names = answer["reply"].as_array().into_iter().flatten().filter_map(Value::as_str);
+        let names: Vec<String> = names.map(|name| one_line(name).into_owned()).collect();
+        match names.is_empty() {
+            true => format!("nothing is {done}\n"),
+            false => format!("{done}: {}\n", names.join(", ")),
+        }
+    });
+    Exit::Done
+}
