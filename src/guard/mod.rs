@@ -3,6 +3,7 @@
 mod blame;
 mod crash;
 mod end;
+mod floats;
 mod hang;
 mod hardware;
 mod own_end;
@@ -38,6 +39,7 @@ pub(crate) fn install() {
     INSTALLED.call_once(|| {
         keep_folder();
         keep_mask();
+        floats::keep();
         thread_end::prepare();
         blame::keep_process();
         crash::install();
@@ -70,6 +72,7 @@ fn look(owner: &'static Owner, function: Function) {
     let place = format!(" {}", function.place());
     signals::unblock(&owner.text, &place);
     signals::take_back(&owner.text, &place);
+    floats::take_back(&owner.text, &place);
     tell_lost_descriptors(&owner.text, &place);
 }
 

@@ -1,4 +1,5 @@
 /* What code of a library can do to the process that it runs in, by name. */
+#include <fenv.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -32,6 +33,8 @@ static void act_on_process(const char *does) {
         }
     } else if (strcmp(does, "crashes") == 0) {
         raise(SIGSEGV);
+    } else if (strcmp(does, "rounds up") == 0) {
+        fesetround(FE_UPWARD);
     } else if (strcmp(does, "prints") == 0) {
         printf("printed by a library\n");
     } else if (strcmp(does, "aborts") == 0) {

@@ -102,6 +102,7 @@ pub(crate) fn c_library_of(name: &str, folder: &Path, definitions: &[&str]) -> P
         "-std=gnu99", "-O1", "-shared", "-fPIC", "-fvisibility=hidden", "-Wno-overlength-strings", "-pthread", "-I",
     ]);
     cc.arg(root().join("saoms-abi/include")).arg("-o").args([&library, &source]);
+    cc.arg("-lm");
     let output = cc.args(definitions.iter().map(|one| format!("-D{one}"))).output().unwrap();
     assert!(output.status.success(), "{cc:?}: {}", String::from_utf8_lossy(&output.stderr));
     library

@@ -140,6 +140,20 @@ fn files_that_are_written_have_the_modes_of_the_start() {
     }
 }
 
+/// As what some compilers link into libraries with `-ffast-math` does.
+#[test]
+fn the_rounding_of_numbers_that_a_library_changes_at_its_start_is_given_back_by_name() {
+    for (does, place) in [("made: rounds up", "in the constructor"), ("begins: rounds up", "in `initialize`")] {
+        let output =
+            assert_named(does, &format!("changed how floating-point numbers are rounded or trapped {place}: it is"));
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+        assert_eq!(stderr(&output).matches("component `Bad` of library").count(), 1, "once: {}", text(&output));
+    }
+    let output = loaded("LOADS=\"rounds up\"");
+    let expected = "changed how floating-point numbers are rounded or trapped while it was loaded";
+    assert!(stderr(&output).contains("warning: library `") && stderr(&output).contains(expected), "{}", text(&output));
+}
+
 #[test]
 fn signals_that_a_library_takes_over_or_blocks_at_its_start_are_given_back_by_name() {
     for (does, expected) in [
