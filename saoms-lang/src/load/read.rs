@@ -313,8 +313,13 @@ fn near(path: &Path, ending: Option<&str>) -> Option<String> {
     let all = names.iter().map(String::as_str);
     let mut near = nearest_few(&wanted, all.clone(), OFFERED_NAMES);
     if near.is_empty() {
-        // Many forget the ending.
-        let is_stem = |name: &&str| Path::new(name).file_stem().is_some_and(|stem| stem == &*wanted);
+        // Many forget the ending, or write another one.
+        let other = Path::new(&*wanted).file_stem();
+        let has_ending = |name: &str| ending.is_some_and(|ending| name.ends_with(ending));
+        let is_stem = |name: &&str| {
+            let stem = Path::new(name).file_stem();
+            stem.is_some_and(|stem| stem == &*wanted) || stem == other && has_ending(name)
+        };
         near = all.filter(is_stem).take(OFFERED_NAMES).collect();
     }
     match near.is_empty() {

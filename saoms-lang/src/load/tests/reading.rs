@@ -85,6 +85,7 @@ fn a_file_that_is_not_there_has_neighbours() {
         format!("{missing}there is `DIR/airport.composite`, `DIR/airport2.composite`")
     );
     assert_eq!(shown("notes"), format!("{missing}there is `DIR/notes.txt`"));
+    assert_eq!(shown("airport.xml"), format!("{missing}there is `DIR/airport.composite`"));
     assert_eq!(shown("xyz"), format!("{missing}the folder has `DIR/airport.composite`, `DIR/airport2.composite`"));
     assert_eq!(shown("sup/a"), format!("{missing}there is no folder `DIR/sup`"));
     assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file, not a folder"));
