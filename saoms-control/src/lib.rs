@@ -6,6 +6,7 @@
 
 mod client;
 mod counts;
+mod date;
 mod description;
 mod log;
 mod metrics;
@@ -16,6 +17,7 @@ mod token;
 mod topics;
 
 pub use client::{Client, ClientError, Response, running};
+pub use date::date;
 pub use description::FleetDescription;
 pub use log::{LogLine, LogTail};
 pub use metrics::{METRICS, Metric};

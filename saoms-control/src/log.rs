@@ -2,12 +2,14 @@
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::SystemTime;
 
 use saoms_api::Level;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use serde::{Deserialize, Serialize};
 use tokio::sync::broadcast;
+
+use crate::date::date;
 
 /// Number of lines that are kept, and number of lines that may wait for a client.
 const KEPT: usize = 1000;
@@ -17,14 +19,27 @@ const KEPT: usize = 1000;
 pub struct LogLine {
     /// Time of the run in seconds.
     pub time_s: f64,
-    /// Time of day, in seconds since 1970.
-    pub date_s: f64,
+    /// Time of day in UTC, as `2026-11-26T18:37:00.123Z`.
+    pub date: String,
     /// `error`, `warning`, `info` or `debug`.
     pub level: String,
     /// The component that it is about; `null` is the fleet as a whole.
     pub component: Option<String>,
     /// The line.
     pub text: String,
+}
+
+impl LogLine {
+    /// The line about an event that happens now.
+    pub fn of(event: &RunEvent) -> LogLine {
+        LogLine {
+            time_s: event.time.as_secs_f64(),
+            date: date(SystemTime::now()),
+            level: level_name(event.what.level()).to_owned(),
+            component: event.component.as_deref().map(str::to_owned),
+            text: event.what.to_string(),
+        }
+    }
 }
 
 /// An observer that keeps the newest lines of the log, and passes new ones to clients. A client that is slower than the
@@ -68,13 +83,7 @@ impl Observer for LogTail {
         if matches!(event.what, Occurrence::Console { .. }) || event.what.level() > Level::Info {
             return;
         }
-        let line = Arc::new(LogLine {
-            time_s: event.time.as_secs_f64(),
-            date_s: SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64(),
-            level: level_name(event.what.level()).to_owned(),
-            component: event.component.as_deref().map(str::to_owned),
-            text: event.what.to_string(),
-        });
+        let line = Arc::new(LogLine::of(event));
         let mut lines = self.lock();
         if lines.len() == KEPT {
             lines.pop_front();

@@ -20,6 +20,8 @@ pub(crate) struct Measured<'a> {
     pub(crate) description: &'a FleetDescription,
     pub(crate) fleet: &'a FleetMetrics,
     pub(crate) clients: &'a ClientCounts,
+    /// Lines of the file of the log that could not be written.
+    pub(crate) lost_lines: u64,
 }
 
 /// A metric.
@@ -133,6 +135,8 @@ pub const METRICS: &[Metric] = metrics! {
     "saoms_adaptations_total" counter ["component" "loop" "phase"]
         "Records of the journal by loop (empty outside all loops) and phase: symptom, decision, effect."
         adaptations;
+    "saoms_log_lost_total" counter [] "Lines that could not be written to the file of the log."
+        |measured, samples| samples.add(&[], measured.lost_lines as f64);
     "saoms_control_clients" gauge [] "Clients that are connected."
         |measured, samples| samples.add(&[], measured.clients.open.load(Ordering::Relaxed) as f64);
     "saoms_control_refused_total" counter [] "Clients that were refused, because there were too many."

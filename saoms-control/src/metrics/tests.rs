@@ -58,7 +58,8 @@ fn lines(metric: &str) -> Vec<String> {
         token_file: None,
         seed: 0,
     };
-    let text = text(&Measured { description: &description, fleet: &fleet, clients: &ClientCounts::default() });
+    let clients = ClientCounts::default();
+    let text = text(&Measured { description: &description, fleet: &fleet, clients: &clients, lost_lines: 0 });
     let is_it = |line: &&str| !line.starts_with('#') && line.starts_with(metric);
     text.lines().filter(is_it).map(|line| line[metric.len()..].to_owned()).collect()
 }

@@ -1,5 +1,6 @@
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
@@ -45,6 +46,8 @@ pub struct ControlledFleet {
     pub(super) down: Box<dyn Fn() + Send + Sync>,
     /// What is counted of its clients.
     pub(super) counts: Arc<ClientCounts>,
+    /// Lines of the file of the log that could not be written.
+    lost_lines: Arc<AtomicU64>,
     /// The last snapshot.
     pub(super) snapshot: Kept,
     /// The last metrics.
@@ -70,9 +73,16 @@ impl ControlledFleet {
             send,
             down,
             counts: Arc::default(),
+            lost_lines: Arc::default(),
             snapshot: Kept::default(),
             metrics: Kept::default(),
         }
+    }
+
+    /// The same fleet, with the count of the lines that could not be written to the file of its log.
+    #[must_use]
+    pub fn with_lost_lines(self, lost_lines: Arc<AtomicU64>) -> ControlledFleet {
+        ControlledFleet { lost_lines, ..self }
     }
 
     /// A snapshot as JSON.
@@ -83,7 +93,9 @@ impl ControlledFleet {
     /// The metrics as text.
     pub(super) fn metrics_text(&self) -> String {
         let fleet = self.handle.metrics();
-        metrics::text(&Measured { description: &self.description, fleet: &fleet, clients: &self.counts })
+        let lost_lines = self.lost_lines.load(Ordering::Relaxed);
+        let (description, clients) = (&self.description, &*self.counts);
+        metrics::text(&Measured { description, fleet: &fleet, clients, lost_lines })
     }
 }
 

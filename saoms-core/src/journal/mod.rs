@@ -24,7 +24,7 @@ pub use entry::{Change, JournalEntry};
 pub use kept::{Journal, LoopCounts};
 pub(crate) use outside::OutsideRing;
 pub(crate) use queue::RecordQueue;
-pub use read::{ComponentName, JournalDocument, JournalReadError, read};
+pub use read::{ComponentName, JournalDocument, JournalPart, JournalReadError, part, read, read_parts};
 pub(crate) use recorder::{Recorder, Stamp};
 pub(crate) use ring::Ring;
 pub use select::Selection;

@@ -93,6 +93,20 @@ struct Head {
     #[serde(default)]
     seed: Option<u64>,
     components: Vec<ComponentName>,
+    #[serde(default)]
+    part: Option<JournalPart>,
+}
+
+/// What the first line of a part of a journal says.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+pub struct JournalPart {
+    /// The run that it is a part of.
+    pub run: String,
+    /// Its number, from 0.
+    pub number: u32,
+    /// Number of the records before it, and of those of them that were lost.
+    records: u64,
+    lost: u64,
 }
 
 /// A line about a component that joined the running fleet.
@@ -138,45 +152,87 @@ fn report(text: &str) -> Result<JournalDocument, JournalReadError> {
 const REPORT: &str = "this is neither a complete report of `saoms run --report` nor a file of `saoms run --journal`";
 
 fn lines(text: &str) -> Result<JournalDocument, JournalReadError> {
-    let mut lines = text.lines().enumerate().peekable();
-    let head = lines.next().map_or("", |(_, line)| line);
-    let mut head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
-    if head.journal != 1 {
-        let message = format!("this file has the format {}, which a newer version of the program writes", head.journal);
-        return Err(incomplete(1, message));
+    read_parts(&[text]).map_err(|(_, error)| error)
+}
+
+/// The part of a journal that a text is, if its file was one that is moved aside.
+pub fn part(text: &str) -> Option<JournalPart> {
+    serde_json::from_str::<Head>(text.lines().next()?).ok()?.part
+}
+
+/// Reads following parts of a journal, the oldest first.
+///
+/// # Errors
+/// One of them is no such part, or malformed: its place in the list, and what is wrong.
+pub fn read_parts(parts: &[&str]) -> Result<JournalDocument, (usize, JournalReadError)> {
+    let mut all = Lines::default();
+    let mut before = None;
+    for (place, text) in parts.iter().enumerate() {
+        let head = all.read(text).map_err(|error| (place, error))?;
+        // Each part names all components so far.
+        (all.seed, all.components) = (head.seed, head.components.into_iter().chain(all.joined.drain(..)).collect());
+        before.get_or_insert(head.part);
     }
-    let (mut entries, mut end) = (Vec::new(), None);
-    while let Some((number, line)) = lines.next() {
-        if line.trim().is_empty() {
-            continue;
-        }
-        let (read, what) = if line.starts_with("{\"end\"") {
-            let last = serde_json::from_str(line).map(|EndLine { end: last }| end = Some(last));
-            (last, "the end of the journal is malformed")
-        } else if line.starts_with("{\"joined\"") {
-            let joined = serde_json::from_str(line).map(|Joined { joined }| head.components.push(joined));
-            (joined, "this is not a component of a journal")
-        } else {
-            (serde_json::from_str(line).map(|entry| entries.push(entry)), "this is not a record of a journal")
-        };
-        match read {
-            // A run that has not ended, or was killed, may have written a part of its last line.
-            Err(error) if error.is_eof() && lines.peek().is_none() && !text.ends_with('\n') => {}
-            read => read.map_err(|error| malformed(number, &error, what))?,
-        }
-    }
-    let entries = in_order(entries).map_err(|wrong| incomplete(1, wrong.to_string()))?;
+    let wrong = |error: JournalReadError| (parts.len().saturating_sub(1), error);
+    let entries = in_order(all.entries).map_err(|error| wrong(incomplete(1, error.to_string())))?;
     let newest = entries.last().map_or(0, |entry: &JournalEntry| entry.id().0);
-    let lost = newest - entries.len() as u64;
+    let JournalPart { records: earlier, lost: lost_earlier, .. } = before.flatten().unwrap_or_default();
+    let lost = lost_earlier + newest.saturating_sub(earlier + entries.len() as u64);
     let journal = Journal {
         records: newest.max(entries.len() as u64),
-        overwritten: 0,
-        lost: end.as_ref().map_or(lost, |end| end.lost),
+        overwritten: earlier.saturating_sub(lost_earlier),
+        lost: all.end.as_ref().map_or(lost, |end| end.lost),
         loops: LoopCounts::of(&entries),
         entries,
     };
-    let end = end.map(|end| time(end.time_s)).transpose().map_err(|wrong| incomplete(1, wrong.to_string()))?;
-    Ok(JournalDocument { journal, seed: head.seed, components: head.components, end, is_report: false })
+    let end = all.end.map(|end| time(end.time_s)).transpose();
+    let end = end.map_err(|error| wrong(incomplete(1, error.to_string())))?;
+    Ok(JournalDocument { journal, seed: all.seed, components: all.components, end, is_report: false })
+}
+
+/// What the lines of a journal hold.
+#[derive(Default)]
+struct Lines {
+    seed: Option<u64>,
+    components: Vec<ComponentName>,
+    /// Components that joined since the last head.
+    joined: Vec<ComponentName>,
+    entries: Vec<JournalEntry>,
+    end: Option<End>,
+}
+
+impl Lines {
+    /// Adds the lines of a part, and gives its head.
+    fn read(&mut self, text: &str) -> Result<Head, JournalReadError> {
+        let mut lines = text.lines().enumerate().peekable();
+        let head = lines.next().map_or("", |(_, line)| line);
+        let head: Head = serde_json::from_str(head).map_err(|error| malformed(0, &error, REPORT))?;
+        if head.journal != 1 {
+            let message =
+                format!("this file has the format {}, which a newer version of the program writes", head.journal);
+            return Err(incomplete(1, message));
+        }
+        while let Some((number, line)) = lines.next() {
+            if line.trim().is_empty() {
+                continue;
+            }
+            let (read, what) = if line.starts_with("{\"end\"") {
+                let last = serde_json::from_str(line).map(|EndLine { end }| self.end = Some(end));
+                (last, "the end of the journal is malformed")
+            } else if line.starts_with("{\"joined\"") {
+                let joined = serde_json::from_str(line).map(|Joined { joined }| self.joined.push(joined));
+                (joined, "this is not a component of a journal")
+            } else {
+                (serde_json::from_str(line).map(|entry| self.entries.push(entry)), "this is not a record of a journal")
+            };
+            match read {
+                // A run that has not ended, or was killed, may have written a part of its last line.
+                Err(error) if error.is_eof() && lines.peek().is_none() && !text.ends_with('\n') => {}
+                read => read.map_err(|error| malformed(number, &error, what))?,
+            }
+        }
+        Ok(head)
+    }
 }
 
 /// An error of the JSON parser, with its place in the whole text.

@@ -10,6 +10,7 @@ mod journal_file;
 mod observer;
 mod queue;
 mod records;
+mod rotation;
 #[cfg(test)]
 mod tests;
 
@@ -19,3 +20,4 @@ pub(crate) use observer::Observers;
 pub use observer::{Beginning, Interest, Observer, Records};
 pub(crate) use queue::{EventQueue, Notification};
 pub(crate) use records::{RecordDelivery, deliver_records};
+pub use rotation::{RotatingFile, Rotation, earlier_file};

@@ -1,27 +1,22 @@
 //! The observer that shows what happens in a fleet, and a summary at the end.
 
-use std::borrow::Cow;
 use std::time::Duration;
 
 use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent, RunProgress};
 use saoms_core::report::RunReport;
-use saoms_lang::assembly::Assembly;
 
+use super::log_lines::{LogFormat, LogStyle};
 use super::status_line::StatusLine;
 use super::summary::summary;
 use super::{ConsoleStyle, RunArguments};
 use crate::output::{eprint, print};
 
-/// The least and the greatest width of the column with the names of components.
-const NAMES: (usize, usize) = (14, 32);
-
 /// The console of a run.
 pub(crate) struct Console {
     verbosity: Verbosity,
-    /// The width of the column with the names of components.
-    width: usize,
+    style: LogStyle,
     /// True if a file keeps all records of the journal.
     keeps_all: bool,
     /// The line below the others, on a terminal.
@@ -40,7 +35,7 @@ enum Verbosity {
 
 impl Console {
     /// The console that the command line asks for.
-    pub(crate) fn new(arguments: &RunArguments, assembly: &Assembly) -> Console {
+    pub(crate) fn new(arguments: &RunArguments, style: LogStyle) -> Console {
         let verbosity = match arguments.console {
             _ if arguments.quiet => Verbosity::Quiet,
             ConsoleStyle::Plain => Verbosity::Plain,
@@ -49,10 +44,10 @@ impl Console {
         if verbosity == Verbosity::Classic {
             print("Starting...\n");
         }
-        let status = if verbosity == Verbosity::Plain { StatusLine::on_terminal() } else { None };
-        let names = assembly.components.iter().map(|component| one_line(&component.path).chars().count());
-        let width = names.max().unwrap_or(0).clamp(NAMES.0, NAMES.1);
-        Console { verbosity, width, keeps_all: arguments.journal.is_some(), status }
+        let style = if verbosity == Verbosity::Classic { style.plain() } else { style };
+        let has_status = verbosity == Verbosity::Plain && style.format == LogFormat::Plain;
+        let status = if has_status { StatusLine::on_terminal() } else { None };
+        Console { verbosity, style, keeps_all: arguments.journal.is_some(), status }
     }
 
     fn line(&self, text: &str) {
@@ -69,9 +64,9 @@ impl Observer for Console {
         match (self.verbosity, &event.what) {
             (Verbosity::Classic, Occurrence::Console { text }) => print(&format!("{}\n", one_line(text))),
             (_, Occurrence::Console { .. }) => {}
-            (Verbosity::Quiet, _) if level == Level::Error => eprint(&plain(event, self.width)),
-            (Verbosity::Classic, _) if level <= Level::Warning => eprint(&plain(event, self.width)),
-            (Verbosity::Plain, _) if level <= Level::Info => self.line(&plain(event, self.width)),
+            (Verbosity::Quiet, _) if level == Level::Error => eprint(&self.style.line(event)),
+            (Verbosity::Classic, _) if level <= Level::Warning => eprint(&self.style.line(event)),
+            (Verbosity::Plain, _) if level <= self.style.level => self.line(&self.style.line(event)),
             _ => {}
         }
     }
@@ -80,7 +75,7 @@ impl Observer for Console {
         let log = match self.verbosity {
             Verbosity::Quiet => Level::Error,
             Verbosity::Classic => Level::Warning,
-            Verbosity::Plain => Level::Info,
+            Verbosity::Plain => self.style.level,
         };
         Interest {
             log: Some(log),
@@ -102,25 +97,10 @@ impl Observer for Console {
         if let Some(status) = &self.status {
             status.clear();
         }
-        if self.verbosity != Verbosity::Quiet {
-            print(&summary(report, self.keeps_all));
+        match (self.verbosity, self.style.format) {
+            (Verbosity::Quiet, _) => {}
+            (_, LogFormat::Plain) => print(&summary(report, self.keeps_all)),
+            (_, LogFormat::Json) => print(&self.style.end(report)),
         }
     }
-}
-
-/// An event as one line: when, who, what.
-fn plain(event: &RunEvent, width: usize) -> String {
-    let mark = match event.what.level() {
-        Level::Error => "error: ",
-        Level::Warning => "warning: ",
-        Level::Info | Level::Debug => "",
-    };
-    let who = one_line(event.component.as_deref().unwrap_or("fleet"));
-    let what = event.what.to_string();
-    let what = match event.what {
-        // It shows the line of an event below.
-        Occurrence::Note { .. } => Cow::Borrowed(what.as_str()),
-        _ => one_line(&what),
-    };
-    format!("{:>11}  {who:<width$} {mark}{what}\n", event.time.to_string())
 }

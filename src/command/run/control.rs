@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -86,7 +87,13 @@ impl Control {
     }
 
     /// Serves operators from now on.
-    pub(super) fn serve(self, handle: &Handle, signals: &Signalled, numbers: &Numbers) -> Option<ControlServer> {
+    pub(super) fn serve(
+        self,
+        handle: &Handle,
+        signals: &Signalled,
+        numbers: &Numbers,
+        lost_lines: &Arc<AtomicU64>,
+    ) -> Option<ControlServer> {
         let Control { places, description, log, topics } = self;
         let place = description.url.clone().zip(description.token_file.clone());
         let languages = Mutex::new(Languages::of("(operators)", numbers));
@@ -102,7 +109,7 @@ impl Control {
         };
         let (fleet, ending) = (handle.clone(), signals.ending());
         let fleet = ControlledFleet::new(description, handle.clone(), (log, topics), send, move || ending.down(&fleet));
-        match ControlServer::start(places, fleet) {
+        match ControlServer::start(places, fleet.with_lost_lines(Arc::clone(lost_lines))) {
             Ok(server) => {
                 if let Some((url, file)) = place {
                     handle.note(Level::Info, format!("is served at {url}, with the token in `{file}`"));

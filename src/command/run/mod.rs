@@ -4,6 +4,8 @@ mod console;
 mod control;
 mod ending;
 mod events;
+mod log_file;
+mod log_lines;
 mod outputs;
 mod picture_file;
 mod reload;
@@ -13,6 +15,7 @@ mod summary;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -35,6 +38,8 @@ use console::Console;
 use control::{Control, NetworkArguments};
 use ending::{Signalled, end_without_reader};
 use events::{Events, Numbers};
+use log_file::LogFile;
+use log_lines::{LogArguments, LogStyle};
 use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
@@ -107,6 +112,9 @@ pub(crate) struct RunArguments {
     pub(crate) control: Option<String>,
 
     #[command(flatten)]
+    pub(crate) log: LogArguments,
+
+    #[command(flatten)]
     pub(crate) network: NetworkArguments,
 
     /// Watch the libraries of plugins: when a library is rebuilt, its components are replaced while the fleet runs
@@ -153,6 +161,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         eprint("error: `--reload` reads composites again, which standard input cannot be\n");
         return Exit::WrongInput;
     }
+    if let Some(why) = arguments.log.without_effect(arguments) {
+        eprint(&format!("error: {why}\n"));
+        return Exit::WrongInput;
+    }
     let from_input = |path: &PathBuf| path == Path::new(INPUT);
     if arguments.events.as_ref().is_some_and(from_input) && files.files.iter().any(from_input) {
         eprint(
@@ -189,17 +201,20 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         );
         return Exit::WrongInput;
     }
-    let Some(files_written) = RunFiles::of(arguments, read) else { return Exit::WrongInput };
-    let RunFiles { report, picture, journal } = files_written;
+    let style = LogStyle::of(&arguments.log, &assembly);
+    let Some(files_written) = RunFiles::of(arguments, read, style) else { return Exit::WrongInput };
+    let RunFiles { report, picture, journal, log } = files_written;
+    let lost_lines = log.as_ref().map(LogFile::lost).unwrap_or_default();
     // With a file, somebody wants the whole run, seen or not.
     let is_standard = |one: &Option<Output>| one.as_ref().is_none_or(Output::is_standard);
-    let only_prints = journal.is_none() && is_standard(&report) && is_standard(&picture);
+    let only_prints = journal.is_none() && log.is_none() && is_standard(&report) && is_standard(&picture);
     let needs_reader = only_prints && (!arguments.quiet || report.is_some() || picture.is_some());
     let report = report.map(|output| Arc::new(ReportFile { output, is_short: arguments.short_report }));
     let picture = picture.zip(paths);
     let picture = picture.map(|(output, paths)| Arc::new(PictureFile::new(output, title(arguments), paths, &assembly)));
     // At the end, they write in this order.
-    let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, &assembly))];
+    let mut observers: Vec<Arc<dyn Observer>> = vec![Arc::new(Console::new(arguments, style))];
+    observers.extend(log.map(|log| Arc::new(log) as Arc<dyn Observer>));
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
@@ -213,7 +228,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut server = None;
     let before = |handle: &Handle| {
         notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
-        server = control.and_then(|control| control.serve(handle, &signals, &numbers));
+        server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines));
     };
     let fleet = match RunningFleet::start_with(assembly, settings(arguments), observers, before) {
         Ok(fleet) => fleet,
@@ -244,6 +259,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     drop((hold, reload, server));
     if report.is_some_and(|report| report.output.has_failed())
         || picture.is_some_and(|picture| picture.output.has_failed())
+        || lost_lines.load(Ordering::Relaxed) > 0
     {
         return Exit::Failed;
     }

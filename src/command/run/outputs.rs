@@ -4,9 +4,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use saoms_core::observe::JournalFile;
+use saoms_core::observe::{JournalFile, RotatingFile, Rotation};
 
 use super::RunArguments;
+use super::log_file::LogFile;
+use super::log_lines::LogStyle;
 use crate::output::{Asked, Outputs, Place, Sink, counted, displayed, eprint, mode_of_files};
 
 /// The files of a run.
@@ -14,6 +16,7 @@ pub(super) struct RunFiles {
     pub(super) report: Option<Output>,
     pub(super) picture: Option<Output>,
     pub(super) journal: Option<JournalFile>,
+    pub(super) log: Option<LogFile>,
 }
 
 /// A file to write when a run has ended.
@@ -28,7 +31,7 @@ pub(super) struct Output {
 impl RunFiles {
     /// The files that a run was asked for, tried before it starts, as it may last for days. What they hold stays until
     /// there is something new. `None` after it was told that one cannot be written, or is one of those that are read.
-    pub(super) fn of<'a>(arguments: &'a RunArguments, read: Vec<PathBuf>) -> Option<RunFiles> {
+    pub(super) fn of<'a>(arguments: &'a RunArguments, read: Vec<PathBuf>, style: LogStyle) -> Option<RunFiles> {
         let mut outputs = Outputs::beside(read);
         let mut problems = Vec::new();
         let mut add = |what, option, path: Option<&'a Path>, grows| {
@@ -38,16 +41,21 @@ impl RunFiles {
         let report = add("report", "--report", arguments.report.as_deref(), false);
         let picture = add("picture", "--paths", arguments.paths.as_deref(), false);
         let journal = add("journal", "--journal", arguments.journal.as_deref(), true);
+        let log = add("log", "--log", arguments.log.log.as_deref(), true);
+        let rotation = arguments.log.rotation();
         problems.extend(arguments.paths.as_deref().and_then(other_picture));
         if problems.is_empty() {
             // A pipe waits for its reader, so that it is opened when nothing else can be wrong.
             let mut told = |asked: Asked<'_>, error| problems.push(asked.unwritable(&error));
             let mut whole = |(asked, place)| Output::open(asked, place).map_err(|error| told(asked, error)).ok();
             let (report, picture) = (report.and_then(&mut whole), picture.and_then(&mut whole));
-            let journal =
-                journal.and_then(|(asked, place)| grown(asked, place).map_err(|error| told(asked, error)).ok());
+            let journal = journal
+                .and_then(|(asked, place)| grown(asked, place, rotation).map_err(|error| told(asked, error)).ok());
+            let log = log.and_then(|(asked, place)| {
+                log_file(asked, place, rotation, style).map_err(|error| told(asked, error)).ok()
+            });
             if problems.is_empty() {
-                return Some(RunFiles { report, picture, journal });
+                return Some(RunFiles { report, picture, journal, log });
             }
         }
         eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
@@ -72,12 +80,25 @@ fn other_picture(path: &Path) -> Option<String> {
     })
 }
 
-fn grown(asked: Asked<'_>, place: Place) -> io::Result<JournalFile> {
+fn grown(asked: Asked<'_>, place: Place, rotation: Rotation) -> io::Result<JournalFile> {
     match place.open()? {
         Sink::Open(file) => Ok(JournalFile::to(file, asked.path)),
-        Sink::File(path) => Ok(JournalFile::new(path).with_mode(mode_of_files())),
+        Sink::File(path) => {
+            let tell = |problem: &str| eprint(&format!("error: {problem}\n"));
+            Ok(JournalFile::new(path).with_mode(mode_of_files()).with_rotation(rotation, tell))
+        }
         Sink::Standard => Err(io::Error::other("standard output is for the lines of the run; give it a file")),
     }
+}
+
+fn log_file(asked: Asked<'_>, place: Place, rotation: Rotation, style: LogStyle) -> io::Result<LogFile> {
+    let path = asked.path.to_owned();
+    let file = match place.open()? {
+        Sink::Open(file) => RotatingFile::of(file, path.clone()),
+        Sink::File(file) => RotatingFile::append(file, mode_of_files(), rotation)?,
+        Sink::Standard => return Err(io::Error::other("standard output has these lines without it; give it a file")),
+    };
+    Ok(LogFile::new(path, file, style))
 }
 
 impl Output {

@@ -9,7 +9,8 @@ use std::time::Duration;
 use clap::Args;
 use saoms_api::Time;
 use saoms_api::host::{format_duration, one_line};
-use saoms_core::journal::{ComponentName, JournalDocument, JournalReadError, Why, read};
+use saoms_core::journal::{ComponentName, JournalDocument, JournalPart, JournalReadError, Why, part, read, read_parts};
+use saoms_core::observe::earlier_file;
 use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
 
@@ -116,7 +117,9 @@ fn advice(document: &JournalDocument) -> String {
     if document.is_report {
         "A report holds the newest records of each component: run with `--journal FILE` to keep all of them".to_owned()
     } else {
-        format!("Of this run {} records are not in the file", document.journal.lost)
+        let missing = document.journal.lost + document.journal.overwritten;
+        let hint = if document.journal.overwritten > 0 { ": `--rotate-keep` keeps more earlier files" } else { "" };
+        format!("Of this run {missing} records are not in the file{hint}")
     }
 }
 
@@ -125,8 +128,55 @@ fn named(path: &Path) -> String {
     if path == Path::new("-") { "standard input".to_owned() } else { format!("`{}`", path.display()) }
 }
 
-/// The journal in a file, or in standard input for `-`.
+/// The journal in a file, or in standard input for `-`. Of a file that was moved aside while the run went on, the
+/// earlier ones are read, too.
 pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
+    let last = text(path)?;
+    let mut parts = vec![(path.to_owned(), last)];
+    if path != Path::new("-")
+        && let Some(newest) = part(&parts[0].1)
+    {
+        parts.extend(earlier_parts(path, &newest));
+        parts.reverse();
+    }
+    let texts: Vec<&str> = parts.iter().map(|(_, text)| text.as_str()).collect();
+    let document = match texts[..] {
+        [only] => read(only).map_err(|error| (0, error)),
+        ref several => read_parts(several),
+    };
+    document.map_err(|(place, error)| {
+        let name = named(&parts[place].0);
+        match error {
+            JournalReadError::NoJournal => {
+                format!("{name} contains no journal: write the report again with `saoms run --report FILE`")
+            }
+            JournalReadError::Other => format!("{name} cannot be read: {error}"),
+            JournalReadError::Malformed { .. } => format!("{name}, {error}"),
+        }
+    })
+}
+
+/// The parts of the same run before this one, the newest first, as far as they follow each other.
+fn earlier_parts(path: &Path, newest: &JournalPart) -> Vec<(PathBuf, String)> {
+    let (mut parts, mut next) = (Vec::new(), newest.number);
+    for number in 1.. {
+        let file = earlier_file(path, number);
+        let Ok(text) = text(&file) else { break };
+        match part(&text) {
+            Some(found) if found.run == newest.run && found.number + 1 == next => {
+                next = found.number;
+                parts.push((file, text));
+            }
+            // It was moved on since the one after it was read.
+            Some(found) if found.run == newest.run && found.number >= next => {}
+            _ => break,
+        }
+    }
+    parts
+}
+
+/// The text of a file, or of standard input for `-`.
+fn text(path: &Path) -> Result<String, String> {
     let name = named(path);
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
@@ -135,15 +185,8 @@ pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
         std::fs::read(path)
     };
     let bytes = bytes.map_err(|error| format!("{name} cannot be read: {error}"))?;
-    let text = String::from_utf8(whole_lines(bytes))
-        .map_err(|error| format!("{name} is not text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1))?;
-    read(&text).map_err(|error| match error {
-        JournalReadError::NoJournal => {
-            format!("{name} contains no journal: write the report again with `saoms run --report FILE`")
-        }
-        JournalReadError::Other => format!("{name} cannot be read: {error}"),
-        JournalReadError::Malformed { .. } => format!("{name}, {error}"),
-    })
+    String::from_utf8(whole_lines(bytes))
+        .map_err(|error| format!("{name} is not text: byte {} is not UTF-8", error.utf8_error().valid_up_to() + 1))
 }
 
 /// The bytes of a file without a last line that was not written whole: a run that goes on or was killed ends within a

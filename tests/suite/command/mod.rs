@@ -6,6 +6,7 @@ mod events;
 mod explain;
 mod fmt;
 mod graph;
+mod log;
 mod new;
 mod operation;
 mod options;
