@@ -16,17 +16,18 @@ use super::engine::lifecycle::Request;
 use super::engine::slot::NEVER;
 use super::inject::{self, InjectError, Injection};
 use super::members::UnknownComponent;
+use super::metrics::{self, TimerSign};
 use super::order::{self, Order, OrderError, OrderTicket};
 use super::os::clock::Clock;
 use super::os::realtime;
 use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::takers::{RaiseError, Takers};
-use super::{metrics, topics};
+use super::topics;
 use crate::journal::ComponentName;
 use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;
-use crate::status::{FleetMetrics, FleetStatus, TopicStatus};
+use crate::status::{FleetMetrics, FleetPhase, FleetStatus, TopicStatus};
 use saoms_api::host::contain;
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
@@ -419,6 +420,16 @@ impl Handle {
         let status = engine.status(&shared.sections(), shared.clock.now());
         shared.release(engine);
         status
+    }
+
+    /// A sign of life of the thread with the timer's work. It waits for no lock.
+    pub fn timer_sign(&self) -> TimerSign {
+        metrics::timer_sign(&self.shared)
+    }
+
+    /// What the fleet does.
+    pub fn phase(&self) -> FleetPhase {
+        self.shared.lock().phase.shown()
     }
 
     /// What can be counted in the fleet. Components are asked as for [`status`](Handle::status).

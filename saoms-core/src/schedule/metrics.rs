@@ -1,6 +1,10 @@
 //! What can be counted in a running fleet.
 
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
 use super::engine::Engine;
+use super::os::sys;
 use super::shared::Shared;
 use crate::journal::LoopCounts;
 use crate::report::LatenessSteps;
@@ -17,6 +21,24 @@ pub(super) fn metrics(status: FleetStatus, shared: &Shared) -> FleetMetrics {
         loops: locked(shared, Engine::loops),
         queues: locked(shared, Engine::queues),
     }
+}
+
+/// A sign of life of the thread with the timer's work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimerSign {
+    /// Number of the pieces of component code that it has begun: while it grows, the timer is alive.
+    pub pieces: u64,
+    /// Time for which the timer should have done something. A component that hangs does not hold it up for long, since
+    /// another thread takes its work over. Zero in virtual time.
+    pub overdue: Duration,
+}
+
+/// The sign of life at present, which waits for no lock.
+pub(super) fn timer_sign(shared: &Shared) -> TimerSign {
+    let present = shared.pulse.present();
+    let is_watched = !shared.clock.is_virtual() && !shared.ended.load(Ordering::Acquire);
+    let due = if is_watched { present.since.unwrap_or(present.next) } else { u64::MAX };
+    TimerSign { pieces: present.piece, overdue: Duration::from_nanos(sys::monotonic().saturating_sub(due)) }
 }
 
 fn locked<T>(shared: &Shared, count: impl FnOnce(&Engine) -> T) -> T {

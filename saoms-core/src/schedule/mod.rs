@@ -32,6 +32,7 @@ pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
 pub use fleet::{Handle, Hold, RunningFleet};
 pub use inject::{InjectError, InjectedContent, Injection, is_from_outside};
 pub use members::UnknownComponent;
+pub use metrics::TimerSign;
 pub use order::{Order, OrderError, OrderTicket, TimedOrder};
 pub use os::realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};

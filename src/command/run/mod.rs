@@ -6,6 +6,7 @@ mod ending;
 mod events;
 mod log_file;
 mod log_lines;
+mod notify;
 mod outputs;
 mod picture_file;
 mod reload;
@@ -40,6 +41,7 @@ use ending::{Signalled, end_without_reader};
 use events::{Events, Numbers};
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
+use notify::Notifier;
 use outputs::{Output, RunFiles};
 use picture_file::PictureFile;
 use reload::{Reload, Watched};
@@ -239,6 +241,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         }
     };
     signals.end(fleet.handle());
+    let notifier = Notifier::start(fleet.handle());
     if needs_reader {
         end_without_reader(fleet.handle());
     }
@@ -256,7 +259,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         limit_patience(arguments.grace);
     }
     let outcome = fleet.run_to_end().outcome;
-    drop((hold, reload, server));
+    drop((hold, reload, server, notifier));
     if report.is_some_and(|report| report.output.has_failed())
         || picture.is_some_and(|picture| picture.output.has_failed())
         || lost_lines.load(Ordering::Relaxed) > 0

@@ -15,6 +15,7 @@ mod outputs;
 mod paths;
 mod report;
 mod schema;
+mod service;
 mod trust;
 mod usage;
 mod why;

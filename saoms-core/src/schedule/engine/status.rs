@@ -23,6 +23,18 @@ pub(crate) struct Questions {
     pub(crate) asked: Option<Instant>,
 }
 
+impl RunPhase {
+    /// The phase as operators see it.
+    pub(crate) fn shown(self) -> FleetPhase {
+        match self {
+            RunPhase::Starting => FleetPhase::Starting,
+            RunPhase::Running => FleetPhase::Running,
+            RunPhase::Stopping => FleetPhase::Ending,
+            RunPhase::Ended => FleetPhase::Ended,
+        }
+    }
+}
+
 impl Engine {
     /// Begins a round of questions: components are asked when no execution is due.
     pub(crate) fn ask_all(&mut self) {
@@ -107,12 +119,7 @@ impl Engine {
         let members = self.slots.iter().filter(|slot| slot.is_member());
         FleetStatus {
             time_s: now as f64 / 1e9,
-            phase: match self.phase {
-                RunPhase::Starting => FleetPhase::Starting,
-                RunPhase::Running => FleetPhase::Running,
-                RunPhase::Stopping => FleetPhase::Ending,
-                RunPhase::Ended => FleetPhase::Ended,
-            },
+            phase: self.phase.shown(),
             summaries: summaries(|path| sections.integer(path).unwrap_or(0)),
             components: members.map(|slot| self.component_status(slot, now)).collect(),
         }
