@@ -37,6 +37,8 @@ fn lines(metric: &str) -> Vec<String> {
     };
     let fleet = FleetMetrics {
         status: FleetStatus {
+            paused: false,
+            speed: None,
             time_s: 1.5,
             phase: FleetPhase::Running,
             summaries: Vec::new(),

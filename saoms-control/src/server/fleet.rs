@@ -117,6 +117,11 @@ impl Kept {
         *kept = Some((Instant::now(), bytes.clone()));
         Ok(bytes)
     }
+
+    /// Forgets the answer: the next one is made anew.
+    pub(super) async fn forget(&self) {
+        *self.0.lock().await = None;
+    }
 }
 
 impl fmt::Debug for ControlledFleet {

@@ -7,6 +7,7 @@ mod fleet;
 mod logs;
 mod orders;
 mod routes;
+mod time;
 mod topics;
 
 use std::io;

@@ -4,9 +4,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::{Query, State};
-use axum::middleware::from_fn;
+use axum::extract::{Query, Request, State};
+use axum::http::Method;
+use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
+use axum::response::Response;
 use axum::routing::{MethodRouter, get, post, put};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -14,7 +16,7 @@ use serde_json::{Value, json};
 use super::access::with_body;
 use super::answer::{Answer, Refusal, done, json_text};
 use super::fleet::ControlledFleet;
-use super::{logs, orders, topics};
+use super::{logs, orders, time, topics};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -128,6 +130,38 @@ const ROUTES: &[Route] = &[
     },
     Route {
         method: "post",
+        path: "/v1/pause",
+        doc: "Pauses the fleet; `time_s` is the time at which it stands.",
+        query: &[],
+        body: None,
+        serve: || post(time::pause),
+    },
+    Route {
+        method: "post",
+        path: "/v1/resume",
+        doc: "Lets a paused fleet go on.",
+        query: &[],
+        body: None,
+        serve: || post(time::resume),
+    },
+    Route {
+        method: "post",
+        path: "/v1/step",
+        doc: "Lets virtual time advance, and pauses then; `time_s` is the time at which it will stand.",
+        query: &[("for", "the time, such as `10s`; without it, through the next instant at which something is due")],
+        body: None,
+        serve: || post(time::step),
+    },
+    Route {
+        method: "put",
+        path: "/v1/speed",
+        doc: "Sets how fast virtual time passes.",
+        query: &[],
+        body: Some("seconds of virtual time in a second, or `max`"),
+        serve: || put(time::speed),
+    },
+    Route {
+        method: "post",
         path: "/v1/estop",
         doc: "Stops components and their hardware at once, until they are released; `reply` has their names.",
         query: &[("by", "who does it, for the journal")],
@@ -175,7 +209,18 @@ pub(super) fn router(fleet: Arc<ControlledFleet>) -> Router {
         router = router.route(route.path, (route.serve)());
     }
     let router = router.fallback(|| async { Refusal::not_found() });
+    let router = router.layer(from_fn_with_state(Arc::clone(&fleet), seen_at_once));
     router.layer(from_fn(with_body)).with_state(fleet)
+}
+
+/// Lets the next snapshot show what an order did.
+async fn seen_at_once(State(fleet): Fleet, request: Request, next: Next) -> Response {
+    let is_order = request.method() != Method::GET;
+    let response = next.run(request).await;
+    if is_order {
+        fleet.snapshot.forget().await;
+    }
+    response
 }
 
 /// The OpenAPI document of the server.

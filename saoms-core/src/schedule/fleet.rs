@@ -14,6 +14,7 @@ use super::drive;
 use super::engine::RunPhase;
 use super::engine::lifecycle::Request;
 use super::engine::slot::NEVER;
+use super::hold::{self, HoldError, Speed};
 use super::inject::{self, InjectError, Injection};
 use super::members::UnknownComponent;
 use super::metrics::{self, TimerSign};
@@ -358,6 +359,41 @@ impl Handle {
     /// ticket tells what is found out later.
     pub fn order(&self, order: Order, at: Option<Time>) -> Result<OrderTicket, OrderError> {
         order::accept(&self.shared, order, at)
+    }
+
+    /// Pauses the run before the executions that are due next: no component executes, no time of the run passes, and
+    /// nothing is missed. Hardware hears no heartbeat, and stops by itself. Orders and messages from outside still take
+    /// effect, and components are asked for their status. Gives the time at which the run stands.
+    ///
+    /// # Errors
+    /// The run ends.
+    pub fn pause(&self) -> Result<Time, HoldError> {
+        hold::pause(&self.shared)
+    }
+
+    /// Lets a paused run go on.
+    ///
+    /// # Errors
+    /// The run ends.
+    pub fn resume(&self) -> Result<(), HoldError> {
+        hold::resume(&self.shared)
+    }
+
+    /// Lets virtual time advance by a time, or through the next instant at which something is due, and pauses there.
+    /// Gives the time at which the run will stand.
+    ///
+    /// # Errors
+    /// The fleet runs in real time, or the run ends.
+    pub fn step(&self, time: Option<Duration>) -> Result<Time, HoldError> {
+        hold::step(&self.shared, time)
+    }
+
+    /// Sets how fast virtual time passes.
+    ///
+    /// # Errors
+    /// The fleet runs in real time, or the run ends.
+    pub fn set_speed(&self, speed: Speed) -> Result<(), HoldError> {
+        hold::set_speed(&self.shared, speed)
     }
 
     /// Sends a message from outside on a topic of the fleet. It is checked against the schema of the topic, takes

@@ -206,9 +206,7 @@ pub(super) fn add_order(shared: &Shared, at: Option<Time>, order: PendingOrder) 
 fn add(shared: &Shared, at: Option<Time>, due: Due) {
     let mut engine = shared.lock();
     let now = shared.clock.now();
-    // At the same time as executions that are over, it would come before them when it is played again.
-    let next = if shared.clock.is_virtual() && engine.begun == now { now.saturating_add(1) } else { now };
-    let when = at.map_or(0, Time::as_nanos).max(next);
+    let when = at.map_or(0, Time::as_nanos).max(engine.next_instant(now));
     engine.injections.add(when, due);
     engine.look_at = engine.look_at.min(when);
     engine.wake |= when < engine.roles.asleep_until;
@@ -249,6 +247,12 @@ impl Engine {
         if delivered {
             self.settle(now);
         }
+    }
+
+    /// The next instant at which something from outside can take effect. At the same time as executions that are over,
+    /// it would come before them when it is played again.
+    pub(super) fn next_instant(&self, now: u64) -> u64 {
+        if self.begun == now && !self.real { now.saturating_add(1) } else { now }
     }
 
     /// Keeps the run from ending for want of work until the effects of an event have reached all components.

@@ -14,6 +14,7 @@ mod component;
 mod drive;
 mod engine;
 mod fleet;
+mod hold;
 mod inject;
 mod members;
 mod metrics;
@@ -30,6 +31,7 @@ mod topics;
 
 pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
 pub use fleet::{Handle, Hold, RunningFleet};
+pub use hold::{HoldError, Speed};
 pub use inject::{InjectError, InjectedContent, Injection, is_from_outside};
 pub use members::UnknownComponent;
 pub use metrics::TimerSign;

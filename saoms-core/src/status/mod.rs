@@ -20,6 +20,10 @@ pub struct FleetStatus {
     pub time_s: f64,
     /// What the fleet does.
     pub phase: FleetPhase,
+    /// True while the run pauses.
+    pub paused: bool,
+    /// Seconds of virtual time in a second; `null` as fast as possible, and in real time.
+    pub speed: Option<f64>,
     /// Summaries of the report's counts so far ([`RunSummary::progress`]).
     pub summaries: Vec<String>,
     /// Its components in document order, without those that were removed.

@@ -14,6 +14,7 @@ mod failures;
 mod fault;
 mod fleet;
 mod goes_on;
+mod hold;
 mod inject;
 mod journal;
 mod kept;

@@ -7,6 +7,7 @@ mod orders;
 mod ps;
 mod status;
 mod table;
+mod time;
 mod topic;
 
 pub(super) use emergency::{EmergencyStopArguments, ReleaseArguments, estop, release};
@@ -17,4 +18,5 @@ pub(super) use orders::{
 };
 pub(super) use ps::{PsArguments, ps};
 pub(super) use status::{StatusArguments, status};
+pub(super) use time::{PauseArguments, ResumeArguments, SpeedArguments, StepArguments, pause, resume, speed, step};
 pub(super) use topic::{TopicArguments, topic};

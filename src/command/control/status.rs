@@ -62,7 +62,7 @@ fn shown(answer: &Value) -> String {
         "{} (process {}): {}, {:.3} s",
         word(&fleet["name"]),
         fleet["pid"],
-        word(&status["phase"]),
+        if status["paused"] == true { "paused".to_owned() } else { word(&status["phase"]) },
         status["time_s"].as_f64().unwrap_or_default()
     );
     for summary in status["summaries"].as_array().into_iter().flatten() {
@@ -72,8 +72,8 @@ fn shown(answer: &Value) -> String {
     for component in status["components"].as_array().into_iter().flatten() {
         let number = |field: &str| component[field].to_string();
         let state = match component["in_code_s"].as_f64() {
-            Some(seconds) if seconds >= 1.0 => format!("in its code for {seconds:.0} s"),
             _ if component["emergency_stop"] == true => "stopped at once".to_owned(),
+            Some(seconds) if seconds >= 1.0 => format!("in its code for {seconds:.0} s"),
             _ => word(&component["state"]),
         };
         table.row([

@@ -61,7 +61,9 @@ impl Control {
         let usual = default_socket(&description.name, description.pid);
         let socket = match arguments.control.as_deref() {
             Some(NONE) => None,
-            None if arguments.virtual_time => None,
+            None if arguments.virtual_time && !(arguments.stay || arguments.paused || arguments.speed.is_some()) => {
+                None
+            }
             Some(path) => {
                 let told = |error| unusable(&format!("--control {}", displayed(Path::new(path))), &error, "");
                 Some(Listener::bind(Path::new(path)).map_err(told)?)

@@ -25,7 +25,7 @@ use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
 use saoms_core::observe::Observer;
 use saoms_core::report::RunStatus;
-use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings};
+use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings, Speed};
 use saoms_lang::assembly::Assembly;
 use saoms_lang::diagnostic::Severity;
 use saoms_lang::project::INPUT;
@@ -107,9 +107,18 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     pub(crate) stay: bool,
 
+    /// Pause before the first executions, until `saoms resume`
+    #[arg(long)]
+    pub(crate) paused: bool,
+
+    /// Seconds of virtual time in a second, such as `1`, `10` or `0.5`, in place of as fast as the machine allows;
+    /// `saoms speed` changes it
+    #[arg(long, value_name = "FACTOR|max", requires = "virtual_time")]
+    pub(crate) speed: Option<Speed>,
+
     /// Let commands such as `saoms status` reach the fleet at this socket, or nowhere (`none`). In real time the usual
     /// socket is `NAME-PID.sock` in `$XDG_RUNTIME_DIR/saoms`, or `/tmp/saoms-UID` without that folder; in virtual time
-    /// there is none
+    /// there is none without `--stay`, `--paused` or `--speed`
     #[arg(long, value_name = "PATH|none")]
     pub(crate) control: Option<String>,
 
@@ -230,6 +239,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let mut server = None;
     let before = |handle: &Handle| {
         notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
+        // A run that has not begun does not end, and only one in virtual time has a speed.
+        let _ = arguments.paused.then(|| handle.pause());
+        let _ = arguments.speed.map(|speed| handle.set_speed(speed));
         server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines));
     };
     let fleet = match RunningFleet::start_with(assembly, settings(arguments), observers, before) {

@@ -39,3 +39,23 @@ fn a_fleet_that_never_starts_is_shown_and_ended() {
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("`initialize`") && text.contains("`Bad`"), "{text}");
 }
+
+#[test]
+fn a_fleet_with_code_that_hangs_stops_at_once_and_pauses() {
+    for at in ["execute", "serve", "initialize"] {
+        let running = hanging(at);
+        if at != "initialize" {
+            running.until("Bad", |bad| bad["in_code_s"].as_f64() > Some(0.1));
+        }
+        // Nothing of it moves anything.
+        assert_eq!(running.told(&["estop"]), "nothing is stopped\n", "{at}");
+        assert_eq!(running.told(&["estop", "Bad"]), "stopped: Bad\n", "{at}");
+        let paused = running.told(&["pause"]);
+        assert!(paused.starts_with("paused at "), "{at}: {paused}");
+        let shown = running.told(&["status"]);
+        assert!(shown.contains("stopped at once"), "{at}: {shown}");
+        assert_eq!(running.told(&["resume"]), "goes on\n", "{at}");
+        running.told(&["down"]);
+        assert_eq!(running.end().0, Some(1), "{at}");
+    }
+}

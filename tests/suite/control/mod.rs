@@ -8,6 +8,7 @@ mod network;
 mod orders;
 mod places;
 mod status;
+mod time;
 mod topics;
 
 use std::fs;

@@ -7,6 +7,7 @@ use super::{announce_end, handle_stop_request};
 use crate::schedule::engine::ending::EndCause;
 use crate::schedule::engine::slot::NEVER;
 use crate::schedule::engine::{Engine, Next, RunPhase};
+use crate::schedule::hold::keep_pace;
 use crate::schedule::os::sys;
 use crate::schedule::shared::Shared;
 
@@ -56,8 +57,10 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             }
             // No component runs on a worker thread in virtual time.
             Next::HandOver => {}
-            Next::Wait(until) if engine.phase == RunPhase::Running && until.min(engine.pause) < NEVER => {
-                now = until.min(engine.pause);
+            Next::Wait(_) if engine.phase == RunPhase::Running && now >= engine.hold => engine = sleep(shared, engine),
+            Next::Wait(until) if engine.phase == RunPhase::Running && engine.advance_to(until) < NEVER => {
+                let until = engine.advance_to(until);
+                (engine, now) = keep_pace(shared, engine, (now, until));
                 shared.clock.jump(now);
                 if now >= endless && engine.pause == NEVER {
                     endless = NEVER;
@@ -79,6 +82,13 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     }
     shared.release(engine);
     announce_end(shared);
+}
+
+impl Engine {
+    /// The time to which virtual time may advance, where nothing is due before `until`.
+    fn advance_to(&self, until: u64) -> u64 {
+        until.min(self.pause).min(self.hold)
+    }
 }
 
 /// Waits until the observers of the journal have taken some records.

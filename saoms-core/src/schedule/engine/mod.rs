@@ -29,6 +29,7 @@ use self::status::Questions;
 use self::trace::{Trace, TraceStep};
 use self::votes::VoteTally;
 use super::component::body::Job;
+use super::hold::Pace;
 use super::inject::Injections;
 use super::order::PendingOrders;
 use super::settings::{ClockKind, Settings, nanos};
@@ -101,8 +102,12 @@ pub(crate) struct Engine {
     pub(crate) look_at: u64,
     /// Latest end of the run.
     pub(crate) limit: u64,
-    /// Time up to which virtual time may advance for now.
+    /// Time up to which virtual time may advance for now, since a program acts then.
     pub(crate) pause: u64,
+    /// Time at which the run pauses, since an operator wants that; `NEVER` while it does not.
+    pub(crate) hold: u64,
+    /// In virtual time, how fast time passes; `None` is as fast as the machine allows.
+    pub(crate) pace: Option<Pace>,
     pub(crate) real: bool,
     pub(crate) budget: u64,
     pub(crate) seed: u64,
@@ -191,6 +196,8 @@ impl Engine {
             look_at: 0,
             limit: settings.limit.map_or(NEVER, nanos),
             pause: 0,
+            hold: NEVER,
+            pace: None,
             real: settings.clock == ClockKind::Real,
             budget: nanos(settings.budget),
             seed: settings.seed,
@@ -202,6 +209,13 @@ impl Engine {
         loop {
             match self.phase {
                 RunPhase::Running => {
+                    if now >= self.hold {
+                        match self.next_while_paused(now) {
+                            Some(next) => return next,
+                            None if self.phase == RunPhase::Running => return Next::Wait(NEVER),
+                            None => continue,
+                        }
+                    }
                     // Executions due before the limit still run, however late.
                     if now >= self.limit && self.earliest().is_none_or(|when| when >= self.limit) {
                         self.begin_stop(EndCause::Elapsed, self.limit);
@@ -283,7 +297,7 @@ impl Engine {
     }
 
     /// The earliest due time.
-    fn earliest(&self) -> Option<u64> {
+    pub(crate) fn earliest(&self) -> Option<u64> {
         self.queue.earliest().into_iter().chain(self.injections.earliest()).min()
     }
 

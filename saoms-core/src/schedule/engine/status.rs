@@ -120,6 +120,8 @@ impl Engine {
         FleetStatus {
             time_s: now as f64 / 1e9,
             phase: self.phase.shown(),
+            paused: self.phase == RunPhase::Running && now >= self.hold,
+            speed: self.pace.map(|pace| pace.factor),
             summaries: summaries(|path| sections.integer(path).unwrap_or(0)),
             components: members.map(|slot| self.component_status(slot, now)).collect(),
         }

@@ -42,7 +42,7 @@ fn look(fleet: &Weak<Shared>) -> Option<Duration> {
     if fleet.ended.load(Ordering::Acquire) {
         return None;
     }
-    let now = fleet.clock.now();
+    let now = fleet.clock.now_without_pause();
     let mut engine = fleet.lock();
     let mut shortest = NEVER;
     for place in 0..engine.with_hardware.len() {
