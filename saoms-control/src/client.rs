@@ -73,6 +73,16 @@ impl Response {
         serde_json::from_slice(&bytes).map_err(|error| ClientError::Malformed(error.to_string()))
     }
 
+    /// The whole body as text.
+    ///
+    /// # Errors
+    /// It is none, or does not come in time.
+    pub fn text(mut self) -> Result<String, ClientError> {
+        let mut text = String::new();
+        self.body.read_to_string(&mut text).map_err(|error| ClientError::Malformed(error.to_string()))?;
+        Ok(text)
+    }
+
     /// The server-sent events of the body as they come, each with its name (`message` without one) and its data. It
     /// ends with the fleet.
     pub fn events(mut self) -> impl Iterator<Item = (String, String)> + use<> {

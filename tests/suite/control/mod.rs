@@ -7,6 +7,7 @@ mod metrics;
 mod network;
 mod orders;
 mod places;
+mod slow_clients;
 mod status;
 mod time;
 mod topics;
