@@ -14,6 +14,15 @@ pub(crate) fn json(output: &mut (impl Write + ?Sized), value: &impl Serialize) -
     output.write_all(b"\n")
 }
 
+/// Writes data as JSON in one line.
+///
+/// # Errors
+/// It cannot be written.
+pub(crate) fn json_line(output: &mut (impl Write + ?Sized), value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(Escaping(&mut *output), value)?;
+    output.write_all(b"\n")
+}
+
 /// Escapes characters of JSON that are written in pieces of whole characters. Those beyond ASCII are in strings alone,
 /// and below it `serde_json` escapes all but DEL itself.
 struct Escaping<W>(W);

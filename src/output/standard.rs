@@ -14,7 +14,8 @@ use std::time::Duration;
 use saoms_api::host::{Visible, format_duration};
 use serde::Serialize;
 
-use super::json::json;
+use super::json::{json, json_line};
+use super::place::Place;
 
 /// Standard output without a buffer; `None` where the system has no descriptor left.
 static STANDARD: LazyLock<Mutex<Option<File>>> =
@@ -114,6 +115,11 @@ pub(crate) fn print_json(value: &impl Serialize) {
     printed(|output| json(output, value));
 }
 
+/// Writes data to standard output as one line of JSON.
+pub(crate) fn print_json_line(value: &impl Serialize) {
+    printed(|output| json_line(output, value));
+}
+
 /// Writes to standard output. The first failure is told; from then on [`has_failed`].
 pub(crate) fn printed(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
     let mut standard = STANDARD.lock().unwrap_or_else(PoisonError::into_inner);
@@ -172,6 +178,12 @@ impl Write for Patient<'_> {
 /// The system cannot tell.
 pub(crate) fn wait_for_no_reader() -> io::Result<()> {
     wait(&own()?, 0, -1).map(drop)
+}
+
+/// False if standard output is a pipe or a socket that nobody reads any more.
+pub(crate) fn has_reader() -> bool {
+    // Asked for nothing, `poll` tells of the end alone.
+    !Place::is_standard_output_read() || !own().and_then(|output| wait(&output, 0, 0)).is_ok_and(|is_gone| is_gone)
 }
 
 /// Waits until there is something to read, or the end of it.

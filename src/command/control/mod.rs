@@ -8,6 +8,7 @@ mod ps;
 mod status;
 mod table;
 mod time;
+mod top;
 mod topic;
 
 pub(super) use emergency::{EmergencyStopArguments, ReleaseArguments, estop, release};
@@ -19,4 +20,5 @@ pub(super) use orders::{
 pub(super) use ps::{PsArguments, ps};
 pub(super) use status::{StatusArguments, status};
 pub(super) use time::{PauseArguments, ResumeArguments, SpeedArguments, StepArguments, pause, resume, speed, step};
+pub(super) use top::{TopArguments, top};
 pub(super) use topic::{TopicArguments, topic};

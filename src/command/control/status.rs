@@ -54,10 +54,13 @@ fn keep(answer: &mut Value, asked: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// A snapshot for people.
-fn shown(answer: &Value) -> String {
+fn word(value: &Value) -> String {
+    one_line(value.as_str().unwrap_or_default()).into_owned()
+}
+
+/// What a snapshot says of the fleet, in a line.
+pub(super) fn headline(answer: &Value) -> String {
     let (fleet, status) = (&answer["fleet"], &answer["status"]);
-    let word = |value: &Value| one_line(value.as_str().unwrap_or_default()).into_owned();
     let mut text = format!(
         "{} (process {}): {}, {:.3} s",
         word(&fleet["name"]),
@@ -68,28 +71,37 @@ fn shown(answer: &Value) -> String {
     for summary in status["summaries"].as_array().into_iter().flatten() {
         text.push_str(&format!(", {}", word(summary)));
     }
+    text
+}
+
+/// The state of a component, or what is more important.
+pub(super) fn state(component: &Value) -> String {
+    match component["in_code_s"].as_f64() {
+        _ if component["emergency_stop"] == true => "stopped at once".to_owned(),
+        Some(seconds) if seconds >= 1.0 => format!("in its code for {seconds:.0} s"),
+        _ => word(&component["state"]),
+    }
+}
+
+/// A snapshot for people.
+fn shown(answer: &Value) -> String {
     let mut table = Table::new(&["COMPONENT", "STATE", "EXECUTIONS", "MISSED", "FAILURES", "WHAT IT SAYS"]);
-    for component in status["components"].as_array().into_iter().flatten() {
+    for component in answer["status"]["components"].as_array().into_iter().flatten() {
         let number = |field: &str| component[field].to_string();
-        let state = match component["in_code_s"].as_f64() {
-            _ if component["emergency_stop"] == true => "stopped at once".to_owned(),
-            Some(seconds) if seconds >= 1.0 => format!("in its code for {seconds:.0} s"),
-            _ => word(&component["state"]),
-        };
         table.row([
             word(&component["name"]),
-            state,
+            state(component),
             number("executions"),
             number("missed"),
             number("failures"),
             said(component),
         ]);
     }
-    format!("{text}\n\n{table}")
+    format!("{}\n\n{table}", headline(answer))
 }
 
 /// What a component says of itself.
-fn said(component: &Value) -> String {
+pub(super) fn said(component: &Value) -> String {
     let none = Map::new();
     let values = component["values"].as_object().unwrap_or(&none);
     // A state says enough by itself.

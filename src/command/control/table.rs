@@ -1,13 +1,21 @@
 use std::fmt;
+use std::ops::Range;
 
 /// A table of texts, whose columns are as wide as their widest cell.
 pub(super) struct Table {
     rows: Vec<Vec<String>>,
+    /// The columns whose cells stand at their right.
+    numbers: Range<usize>,
 }
 
 impl Table {
     pub(super) fn new(head: &[&str]) -> Table {
-        Table { rows: vec![head.iter().map(|&cell| cell.to_owned()).collect()] }
+        Table { rows: vec![head.iter().map(|&cell| cell.to_owned()).collect()], numbers: 0..0 }
+    }
+
+    /// The same table with numbers in these columns.
+    pub(super) fn with_numbers(self, numbers: Range<usize>) -> Table {
+        Table { numbers, ..self }
     }
 
     pub(super) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
@@ -22,7 +30,11 @@ impl fmt::Display for Table {
             |column: usize| self.rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
         let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
         for row in &self.rows {
-            let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));
+            let cells = row.iter().zip(&widths).enumerate();
+            let cells = cells.map(|(column, (cell, width))| match self.numbers.contains(&column) {
+                true => format!("{cell:>width$}"),
+                false => format!("{cell:width$}"),
+            });
             writeln!(formatter, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
         }
         Ok(())

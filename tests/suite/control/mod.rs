@@ -10,6 +10,7 @@ mod places;
 mod slow_clients;
 mod status;
 mod time;
+mod top;
 mod topics;
 
 use std::fs;
