@@ -6,6 +6,7 @@ use std::io::{self, ErrorKind};
 use std::os::unix::fs::{DirBuilderExt, FileTypeExt, MetadataExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
+use std::process;
 
 /// The folder with the sockets of the user's fleets: `saoms` in `$XDG_RUNTIME_DIR`, which belongs to the user alone, or
 /// else `/tmp/saoms-UID`.
@@ -58,14 +59,31 @@ impl Listener {
     /// The folder cannot be made or belongs to somebody else, a program listens there, or the file is no socket.
     pub fn bind(path: &Path) -> io::Result<Listener> {
         in_own_folder(path)?;
-        let socket = match UnixListener::bind(path) {
+        // A socket refuses who connects between `bind` and `listen`, as one of a program that has ended does, and
+        // would be removed as such: it gets its name when it listens.
+        let hidden = path.with_file_name(format!(".{}", process::id()));
+        let is_seen_by_others = path.parent() == Some(&folder());
+        let first = if is_seen_by_others { &hidden } else { path };
+        let socket = match UnixListener::bind(first) {
             Err(error) if error.kind() == ErrorKind::AddrInUse => {
-                remove_if_dead(path)?;
-                UnixListener::bind(path)?
+                remove_if_dead(first)?;
+                UnixListener::bind(first)?
             }
             bound => bound?,
         };
-        fs::set_permissions(path, Permissions::from_mode(0o600))?;
+        let first = OwnFile::of(first)?;
+        fs::set_permissions(&first.path, Permissions::from_mode(0o600))?;
+        if !is_seen_by_others {
+            return Ok(Listener { socket, file: first });
+        }
+        // A link replaces no other file, as moving it would.
+        match fs::hard_link(&hidden, path) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                remove_if_dead(path)?;
+                fs::hard_link(&hidden, path)?;
+            }
+            linked => linked?,
+        }
         Ok(Listener { socket, file: OwnFile::of(path)? })
     }
 }

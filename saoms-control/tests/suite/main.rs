@@ -4,6 +4,7 @@
 
 mod hostile;
 mod network;
+mod places;
 
 use std::path::PathBuf;
 use std::sync::Arc;
