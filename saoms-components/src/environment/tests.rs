@@ -154,6 +154,7 @@ fn every_wrong_line_says_where_and_why() {
         ("at 6s landing", "", format!("found the end of the line, expected {pieces}"), None),
         ("at 6s landing 4 5", "5", format!("found `5`, expected {end}"), None),
         ("at 6s breakdown Gripper", "Gripper", format!("found `Gripper`, expected {robot}"), None),
+        ("at 6s breakdown robot 2", "robot 2", format!("found `robot 2`, expected {robot}"), Some("2")),
         ("at 6s breakdown 0", "0", format!("found `0`, expected {robot}"), None),
         ("at 8s..2s landing 4", "8s..2s", "found `8s..2s`, expected the smaller value first".into(), Some("2s..8s")),
         ("at 8s every 2s landing 4", "at", "found `every` after `at`; an event that is repeated starts with `from`".into(), Some("from")),

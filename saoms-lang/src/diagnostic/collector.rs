@@ -100,7 +100,9 @@ impl Diagnostics {
     /// Adds one, unless it says only that something is missing where a fault of the text is the reason.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         let Diagnostic { code, severity, location, .. } = diagnostic;
-        if !self.damaged.is_empty() && self.is_follow_up(code, location) {
+        // A name that is nearly a known one is misspelt, whatever is missing around it.
+        let is_misspelt = std::ptr::eq(code, &codes::UNKNOWN_PROPERTY) && !diagnostic.suggestions.is_empty();
+        if !self.damaged.is_empty() && !is_misspelt && self.is_follow_up(code, location) {
             return;
         }
         if !self.skip(code, severity, location) {

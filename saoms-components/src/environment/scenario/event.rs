@@ -128,6 +128,11 @@ fn some(words: &Tokenizer<'_>, drawn: RandomRange<u32>) -> Result<RandomRange<u3
 /// The number of a robot, written as a number or as a name that ends with it.
 fn robot(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
     let word = words.next(ROBOT)?;
+    if let Some(number) = words.peek().filter(|next| word.eq_ignore_ascii_case("robot") && next.parse::<u32>().is_ok())
+    {
+        let span = words.span(word, number);
+        return Err(words.wrong(span, ROBOT).instead(Some(number)));
+    }
     let digits = &word[word.trim_end_matches(|sign: char| sign.is_ascii_digit()).len()..];
     match digits.parse() {
         Ok(number @ 1..) if !word.starts_with(['-', '+', '(']) => Ok(number),
