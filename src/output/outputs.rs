@@ -105,6 +105,13 @@ impl Outputs {
         self.written.push((asked.what, place.clone(), identity));
         Ok(place)
     }
+
+    /// True if a path leads to a file that is read, or to an output.
+    pub(crate) fn hold(&self, path: &Path) -> bool {
+        let identity = Place::of(path).ok().and_then(|place| place.identity());
+        let is_written = |(_, _, known): &(&str, Place, Option<Identity>)| *known == identity;
+        identity.as_ref().is_some_and(|one| self.read.contains_key(one) || self.written.iter().any(is_written))
+    }
 }
 
 impl Refused {

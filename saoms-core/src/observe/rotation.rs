@@ -20,7 +20,8 @@ impl Rotation {
     /// A file that grows for ever.
     pub const NONE: Rotation = Rotation { size: None, age: None, keep: 0 };
 
-    pub(super) fn is_any(&self) -> bool {
+    /// True if files are moved aside at all.
+    pub fn is_any(&self) -> bool {
         self.size.is_some() || self.age.is_some()
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use saoms_core::observe::{JournalFile, RotatingFile, Rotation};
+use saoms_core::observe::{JournalFile, RotatingFile, Rotation, earlier_file};
 
 use super::RunArguments;
 use super::log_file::LogFile;
@@ -43,6 +43,8 @@ impl RunFiles {
         let journal = add("journal", "--journal", arguments.journal.as_deref(), true);
         let log = add("log", "--log", arguments.log.log.as_deref(), true);
         let rotation = arguments.log.rotation();
+        let moved = [&journal, &log].into_iter().flatten().filter(|_| rotation.is_any());
+        problems.extend(moved.filter_map(|(asked, place)| taken_aside(asked, place, rotation, &outputs)));
         problems.extend(arguments.paths.as_deref().and_then(other_picture));
         if problems.is_empty() {
             // A pipe waits for its reader, so that it is opened when nothing else can be wrong.
@@ -61,6 +63,17 @@ impl RunFiles {
         eprint(&format!("{}\n{}: nothing was started\n", problems.concat(), counted(problems.len(), "error")));
         None
     }
+}
+
+/// The message about a file that would be moved over one that is read, or over another output.
+fn taken_aside(asked: &Asked<'_>, place: &Place, rotation: Rotation, outputs: &Outputs) -> Option<String> {
+    let Place::File(path) = place else { return None };
+    let taken = (1..=rotation.keep).map(|number| earlier_file(path, number)).find(|file| outputs.hold(file))?;
+    let Asked { what, option, path, .. } = asked;
+    let (path, taken) = (displayed(path), displayed(&taken));
+    Some(format!(
+        "error: `{option} {path}`: the {what} would be moved over `{taken}`, which is an input or another output\n"
+    ))
 }
 
 /// The endings of pictures that are no SVG.

@@ -159,8 +159,10 @@ pub(super) fn document(path: &Path) -> Result<JournalDocument, String> {
 /// The parts of the same run before this one, the newest first, as far as they follow each other.
 fn earlier_parts(path: &Path, newest: &JournalPart) -> Vec<(PathBuf, String)> {
     let (mut parts, mut next) = (Vec::new(), newest.number);
+    // They stand beside the file that a link leads to.
+    let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     for number in 1.. {
-        let file = earlier_file(path, number);
+        let file = earlier_file(&path, number);
         let Ok(text) = text(&file) else { break };
         match part(&text) {
             Some(found) if found.run == newest.run && found.number + 1 == next => {

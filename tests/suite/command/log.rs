@@ -137,8 +137,33 @@ fn a_journal_that_was_moved_aside_is_read_as_one() {
     let missing = saoms_in(folder.path(), &["why", "Robot004", "--at", "1s", "--report", "few.jsonl"]);
     let words = stdout(&missing) + &stderr(&missing);
     assert!(words.contains("its journal begins at") || words.contains("--rotate-keep"), "{words}");
+    std::os::unix::fs::symlink("few.jsonl", folder.path().join("link.jsonl")).unwrap();
+    assert_eq!(report("link.jsonl"), few);
     fs::remove_file(folder.path().join("few.jsonl.1")).unwrap();
     assert!(report("few.jsonl")["journal"]["entries"].as_array().unwrap().len() < kept.len());
+}
+
+#[test]
+fn no_file_is_moved_over_an_input_or_another_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let composite = fs::read(root().join("composites/hall.composite")).unwrap();
+    fs::write(folder.path().join("hall.2"), &composite).unwrap();
+    for (arguments, taken) in [
+        (&["--log", "hall"][..], "hall.2`"),
+        (&["--journal", "hall", "--rotate-keep", "2"], "hall.2`"),
+        (&["--log", "a", "--journal", "a.1"], "a.1`"),
+        (&["--log", "a", "--report", "a.9"], "a.9`"),
+    ] {
+        let all = [&["run", "hall.2", "--virtual", "--rotate-size", "1kB"], arguments].concat();
+        let (exit, _, errors) = answer(&saoms_in(folder.path(), &all));
+        assert!(exit == 2 && errors.contains("would be moved over") && errors.contains(taken), "{errors}");
+    }
+    assert_eq!(fs::read(folder.path().join("hall.2")).unwrap(), composite);
+    let (exit, _, errors) = answer(&saoms_in(
+        folder.path(),
+        &["run", "hall.2", "--virtual", "--rotate-size", "1kB", "--log", "hall", "--rotate-keep", "1"],
+    ));
+    assert_eq!(exit, 0, "{errors}");
 }
 
 #[test]
