@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use saoms_api::Time;
 use saoms_api::host::one_line;
-use saoms_core::journal::JournalDocument;
+use saoms_core::journal::{JournalDocument, JournalSource};
 use serde_json::{Value, json};
 
 use super::why::document;
@@ -43,7 +43,7 @@ pub(crate) fn report(arguments: &ReportArguments) -> Exit {
     if let Err(exit) = Outputs::beside([path.to_owned()]).with_streams() {
         return exit;
     }
-    let rebuilt = document(path).and_then(|document| match document.is_report {
+    let rebuilt = document(path).and_then(|document| match document.source == JournalSource::Report {
         true => Err(format!("`{}` is a report already", path.display())),
         false => Ok(rebuilt(&document)),
     });

@@ -10,11 +10,13 @@ use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use axum::response::Response;
 use axum::routing::{MethodRouter, get, post, put};
+use saoms_api::Time;
+use saoms_api::host::parse_duration;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::access::with_body;
-use super::answer::{Answer, Refusal, done, json_text};
+use super::answer::{Answer, Refusal, done, json_text, waiting};
 use super::fleet::ControlledFleet;
 use super::{logs, orders, time, topics};
 
@@ -63,6 +65,17 @@ const ROUTES: &[Route] = &[
         query: &[("lines", "the number of lines"), ("follow", "`true` to get further lines as they come")],
         body: None,
         serve: || get(log_lines),
+    },
+    Route {
+        method: "get",
+        path: "/v1/why",
+        doc: "The records of the journal that explain what a component did, in the form of a report, as `saoms why` reads it.",
+        query: &[
+            ("component", "its path, its ID, or an ending of its path"),
+            ("at", "explain what it did last before this time of the run, such as `10s`; without it, before now"),
+        ],
+        body: None,
+        serve: || get(why),
     },
     Route {
         method: "post",
@@ -274,6 +287,19 @@ async fn log_lines(State(fleet): Fleet, Query(query): Query<LogQuery>) -> Answer
         true => logs::followed(&fleet, most),
         false => logs::newest(&fleet.log, most),
     }
+}
+
+#[derive(Deserialize)]
+struct WhyQuery {
+    component: String,
+    at: Option<String>,
+}
+
+async fn why(State(fleet): Fleet, Query(query): Query<WhyQuery>) -> Answer {
+    let at = query.at.as_deref().map(parse_duration).transpose().map_err(Refusal::unprocessable)?;
+    let at = at.map(|at| Time::START + at);
+    let journal = waiting(move || fleet.handle.why(&query.component, at).map(|found| json!(found).to_string())).await?;
+    json_text(journal.map_err(Refusal::unprocessable)?)
 }
 
 async fn metrics(State(fleet): Fleet) -> Answer {

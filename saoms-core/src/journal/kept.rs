@@ -5,7 +5,6 @@ use saoms_api::Cause;
 use saoms_api::host::Phase;
 use serde::{Deserialize, Serialize};
 
-use super::entry::Content;
 use super::{JournalEntry, OutsideRing, Ring, Selection};
 
 /// The kept records of a run, and counts of all that were written.
@@ -119,16 +118,7 @@ impl Journal {
             journal.loops.extend(LoopCounts::of_ring(component, ring));
             journal.records += journal.loops[before..].iter().map(LoopCounts::records).sum::<u64>();
             for batch in ring.batches() {
-                journal.entries.extend(batch.heads().iter().map(|head| JournalEntry {
-                    id: head.id,
-                    time: head.time(),
-                    component: Arc::clone(component),
-                    loop_name: ring.name(head.place),
-                    phase: head.phase,
-                    cause: head.cause,
-                    change: head.change,
-                    what: Content::Noted(batch.record(head)),
-                }));
+                journal.entries.extend(batch.heads().iter().map(|head| ring.entry(component, batch, head)));
             }
         }
         journal.entries.extend(outside.entries.iter().cloned());

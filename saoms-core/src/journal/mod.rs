@@ -6,6 +6,8 @@
 
 mod batch;
 mod entry;
+mod excerpt;
+mod find;
 mod fingerprint;
 mod json;
 mod kept;
@@ -21,10 +23,13 @@ mod why;
 
 pub(crate) use batch::Head;
 pub use entry::{Change, JournalEntry};
+pub use excerpt::LiveJournal;
+pub(crate) use excerpt::Pieces;
+pub use find::find;
 pub use kept::{Journal, LoopCounts};
 pub(crate) use outside::OutsideRing;
 pub(crate) use queue::RecordQueue;
-pub use read::{ComponentName, JournalDocument, JournalPart, JournalReadError, part, read, read_parts};
+pub use read::{ComponentName, JournalDocument, JournalPart, JournalReadError, JournalSource, part, read, read_parts};
 pub(crate) use recorder::{Recorder, Stamp};
 pub(crate) use ring::Ring;
 pub use select::Selection;

@@ -1,5 +1,7 @@
 use std::collections::VecDeque;
 
+use saoms_api::Cause;
+
 use super::JournalEntry;
 
 /// Minimum number of records from outside that are kept.
@@ -20,5 +22,11 @@ impl OutsideRing {
             self.overwritten += 1;
         }
         self.entries.push_back(entry);
+    }
+
+    /// The record with this number: they grow.
+    pub(crate) fn find(&self, id: Cause) -> Option<JournalEntry> {
+        let place = self.entries.binary_search_by_key(&id, JournalEntry::id).ok()?;
+        self.entries.get(place).cloned()
     }
 }

@@ -35,8 +35,19 @@ pub struct JournalDocument {
     pub components: Vec<ComponentName>,
     /// End of the run; `None` if the run has not ended or was killed.
     pub end: Option<Time>,
-    /// True if the file is a report, which holds only the newest records.
-    pub is_report: bool,
+    /// Where it comes from.
+    pub source: JournalSource,
+}
+
+/// Where a journal comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JournalSource {
+    /// A report, which holds only the newest records.
+    Report,
+    /// The file of `--journal`.
+    File,
+    /// A running fleet, which holds only the newest records, and goes on.
+    Running,
 }
 
 /// A fault of a file that is no journal.
@@ -146,7 +157,13 @@ fn report(text: &str) -> Result<JournalDocument, JournalReadError> {
     let report: Report = serde_json::from_str(text).map_err(|error| malformed(0, &error, REPORT))?;
     let journal = report.journal.ok_or(JournalReadError::NoJournal)?;
     let end = time(report.time_s).map_err(|wrong| incomplete(1, wrong.to_string()))?;
-    Ok(JournalDocument { journal, seed: report.seed, components: report.components, end: Some(end), is_report: true })
+    Ok(JournalDocument {
+        journal,
+        seed: report.seed,
+        components: report.components,
+        end: Some(end),
+        source: JournalSource::Report,
+    })
 }
 
 const REPORT: &str = "this is neither a complete report of `saoms run --report` nor a file of `saoms run --journal`";
@@ -187,7 +204,7 @@ pub fn read_parts(parts: &[&str]) -> Result<JournalDocument, (usize, JournalRead
     };
     let end = all.end.map(|end| time(end.time_s)).transpose();
     let end = end.map_err(|error| wrong(incomplete(1, error.to_string())))?;
-    Ok(JournalDocument { journal, seed: all.seed, components: all.components, end, is_report: false })
+    Ok(JournalDocument { journal, seed: all.seed, components: all.components, end, source: JournalSource::File })
 }
 
 /// What the lines of a journal hold.

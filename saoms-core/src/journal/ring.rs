@@ -1,9 +1,12 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use saoms_api::Cause;
 use saoms_api::host::Phase;
 
+use super::JournalEntry;
 use super::batch::{Batch, Head, OUTSIDE};
+use super::entry::Content;
 use super::recorder::{Notice, Recorder};
 
 /// Number of records in a chunk. A chunk is allocated and overwritten as a whole, so that no record is ever moved.
@@ -119,8 +122,48 @@ impl Ring {
         self.chunks.iter()
     }
 
+    /// Number of records that newer ones have replaced.
+    pub(crate) fn overwritten(&self) -> u64 {
+        self.overwritten
+    }
+
     /// The name of a loop; `None` outside all of them.
     pub(super) fn name(&self, place: u16) -> Option<Arc<str>> {
         self.names.get(place)
+    }
+
+    /// A record of a batch of this ring.
+    pub(super) fn entry(&self, component: &Arc<str>, batch: &Batch, head: &Head) -> JournalEntry {
+        JournalEntry {
+            id: head.id,
+            time: head.time(),
+            component: Arc::clone(component),
+            loop_name: self.name(head.place),
+            phase: head.phase,
+            cause: head.cause,
+            change: head.change,
+            what: Content::Noted(batch.record(head)),
+        }
+    }
+
+    /// The record with this number. The numbers of a ring grow, so that it is found by halves.
+    pub(crate) fn find(&self, component: &Arc<str>, id: Cause) -> Option<JournalEntry> {
+        let batch = self.chunk_from(id)?;
+        let place = batch.heads().binary_search_by_key(&id, |head| head.id).ok()?;
+        Some(self.entry(component, batch, &batch.heads()[place]))
+    }
+
+    /// The records of one chunk from this number on: of the first that has any.
+    pub(crate) fn piece(&self, component: &Arc<str>, from: Cause) -> Vec<JournalEntry> {
+        let Some(batch) = self.chunk_from(from) else { return Vec::new() };
+        let heads = batch.heads();
+        let first = heads.partition_point(|head| head.id < from);
+        heads[first..].iter().map(|head| self.entry(component, batch, head)).collect()
+    }
+
+    /// The first chunk with this number or a greater one.
+    fn chunk_from(&self, id: Cause) -> Option<&Batch> {
+        let is_before = |chunk: &Batch| chunk.heads().last().is_none_or(|last| last.id < id);
+        self.chunks.get(self.chunks.partition_point(is_before))
     }
 }

@@ -140,7 +140,7 @@ impl Journal {
     }
 }
 
-fn is_act(entry: &JournalEntry) -> bool {
+pub(super) fn is_act(entry: &JournalEntry) -> bool {
     match entry.phase() {
         Phase::Symptom => false,
         Phase::Decision => true,

@@ -25,7 +25,8 @@ use super::settings::{ClockKind, Settings, nanos};
 use super::shared::Shared;
 use super::takers::{RaiseError, Takers};
 use super::topics;
-use crate::journal::ComponentName;
+use super::why;
+use crate::journal::{ComponentName, LiveJournal};
 use crate::observe::{Beginning, Observer, RecordDelivery, RunProgress, deliver_records};
 use crate::report::RunReport;
 use crate::status::{FleetMetrics, FleetPhase, FleetStatus, TopicStatus};
@@ -348,6 +349,15 @@ impl Handle {
     pub fn set(&self, component: &str, property: &str, value: &str) -> Result<(), OrderError> {
         let (component, property, value) = (component.to_owned(), property.to_owned(), value.to_owned());
         self.order(Order::Set { component, property, value }, None)?.wait(ORDER_PATIENCE).map(drop)
+    }
+
+    /// The records of the journal that explain what a component did last, up to this time or at all. The component is
+    /// given by its path, its ID, or an ending of its path. The run waits for no more than a piece of them at a time.
+    ///
+    /// # Errors
+    /// There is no such component, or there are several; the text says what there is.
+    pub fn why(&self, component: &str, at: Option<Time>) -> Result<LiveJournal, String> {
+        why::why(&self.shared, component, at)
     }
 
     /// Gives an order of an operator, which takes effect at the next instant, or at its time, before the executions

@@ -16,10 +16,10 @@ pub(super) fn metrics(status: FleetStatus, shared: &Shared) -> FleetMetrics {
     let numbers = shared.sections().numbers().map(|(path, number)| (path.to_owned(), number)).collect();
     FleetMetrics {
         status,
-        lateness: locked(shared, Engine::lateness),
+        lateness: shared.look(Engine::lateness),
         numbers,
-        loops: locked(shared, Engine::loops),
-        queues: locked(shared, Engine::queues),
+        loops: shared.look(Engine::loops),
+        queues: shared.look(Engine::queues),
     }
 }
 
@@ -39,13 +39,6 @@ pub(super) fn timer_sign(shared: &Shared) -> TimerSign {
     let is_watched = !shared.clock.is_virtual() && !shared.ended.load(Ordering::Acquire);
     let due = if is_watched { present.since.unwrap_or(present.next) } else { u64::MAX };
     TimerSign { pieces: present.piece, overdue: Duration::from_nanos(sys::monotonic().saturating_sub(due)) }
-}
-
-fn locked<T>(shared: &Shared, count: impl FnOnce(&Engine) -> T) -> T {
-    let engine = shared.lock();
-    let counted = count(&engine);
-    shared.release(engine);
-    counted
 }
 
 impl Engine {

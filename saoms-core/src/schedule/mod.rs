@@ -28,6 +28,7 @@ mod takers;
 #[cfg(test)]
 mod tests;
 mod topics;
+mod why;
 
 pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
 pub use fleet::{Handle, Hold, RunningFleet};

@@ -99,6 +99,14 @@ impl Shared {
         self.engine.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// What can be seen of the engine while it is locked.
+    pub(super) fn look<T>(&self, see: impl FnOnce(&Engine) -> T) -> T {
+        let engine = self.lock();
+        let seen = see(&engine);
+        self.release(engine);
+        seen
+    }
+
     /// Unlocks the engine, then queues its events, and wakes the timer if necessary.
     #[inline]
     pub(super) fn release(&self, mut engine: MutexGuard<'_, Engine>) {

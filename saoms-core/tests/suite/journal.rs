@@ -1,6 +1,7 @@
 //! The journal of fleets whose loops talk to each other over topics.
 
 mod actors;
+mod live;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -12,6 +12,7 @@ mod top;
 mod topic;
 
 pub(super) use emergency::{EmergencyStopArguments, ReleaseArguments, estop, release};
+pub(super) use fleet::{RunningFleetArguments, escape};
 pub(super) use logs::{LogsArguments, logs};
 pub(super) use orders::{
     CallArguments, DownArguments, SendArguments, SetArguments, StartArguments, StopArguments, call, down, send, set,

@@ -9,13 +9,15 @@ use std::time::Duration;
 use clap::Args;
 use saoms_api::Time;
 use saoms_api::host::{format_duration, one_line};
-use saoms_core::journal::{ComponentName, JournalDocument, JournalPart, JournalReadError, Why, part, read, read_parts};
+use saoms_core::journal::{
+    JournalDocument, JournalPart, JournalReadError, JournalSource, Why, find, part, read, read_parts,
+};
 use saoms_core::observe::earlier_file;
-use saoms_lang::diagnostic::nearest_few;
 use serde_json::json;
 
 use crate::Exit;
 use crate::arguments::{Format, duration};
+use crate::command::control::{RunningFleetArguments, escape};
 use crate::output::{self, Outputs, eprint, print, print_as_is};
 
 const EXIT_CODES: &str = "\
@@ -23,9 +25,9 @@ Exit codes:
   0  answered, also when the answer is that the robot did nothing
   1  standard output could not be written
   2  the input is wrong: no such robot, a time after the end of the run, a file that is incomplete or has no journal; or the records that the whole
-     answer needs were overwritten, or left out by --short-report";
+     answer needs were overwritten, or left out by --short-report; no fleet runs, or it is not clear which one is meant";
 
-/// Explain why a robot did something, from the report or the journal of a run
+/// Explain why a robot did something: one of a fleet that runs, or from the report or the journal of a run
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct WhyArguments {
@@ -38,24 +40,31 @@ pub(crate) struct WhyArguments {
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) at: Option<Duration>,
 
-    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input
-    #[arg(long, visible_alias = "journal", value_name = "FILE")]
-    pub(crate) report: PathBuf,
+    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input. Without it, the fleet
+    /// that runs is asked
+    #[arg(long, visible_alias = "journal", value_name = "FILE", conflicts_with_all = ["name", "token_file"])]
+    pub(crate) report: Option<PathBuf>,
 
-    /// Text for people, or JSON
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) fleet: RunningFleetArguments,
 }
 
 pub(crate) fn why(arguments: &WhyArguments) -> Exit {
-    if let Err(exit) = Outputs::beside([arguments.report.clone()]).with_streams() {
+    if let Err(exit) = Outputs::beside(arguments.report.clone()).with_streams() {
         return exit;
     }
-    let show = |text: &str| match arguments.format {
+    let document = match arguments.report.as_deref() {
+        Some(path) => whole_document(path),
+        None => match of_running(arguments) {
+            Ok(document) => Ok(document),
+            Err(exit) => return exit,
+        },
+    };
+    let show = |text: &str| match arguments.fleet.format {
         Format::Human => print(text),
         Format::Json => print_as_is(text),
     };
-    match answer(arguments) {
+    match document.and_then(|document| answer(arguments, &document)) {
         Ok(Answer { text, lost: None }) => {
             show(&text);
             Exit::Done
@@ -78,35 +87,58 @@ struct Answer {
     lost: Option<String>,
 }
 
-fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
-    let path = arguments.report.as_path();
+/// The journal in a file, which has to have its records.
+fn whole_document(path: &Path) -> Result<JournalDocument, String> {
     let document = document(path)?;
     let journal = &document.journal;
-    if document.is_report && journal.entries().is_empty() && journal.records > journal.overwritten {
+    if document.source == JournalSource::Report && journal.entries().is_empty() && journal.records > journal.overwritten
+    {
         return Err(format!(
             "{} is a report without the records of the journal, as `--short-report` writes it: run again without that \
              option, or with `--journal FILE`, and ask that file",
             named(path)
         ));
     }
+    Ok(document)
+}
+
+/// What the fleet that runs tells. Why there is nothing is reported.
+fn of_running(arguments: &WhyArguments) -> Result<JournalDocument, Exit> {
+    let fleet = &arguments.fleet;
+    let at = arguments.at.map(|at| format!("&at={}", escape(&format_duration(at)))).unwrap_or_default();
+    let path = format!("/v1/why?component={}{at}", escape(&arguments.component));
+    let told = fleet.ask("GET", &path, "").inspect_err(|_| {
+        if fleet.format == Format::Human && fleet.name.is_none() && saoms_control::running().is_empty() {
+            eprint("  = help: `--report FILE` asks the report or the journal of a run\n");
+        }
+    })?;
+    let document = read(&told.to_string());
+    let document = document.map_err(|error| {
+        fleet.refuse(&format!("the answer of the fleet cannot be understood: {error}"), Exit::WrongInput)
+    })?;
+    Ok(JournalDocument { source: JournalSource::Running, ..document })
+}
+
+fn answer(arguments: &WhyArguments, document: &JournalDocument) -> Result<Answer, String> {
     let component = find(&document.components, &arguments.component)?;
     let at = arguments.at.map(|at| Time::START + at);
     if let (Some(asked), Some(at), Some(end)) = (arguments.at, at, document.end)
         && at > end
     {
         let asked = format_duration(asked);
-        return Err(format!("the run had ended at {end}, before {asked}: ask for a time up to then"));
+        let reached = if document.source == JournalSource::Running { "is at" } else { "had ended at" };
+        return Err(format!("the run {reached} {end}, before {asked}: ask for a time up to then"));
     }
     let why = document.journal.why(&component.name, at).map_err(|error| {
-        format!("what led to what `{}` did cannot be told: {error}. {}", component.name, advice(&document))
+        format!("what led to what `{}` did cannot be told: {error}. {}", component.name, advice(document))
     })?;
     let missing = why.chains.iter().find_map(|chain| chain.missing);
     let lost = missing.map(|missing| {
-        let how = if document.is_report { "overwritten" } else { "not written to the file" };
-        format!("record {}, which led to this, was {how}. {}", missing.0, advice(&document))
+        let how = if document.source == JournalSource::File { "not written to the file" } else { "overwritten" };
+        format!("record {}, which led to this, was {how}. {}", missing.0, advice(document))
     });
-    let text = match arguments.format {
-        Format::Human => answer::human(&component.name, at, &why, &document),
+    let text = match arguments.fleet.format {
+        Format::Human => answer::human(&component.name, at, &why, document),
         Format::Json => machine(&component.name, at, &why),
     };
     Ok(Answer { text, lost })
@@ -114,13 +146,16 @@ fn answer(arguments: &WhyArguments) -> Result<Answer, String> {
 
 /// Advice about records that are missing.
 fn advice(document: &JournalDocument) -> String {
-    if document.is_report {
-        "A report holds the newest records of each component: run with `--journal FILE` to keep all of them".to_owned()
-    } else {
-        let missing = document.journal.lost + document.journal.overwritten;
-        let hint = if document.journal.overwritten > 0 { ": `--rotate-keep` keeps more earlier files" } else { "" };
-        format!("Of this run {missing} records are not in the file{hint}")
-    }
+    let what = match document.source {
+        JournalSource::Report => "A report",
+        JournalSource::Running => "A running fleet",
+        JournalSource::File => {
+            let missing = document.journal.lost + document.journal.overwritten;
+            let hint = if document.journal.overwritten > 0 { ": `--rotate-keep` keeps more earlier files" } else { "" };
+            return format!("Of this run {missing} records are not in the file{hint}");
+        }
+    };
+    format!("{what} holds the newest records of each component: run with `--journal FILE` to keep all of them")
 }
 
 /// A file as messages name it.
@@ -200,45 +235,6 @@ fn whole_lines(mut bytes: Vec<u8>) -> Vec<u8> {
         bytes.truncate(tail);
     }
     bytes
-}
-
-/// The component with this path, ID, or unambiguous ending of its path.
-fn find<'a>(components: &'a [ComponentName], component: &str) -> Result<&'a ComponentName, String> {
-    let is_id = |one: &ComponentName| one.id.as_deref() == Some(component);
-    if let Some(found) = components.iter().find(|one| one.name == component) {
-        return Ok(found);
-    }
-    let ids: Vec<&ComponentName> = components.iter().filter(|one| is_id(one)).collect();
-    let found = if ids.is_empty() && !component.is_empty() {
-        components.iter().filter(|one| one.name.ends_with(component)).collect()
-    } else {
-        ids
-    };
-    match found[..] {
-        [one] => Ok(one),
-        [] => Err(unknown(components, component)),
-        ref several => {
-            let names: Vec<String> = several.iter().map(|one| format!("`{}`", one.name)).collect();
-            Err(format!("`{component}` can be any of {}: write more of its path", names.join(", ")))
-        }
-    }
-}
-
-fn unknown(components: &[ComponentName], component: &str) -> String {
-    let names = components.iter().map(|one| one.name.as_str());
-    let ids = components.iter().filter_map(|one| one.id.as_deref());
-    let endings = components.iter().filter_map(|one| one.name.rsplit('/').next());
-    let like = nearest_few(component, names.clone().chain(ids).chain(endings), 3);
-    let quoted = |names: Vec<&str>| names.into_iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    let help = match like[..] {
-        [] if components.is_empty() => "it had no components".to_owned(),
-        [] if components.len() > 12 => {
-            format!("its {} components begin with {}", components.len(), quoted(names.take(12).collect()))
-        }
-        [] => format!("its components are {}", quoted(names.collect())),
-        _ => format!("did you mean {}?", quoted(like)),
-    };
-    format!("the fleet of this run had no component `{component}`: {help}")
 }
 
 fn machine(component: &str, at: Option<Time>, why: &Why<'_>) -> String {

@@ -108,7 +108,11 @@ fn wrong_questions_are_told() {
         "error: the run had ended at 3.400 s, before 3600s: ask for a time up to then\n"
     );
     assert!(ask("Robot7", &["--at", "-1s"]).contains("negative"));
-    assert!(refused(&folder, &["Robot7"]).contains("--report"));
+    let nobody = tempfile::tempdir().unwrap();
+    let unasked = command(&["why", "Robot7"]).env("XDG_RUNTIME_DIR", nobody.path()).output().unwrap();
+    assert_eq!(unasked.status.code(), Some(2));
+    let unasked = String::from_utf8(unasked.stderr).unwrap();
+    assert!(unasked.starts_with("error: no fleet runs") && unasked.contains("--report FILE"), "{unasked}");
     assert!(refused(&folder, &["Robot7", "--report", "none.json"]).contains("`none.json` cannot be read"));
     let composite = "composites/hall.composite";
     assert!(refused(&folder, &["Robot7", "--report", composite]).contains("is neither a report"));

@@ -12,6 +12,7 @@ mod status;
 mod time;
 mod top;
 mod topics;
+mod why;
 
 use std::fs;
 use std::path::Path;
