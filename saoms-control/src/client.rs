@@ -4,7 +4,8 @@ use std::fmt;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::os::unix::net::UnixStream;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::thread;
 use std::time::Duration;
 
 use serde_json::Value;
@@ -16,6 +17,8 @@ use crate::token::Token;
 
 /// Time for which an answer is waited for.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// Time in which a fleet introduces itself: one that was stopped (SIGSTOP) must not hold up commands for others.
+const INTRODUCTION: Duration = Duration::from_secs(1);
 /// The longest head of an answer.
 const LONGEST_HEAD: u64 = 65_536;
 
@@ -135,12 +138,12 @@ impl Client {
         }
     }
 
-    fn connect(&self) -> io::Result<Box<dyn Connection>> {
+    fn connect(&self, patience: Duration) -> io::Result<Box<dyn Connection>> {
         let stream: Box<dyn Connection> = match &self.place {
             Place::Socket(path) => Box::new(UnixStream::connect(path)?),
             Place::Network(server, _) => Box::new(TcpStream::connect(server)?),
         };
-        stream.be_patient(Some(PATIENCE))?;
+        stream.be_patient(Some(patience))?;
         Ok(stream)
     }
 
@@ -149,8 +152,18 @@ impl Client {
     /// # Errors
     /// The fleet does not answer, or refuses it.
     pub fn request(&self, method: &str, path: &str, body: &str) -> Result<Response, ClientError> {
+        self.request_within(PATIENCE, method, path, body)
+    }
+
+    fn request_within(
+        &self,
+        patience: Duration,
+        method: &str,
+        path: &str,
+        body: &str,
+    ) -> Result<Response, ClientError> {
         let unreached = |error| ClientError::NotReached(self.place(), error);
-        let mut stream = self.connect().map_err(unreached)?;
+        let mut stream = self.connect(patience).map_err(unreached)?;
         let length = body.len();
         let (host, authorization) = match &self.place {
             Place::Socket(_) => ("localhost", String::new()),
@@ -178,7 +191,7 @@ impl Client {
     /// # Errors
     /// As [`request`](Client::request).
     pub fn description(&self) -> Result<FleetDescription, ClientError> {
-        let value = self.request("GET", "/v1/fleet", "")?.json()?;
+        let value = self.request_within(INTRODUCTION, "GET", "/v1/fleet", "")?.json()?;
         serde_json::from_value(value).map_err(|error| ClientError::Malformed(error.to_string()))
     }
 }
@@ -225,20 +238,25 @@ fn read_head(answer: &mut impl BufRead) -> io::Result<u16> {
 pub fn running() -> Vec<(Client, FleetDescription)> {
     let files = std::fs::read_dir(folder()).into_iter().flatten().flatten().map(|entry| entry.path());
     let sockets = files.filter(|path| path.extension().is_some_and(|extension| extension == "sock"));
-    let mut fleets: Vec<(Client, FleetDescription)> = sockets
-        .filter_map(|path| {
-            let client = Client::new(&path);
-            match client.description() {
-                Ok(description) => Some((client, description)),
-                Err(_) => {
-                    if remove_if_dead(&path).is_ok() {
-                        let _ = std::fs::remove_file(token_beside(&path));
-                    }
-                    None
-                }
-            }
-        })
-        .collect();
+    // All at once: several that do not answer take no longer than one.
+    let mut fleets: Vec<(Client, FleetDescription)> = thread::scope(|scope| {
+        let asked: Vec<_> = sockets.map(|path| scope.spawn(move || introduced(&path))).collect();
+        asked.into_iter().filter_map(|one| one.join().ok().flatten()).collect()
+    });
     fleets.sort_by(|(_, one), (_, other)| (&one.name, one.pid).cmp(&(&other.name, other.pid)));
     fleets
+}
+
+/// The fleet at this socket, which is removed if its program has ended.
+fn introduced(path: &Path) -> Option<(Client, FleetDescription)> {
+    let client = Client::new(path);
+    match client.description() {
+        Ok(description) => Some((client, description)),
+        Err(_) => {
+            if remove_if_dead(path).is_ok() {
+                let _ = std::fs::remove_file(token_beside(path));
+            }
+            None
+        }
+    }
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::fleet::RunningFleetArguments;
 use crate::Exit;
 use crate::arguments::Format;
-use crate::output::{eprint, print};
+use crate::output::{eprint, print, print_json_line};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -69,7 +69,7 @@ fn show(line: &Value, arguments: &LogsArguments) {
         return;
     }
     if arguments.fleet.format == Format::Json {
-        return print(&format!("{line}\n"));
+        return print_json_line(line);
     }
     let Ok(LogLine { time_s, level, component, text, .. }) = serde_json::from_value(line.clone()) else { return };
     let level = if level == "info" { String::new() } else { format!("{level}: ") };

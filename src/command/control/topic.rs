@@ -10,7 +10,7 @@ use super::fleet::{RunningFleetArguments, escape};
 use super::table::Table;
 use crate::Exit;
 use crate::arguments::{Format, duration};
-use crate::output::{eprint, has_failed, print};
+use crate::output::{eprint, has_failed, print, print_json_line};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -182,13 +182,14 @@ fn messages(fleet: &RunningFleetArguments, topic: &str) -> Result<impl Iterator<
 fn echo(arguments: &EchoArguments) -> Result<(), Exit> {
     let most = arguments.count.map_or(usize::MAX, |count| usize::try_from(count).unwrap_or(usize::MAX));
     for message in messages(&arguments.fleet, &arguments.topic)?.take(most) {
-        match (arguments.fleet.format, serde_json::from_str::<Value>(&message)) {
-            (Format::Human, Ok(sent)) => {
+        let Ok(sent) = serde_json::from_str::<Value>(&message) else { continue };
+        match arguments.fleet.format {
+            Format::Human => {
                 let time = sent["time_s"].as_f64().unwrap_or_default();
                 let component = one_line(sent["component"].as_str().unwrap_or_default()).into_owned();
                 print(&format!("[{time:.3} s] {component}: {}\n", one_line(&sent["message"].to_string())));
             }
-            _ => print(&format!("{message}\n")),
+            Format::Json => print_json_line(&sent),
         }
         if has_failed() {
             break;

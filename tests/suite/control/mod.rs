@@ -3,6 +3,7 @@
 mod emergency;
 mod exposition;
 mod hang;
+mod json;
 mod metrics;
 mod network;
 mod orders;
