@@ -180,6 +180,7 @@ pub(super) fn set_speed(shared: &Shared, speed: Speed) -> Result<(), HoldError> 
 
 /// Waits until a virtual time has come at the speed of the run, or another thread wants something; gives the time until
 /// then.
+#[cold]
 pub(super) fn keep_pace<'a>(
     shared: &'a Shared,
     mut engine: std::sync::MutexGuard<'a, Engine>,

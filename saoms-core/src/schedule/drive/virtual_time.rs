@@ -59,8 +59,10 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
             Next::HandOver => {}
             Next::Wait(_) if engine.phase == RunPhase::Running && now >= engine.hold => engine = sleep(shared, engine),
             Next::Wait(until) if engine.phase == RunPhase::Running && engine.advance_to(until) < NEVER => {
-                let until = engine.advance_to(until);
-                (engine, now) = keep_pace(shared, engine, (now, until));
+                let before = std::mem::replace(&mut now, engine.advance_to(until));
+                if engine.pace.is_some() {
+                    (engine, now) = keep_pace(shared, engine, (before, now));
+                }
                 shared.clock.jump(now);
                 if now >= endless && engine.pause == NEVER {
                     endless = NEVER;
@@ -86,6 +88,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
 
 impl Engine {
     /// The time to which virtual time may advance, where nothing is due before `until`.
+    #[inline]
     fn advance_to(&self, until: u64) -> u64 {
         until.min(self.pause).min(self.hold)
     }

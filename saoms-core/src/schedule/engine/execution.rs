@@ -182,7 +182,9 @@ impl Engine {
         if job == Job::Describe {
             self.note_answer(index);
         }
-        self.stop_again(index);
+        if self.slots[index as usize].stops_again {
+            self.stop_again(index);
+        }
         if job == Job::Order {
             self.finish_order(index, &mut body, result.as_ref().err(), ended);
         }

@@ -77,8 +77,9 @@ pub(crate) struct Slot {
     pub(crate) overrun_failure: Option<String>,
     pub(crate) name: Arc<str>,
     pub(crate) cancelled: Arc<AtomicBool>,
-    /// True from an emergency stop to its release.
-    pub(crate) emergency: Arc<AtomicBool>,
+    /// True from an emergency stop to its release; the second one is for its code.
+    stopped: bool,
+    emergency: Arc<AtomicBool>,
     /// True if it hears of an emergency stop by a property, and goes on.
     pub(crate) hears_stops: bool,
     /// True if its hardware is stopped once more when its code returns.
@@ -234,6 +235,7 @@ impl Slot {
         body.part.emergency = Arc::clone(&emergency);
         Slot {
             body: Some(Box::new(body)),
+            stopped: false,
             emergency,
             hears_stops: hears_stops(&spec),
             stops_again: false,
@@ -292,7 +294,13 @@ impl Slot {
     /// True from an emergency stop to its release.
     #[inline]
     pub(crate) fn is_stopped(&self) -> bool {
-        self.emergency.load(Ordering::Relaxed)
+        self.stopped
+    }
+
+    /// Begins or ends an emergency stop.
+    pub(crate) fn set_stopped(&mut self, is_stopped: bool) {
+        self.stopped = is_stopped;
+        self.emergency.store(is_stopped, Ordering::Relaxed);
     }
 
     /// True if its executions are left out, since it is stopped and does not hear of it.

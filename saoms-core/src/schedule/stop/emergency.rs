@@ -4,7 +4,7 @@
 //! class has a live property `stopped` gets the value `true`, so that it goes on without ordering anything of its
 //! hardware; executions of others are left out.
 
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
 
 use saoms_api::host::declaration::PropertyKind;
 use saoms_api::{Cause, Level};
@@ -52,7 +52,7 @@ impl Engine {
     pub(in crate::schedule) fn stop_at_once(&mut self, components: &[u32]) {
         for index in components {
             let slot = &mut self.slots[*index as usize];
-            slot.emergency.store(true, Ordering::Relaxed);
+            slot.set_stopped(true);
             // What its code has begun may still reach the hardware.
             slot.stops_again = slot.body.is_none();
         }
@@ -66,6 +66,7 @@ impl Engine {
     }
 
     /// Stops the hardware of a component once more, whose code was running when it was stopped.
+    #[cold]
     pub(in crate::schedule) fn stop_again(&mut self, index: u32) {
         if std::mem::take(&mut self.slots[index as usize].stops_again) {
             self.stop_hardware_of(index);
@@ -76,7 +77,7 @@ impl Engine {
     pub(in crate::schedule) fn tell_stopped(&mut self, components: &[u32], is_stopped: bool, cause: Cause, now: u64) {
         for index in components {
             let slot = &mut self.slots[*index as usize];
-            slot.emergency.store(is_stopped, Ordering::Relaxed);
+            slot.set_stopped(is_stopped);
             slot.stops_again &= is_stopped;
             if slot.hears_stops {
                 self.queue_stopped(*index, is_stopped, cause);
@@ -90,9 +91,9 @@ impl Engine {
     pub(in crate::schedule) fn set_at_rest(&mut self, index: u32, property: &str, value: &str) {
         let slot = &mut self.slots[index as usize];
         if let Ok(changed) = change::changed(&slot.spec, property, value) {
-            slot.spec = std::sync::Arc::new(changed);
+            slot.spec = Arc::new(changed);
             if let Some(body) = &mut slot.body {
-                body.part.spec = std::sync::Arc::clone(&slot.spec);
+                body.part.spec = Arc::clone(&slot.spec);
             }
         }
     }
