@@ -49,11 +49,25 @@ impl Driver {
 
     /// Gives an order, whether or not the earlier one is answered: so `stop` overtakes a move. Returns its number.
     pub(crate) fn order(&self, what: &str) -> u64 {
-        // Under the lock, so that numbers go out in their order.
+        self.give(&mut self.newest.lock(), what, false)
+    }
+
+    /// Orders a stop, unless the newest order is one that has not failed: a controller that takes its time to confirm a
+    /// stop is told once, however many want it. Returns its number.
+    pub(crate) fn order_stop(&self) -> u64 {
         let mut newest = self.newest.lock();
-        let number = newest.0 + 1;
+        if newest.is_stop && newest.state != OrderState::Failed {
+            return newest.number;
+        }
+        self.give(&mut newest, "stop", true)
+    }
+
+    /// Gives an order while the newest one is locked, so that numbers go out in their order.
+    fn give(&self, newest: &mut Order, what: &str, is_stop: bool) -> u64 {
+        let number = newest.number + 1;
         let sent = self.lines.send(Line::Order(number, format!("{number} {what}\n")));
-        *newest = (number, if sent.is_ok() { OrderState::Running } else { OrderState::Failed });
+        let state = if sent.is_ok() { OrderState::Running } else { OrderState::Failed };
+        *newest = Order { number, state, is_stop };
         number
     }
 
@@ -70,41 +84,50 @@ impl Driver {
     /// State of the order with this number. It has failed if another order came after it, such as a stop from outside.
     pub(crate) fn state(&self, number: u64) -> OrderState {
         let newest = self.newest.lock();
-        if newest.0 == number { newest.1 } else { OrderState::Failed }
+        if newest.number == number { newest.state } else { OrderState::Failed }
     }
 
     /// Orders a stop and waits until it is confirmed; false if it is not. Without an order before there is nothing to
     /// stop.
     pub(crate) fn stop(&self, patience: Duration) -> bool {
-        if self.newest.lock().0 == 0 {
+        if self.newest.lock().number == 0 {
             return true;
         }
-        self.order("stop");
-        let is_running = |order: &mut (u64, OrderState)| order.1 == OrderState::Running;
+        let number = self.order_stop();
+        let is_running = |order: &mut Order| order.number == number && order.state == OrderState::Running;
         let waited = self.newest.answered.wait_timeout_while(self.newest.lock(), patience, is_running);
-        waited.unwrap_or_else(PoisonError::into_inner).0.1 == OrderState::Done
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
+        self.state(number) == OrderState::Done
     }
 }
 
-/// The number of the newest order, and its state: answers to earlier orders do not count any more.
+/// An order, by its number; 0 before the first one.
+#[derive(Debug, Default)]
+struct Order {
+    number: u64,
+    state: OrderState,
+    is_stop: bool,
+}
+
+/// The newest order: answers to earlier ones do not count any more.
 #[derive(Debug, Default)]
 struct Newest {
-    order: Mutex<(u64, OrderState)>,
+    order: Mutex<Order>,
     answered: Condvar,
     /// True while a heartbeat waits to go out.
     beats: AtomicBool,
 }
 
 impl Newest {
-    fn lock(&self) -> std::sync::MutexGuard<'_, (u64, OrderState)> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Order> {
         self.order.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Takes in an answer, if it is about the newest order, and the first one.
     fn answer(&self, number: u64, state: OrderState) {
         let mut order = self.lock();
-        if *order == (number, OrderState::Running) {
-            order.1 = state;
+        if (order.number, order.state) == (number, OrderState::Running) {
+            order.state = state;
             self.answered.notify_all();
         }
     }

@@ -107,7 +107,7 @@ impl Hardware for Wheels {
                 warn!(context, "{why}: {:?} at {}", action.kind, self.block);
                 self.running = None;
                 // The order may still be carried out: it is not, after a stop.
-                self.driver()?.order("stop");
+                self.driver()?.order_stop();
                 Ok(Progress::Failed)
             }
         }
@@ -115,7 +115,7 @@ impl Hardware for Wheels {
 
     fn cancel(&mut self, _: &mut Context<'_>, _: u32) -> Result<(), Failure> {
         self.running = None;
-        self.driver()?.order("stop");
+        self.driver()?.order_stop();
         Ok(())
     }
 

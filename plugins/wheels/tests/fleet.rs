@@ -157,6 +157,22 @@ fn a_stop_overtakes_a_move() {
     assert_eq!(orders.recv_timeout(Duration::from_secs(10)).as_deref(), Ok("stop"));
 }
 
+#[test]
+fn a_stop_is_ordered_once_however_many_want_it() {
+    let (address, orders) =
+        controller(|number, order, _| if order == "stop" { format!("{number} done\n") } else { String::new() });
+    let mut robot = robot(&address, "30s");
+    while orders.recv_timeout(Duration::from_millis(5)).is_err() {
+        robot.execute().unwrap();
+    }
+    // From outside, by the robot that retires, and by the end of both.
+    robot.stop_hardware().unwrap();
+    robot.stop_hardware().unwrap();
+    robot.shutdown().unwrap();
+    robot.stop_hardware().unwrap();
+    assert_eq!(orders.try_iter().collect::<Vec<_>>(), ["stop"]);
+}
+
 /// A controller as it should be: it drives until it is told to stop, or has heard nothing for twice the period of the
 /// last heartbeat. Returns its address and what becomes of the wheels.
 fn careful_controller() -> (String, Receiver<&'static str>) {

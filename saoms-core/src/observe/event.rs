@@ -57,9 +57,11 @@ pub enum Occurrence {
         /// True if it restored the state of the earlier one.
         continued: bool,
     },
-    /// An execution took so long that another thread had to take over the other components. From now on the component
-    /// runs on a thread of its own.
+    /// A function of the component took so long that another thread had to take over the other components. From now on
+    /// the component runs on a thread of its own.
     Slow {
+        /// What took so long, such as `an execution`.
+        what: &'static str,
         /// The watchdog's budget.
         budget: Duration,
     },
@@ -148,9 +150,9 @@ impl fmt::Display for Occurrence {
             Occurrence::Replaced { continued: false } => {
                 formatter.write_str("is replaced by its new build, and starts without the earlier state")
             }
-            Occurrence::Slow { budget } => write!(
+            Occurrence::Slow { what, budget } => write!(
                 formatter,
-                "an execution takes longer than {}: it runs on a thread of its own from now on, less punctually",
+                "{what} takes longer than {}: the component runs on a thread of its own from now on, less punctually",
                 saoms_api::host::format_duration(*budget)
             ),
             Occurrence::Dropped { topic, count, sender } => {

@@ -67,6 +67,9 @@ pub(crate) struct Script {
     /// What it waits for.
     #[property(default = "")]
     waits: String,
+    /// The milliseconds that `status` takes.
+    #[property(default = 0)]
+    status: u32,
     /// The topics that it publishes.
     #[property(default = "")]
     publishes: String,
@@ -131,6 +134,7 @@ macro_rules! actor {
             }
 
             fn status(&self) -> Vec<(String, ReportValue)> {
+                std::thread::sleep(Duration::from_millis(self.script.status.into()));
                 ReportValue::named([("waits", self.script.waits.as_str().into())])
             }
         }

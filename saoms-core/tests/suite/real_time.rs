@@ -57,6 +57,26 @@ fn a_blocked_execution_does_not_hold_up_the_others() {
 }
 
 #[test]
+fn what_holds_up_the_others_is_named() {
+    let (fleet, diary) = start(
+        "A actor period=10 status=200
+         B actor period=10 each=[2: sleep 200]
+         C actor period=10 last=[sleep 200]",
+        real(600),
+    );
+    let fleet = fleet.unwrap();
+    let _ = fleet.handle().status();
+    let _ = fleet.run_to_end();
+    let of_three = [("A", "`status`"), ("B", "an execution"), ("C", "`shutdown`")];
+    for (name, what) in of_three {
+        let line = format!("{what} takes longer than ");
+        let said =
+            diary.count(|event| event.component.as_deref() == Some(name) && event.what.to_string().starts_with(&line));
+        assert_eq!(said, 1, "{}", diary.lines());
+    }
+}
+
+#[test]
 fn any_number_of_blocked_executions_does_not_hold_up_the_others() {
     let blocked: String = (0..12).map(|n| format!("A{n} actor period=400 each=[sleep 300]\n")).collect();
     // A busy machine stalls the start or the end of a component for longer than the usual budget of 1 ms.

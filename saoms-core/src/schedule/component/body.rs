@@ -120,6 +120,20 @@ pub(crate) enum Job {
     Shutdown,
 }
 
+impl Job {
+    /// What runs, for messages.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Job::Start => "`initialize`",
+            Job::Execute => "an execution",
+            Job::React => "a reaction",
+            Job::Ask | Job::Describe => "`status`",
+            Job::Order => "an order of an operator",
+            Job::Shutdown => "`shutdown`",
+        }
+    }
+}
+
 impl Body {
     pub(crate) fn new(
         index: u32,

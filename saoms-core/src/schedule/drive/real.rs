@@ -32,7 +32,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
         match engine.next(now) {
             Next::Run(index, job) => {
                 let Some(mut body) = engine.begin(index, job, now) else { continue };
-                engine.roles.running = Some(index);
+                engine.roles.running = Some((index, job));
                 shared.pulse.begin(shared.clock.on_machine(now));
                 shared.release(engine);
                 if std::mem::take(&mut woke) {

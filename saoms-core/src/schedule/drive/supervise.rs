@@ -74,7 +74,7 @@ impl StallDetector {
         if piece != self.piece || engine.roles.running.is_none() || shared.events.has_waiting_writers() {
             *self = StallDetector { piece, since: now };
         }
-        let culprit = engine.roles.running.filter(|_| now - self.since >= allowed);
+        let culprit = engine.roles.running.filter(|_| now - self.since >= allowed).map(|(index, _)| index);
         (now.saturating_add((allowed / 4).max(1_000_000)), culprit)
     }
 }
@@ -82,7 +82,7 @@ impl StallDetector {
 impl Engine {
     /// Takes the timer's work from a thread whose code was given up; the number of the role for the next one.
     fn replace_timer(&mut self) -> Option<u64> {
-        let index = self.roles.running?;
+        let (index, _) = self.roles.running?;
         if !self.is_abandoned(index) {
             return None;
         }

@@ -45,7 +45,7 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
         match next {
             Next::Run(index, job) => {
                 let Some(mut body) = engine.begin(index, job, now) else { continue };
-                engine.roles.running = Some(index);
+                engine.roles.running = Some((index, job));
                 shared.pulse.begin(now);
                 shared.release(engine);
                 let result = body.perform(shared, job);

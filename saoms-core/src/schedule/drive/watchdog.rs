@@ -59,10 +59,10 @@ fn take_over(shared: &Arc<Shared>, mut engine: std::sync::MutexGuard<'_, Engine>
     engine.roles.thread = sys::thread_id();
     engine.roles.workers += 1;
     shared.pulse.end();
-    if let Some(index) = engine.roles.running.take() {
+    if let Some((index, job)) = engine.roles.running.take() {
         engine.slots[index as usize].isolation.isolate();
         let now = shared.clock.now();
-        engine.emit(now, index, Occurrence::Slow { budget: shared.settings.budget });
+        engine.emit(now, index, Occurrence::Slow { what: job.name(), budget: shared.settings.budget });
     }
     shared.release(engine);
     if shared.settings.realtime {

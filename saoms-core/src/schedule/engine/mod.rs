@@ -134,7 +134,7 @@ pub(crate) struct Roles {
     /// The kernel's number of that thread.
     pub(crate) thread: i32,
     /// Component whose code that thread runs.
-    pub(crate) running: Option<u32>,
+    pub(crate) running: Option<(u32, Job)>,
     /// Time until which it sleeps; 0 while it is awake.
     pub(crate) asleep_until: u64,
     /// Components for the worker threads.
