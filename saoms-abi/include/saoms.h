@@ -438,6 +438,9 @@ typedef struct SaomsHostFunctions {
     // Lets an event happen that components of the same site take, at the end of the present execution: a line such as
     // `fire at=(3,4) size=2 to Hall1`.
     SaomsStatus (*raise)(void *state, struct SaomsBytes event, struct SaomsSink error);
+    // Says that a person is needed: a kind such as `assistance`, what it is about, such as a number, or empty, and a
+    // line for that person. A null line says that the alert of this kind and subject is over.
+    void (*alert)(void *state, struct SaomsBytes kind, struct SaomsBytes subject, struct SaomsBytes line);
 } SaomsHostFunctions;
 
 // A message that arrived.

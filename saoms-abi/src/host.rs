@@ -148,6 +148,9 @@ pub struct HostFunctions {
     /// Lets an event happen that components of the same site take, at the end of the present execution: a line such as
     /// `fire at=(3,4) size=2 to Hall1`.
     pub raise: unsafe extern "C" fn(state: *mut c_void, event: Bytes, error: Sink) -> Status,
+    /// Says that a person is needed: a kind such as `assistance`, what it is about, such as a number, or empty, and a
+    /// line for that person. A null line says that the alert of this kind and subject is over.
+    pub alert: unsafe extern "C" fn(state: *mut c_void, kind: Bytes, subject: Bytes, line: Bytes),
 }
 
 /// The visitor of a component's loops, called with a name, a class, values and their number.

@@ -405,6 +405,19 @@ impl<'a> Context<'a> {
         self.log(Level::Warning, line);
     }
 
+    /// Says that a person is needed: in the log, at [`Level::Error`], and in the alerts of the fleet, which operators
+    /// acknowledge. `kind` is a word that stands in metrics, such as `assistance`; `subject` says what it is about,
+    /// where a component may have several alerts of a kind. It lasts until [`alert_over`](Context::alert_over) or until
+    /// the component starts anew; the same kind and subject again give it another line.
+    pub fn alert(&mut self, kind: &str, subject: impl fmt::Display, line: impl fmt::Display) {
+        self.host.alert(kind, &subject.to_string(), Some(format_args!("{line}")));
+    }
+
+    /// Says that the [`alert`](Context::alert) of this kind and subject is over; if there is none, nothing happens.
+    pub fn alert_over(&mut self, kind: &str, subject: impl fmt::Display) {
+        self.host.alert(kind, &subject.to_string(), None);
+    }
+
     /// Writes a line to the classic console (`--console classic`). Formatted only if an observer wants it.
     pub fn console(&mut self, line: impl fmt::Display) {
         self.host.console(format_args!("{line}"));

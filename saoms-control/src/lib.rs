@@ -4,6 +4,7 @@
 //! of its own: the timer of the fleet never waits for it. `openapi` describes its routes. Commands such as
 //! `saoms status` use the [`Client`]; so does any program that speaks HTTP, such as `curl --unix-socket`.
 
+mod alerts;
 mod client;
 mod counts;
 mod date;
@@ -16,6 +17,7 @@ mod server;
 mod token;
 mod topics;
 
+pub use alerts::{Acknowledgement, Alert, AlertList};
 pub use client::{Client, ClientError, Response, running};
 pub use date::date;
 pub use description::FleetDescription;

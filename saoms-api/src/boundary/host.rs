@@ -261,6 +261,21 @@ unsafe extern "C" fn log(state: *mut c_void, level: u32, line: Bytes) {
     }
 }
 
+/// An alert whose kind or subject is no text is left out with a warning.
+unsafe extern "C" fn alert(state: *mut c_void, kind: Bytes, subject: Bytes, line: Bytes) {
+    // SAFETY: callers pass the state of their handle, and lend the texts to this call.
+    unsafe {
+        with_host(state, (), |host| {
+            let read = || Ok::<_, Failure>((kind.get_text()?, subject.get_text()?, line.get()?));
+            match read() {
+                Ok((kind, subject, _)) if line.data.is_null() => host.alert(kind, subject, None),
+                Ok((kind, subject, line)) => host.alert(kind, subject, Some(format_args!("{}", shown(line)))),
+                Err(failure) => warn(host, "an alert", &failure),
+            }
+        });
+    }
+}
+
 /// A value for the report that cannot be read, or a path that is no text, is left out with a warning.
 unsafe extern "C" fn report(state: *mut c_void, path: Bytes, value: *const ReportView) {
     // SAFETY: callers pass the state of their handle, and lend the rest to this call.
@@ -385,6 +400,7 @@ pub(super) static HOST_FUNCTIONS: HostFunctions = HostFunctions {
     departed,
     goes_on,
     raise,
+    alert,
 };
 
 /// A time of the other side.

@@ -358,6 +358,13 @@ impl Host for RemoteHost<'_> {
         self.write(level as u32, line);
     }
 
+    fn alert(&mut self, kind: &str, subject: &str, line: Option<fmt::Arguments<'_>>) {
+        let line = line.map(|line| line.to_string());
+        // A null line means the end of the alert; the data of an empty text is not null.
+        let line = line.as_deref().map_or(Bytes::NONE, Bytes::text);
+        get!(self.alert, Bytes::text(kind), Bytes::text(subject), line);
+    }
+
     fn console(&mut self, line: fmt::Arguments<'_>) {
         self.write(CONSOLE, line);
     }

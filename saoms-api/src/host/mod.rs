@@ -170,6 +170,14 @@ pub trait Host {
     fn listens(&self, level: Option<Level>) -> bool;
     /// See [`Context::log`](crate::Context::log).
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>);
+    /// See [`Context::alert`](crate::Context::alert); without a line
+    /// [`Context::alert_over`](crate::Context::alert_over). A host that keeps no alerts writes the line to its log.
+    fn alert(&mut self, kind: &str, subject: &str, line: Option<fmt::Arguments<'_>>) {
+        let _ = (kind, subject);
+        if let Some(line) = line {
+            self.log(Level::Error, line);
+        }
+    }
     /// See [`Context::console`](crate::Context::console).
     fn console(&mut self, line: fmt::Arguments<'_>);
     /// See [`Context::report`](crate::Context::report).

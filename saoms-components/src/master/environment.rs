@@ -1,6 +1,5 @@
 use saoms_api::{
-    Cause, Class, Component, Context, Failure, Header, Level, Message, Publisher, ReportValue, Saved, Subscription,
-    Work,
+    Cause, Class, Component, Context, Failure, Header, Message, Publisher, ReportValue, Saved, Subscription, Work,
 };
 
 use super::event_filter::EventFilter;
@@ -14,6 +13,9 @@ use crate::messages::{
 use crate::report::pieces;
 use crate::state::Numbers;
 use crate::validation::{MessageValidator, Problem, SpeakerMemory, Validate};
+
+/// The kind of alerts about luggage that no robot can carry.
+const GIVEN_UP: &str = "given_up";
 
 /// Distributes the events of the environment to their topics: luggage and faults to the robots, exceptional events to
 /// the master of the robots.
@@ -100,8 +102,9 @@ impl Component for MasterEnvironment {
         }
         context.because(Cause::default());
         for (luggage, from, to) in self.open.take_hopeless(context.now()) {
-            context.log(
-                Level::Error,
+            context.alert(
+                GIVEN_UP,
+                luggage,
                 format_args!("gives up luggage {luggage} from {from} to {to}: no robot can carry it"),
             );
             context.vote(Work::GivenUp);
@@ -189,6 +192,9 @@ impl MasterEnvironment {
     fn hear(&mut self, context: &mut Context<'_>, header: Header, said: &EventLuggage) {
         if header.sender == context.sender() || !self.validator.accepts(said, header, self.filter.area(), context) {
             return;
+        }
+        if said.stage == LuggageStage::Delivered {
+            context.alert_over(GIVEN_UP, said.luggage);
         }
         if said.stage == LuggageStage::Request {
             self.filter.note(said.luggage);

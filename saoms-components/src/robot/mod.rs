@@ -44,6 +44,9 @@ pub use routes::Routes;
 use hardware_client::{HardwareClient, Reply};
 use receive::Topics;
 
+/// The kind of alerts of robots that cannot go on without help.
+const ASSISTANCE: &str = "assistance";
+
 /// Brings luggage from one block to another, together with other robots.
 ///
 /// The robot starts at its charger. It takes an interest in luggage that waits, goes if no other robot is closer,

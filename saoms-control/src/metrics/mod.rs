@@ -22,6 +22,8 @@ pub(crate) struct Measured<'a> {
     pub(crate) clients: &'a ClientCounts,
     /// Lines of the file of the log that could not be written.
     pub(crate) lost_lines: u64,
+    /// Alerts by kind: those that wait, those that are acknowledged and not over, and all that were raised.
+    pub(crate) alerts: Vec<(String, [u64; 3])>,
 }
 
 /// A metric.
@@ -135,6 +137,20 @@ pub const METRICS: &[Metric] = metrics! {
     "saoms_adaptations_total" counter ["component" "loop" "phase"]
         "Records of the journal by loop (empty outside all loops) and phase: symptom, decision, effect."
         adaptations;
+    "saoms_alerts" gauge ["kind" "state"]
+        "Alerts that are not over: those that wait for a person (waiting), and those that are acknowledged (acknowledged)."
+        |measured, samples| {
+            for (kind, [waiting, acknowledged, _]) in &measured.alerts {
+                samples.add(&[("kind", kind), ("state", "waiting")], *waiting as f64);
+                samples.add(&[("kind", kind), ("state", "acknowledged")], *acknowledged as f64);
+            }
+        };
+    "saoms_alerts_total" counter ["kind"] "Alerts that were raised."
+        |measured, samples| {
+            for (kind, [.., raised]) in &measured.alerts {
+                samples.add(&[("kind", kind)], *raised as f64);
+            }
+        };
     "saoms_log_lost_total" counter [] "Lines that could not be written to the file of the log."
         |measured, samples| samples.add(&[], measured.lost_lines as f64);
     "saoms_control_clients" gauge [] "Clients that are connected."

@@ -61,7 +61,8 @@ fn lines(metric: &str) -> Vec<String> {
         seed: 0,
     };
     let clients = ClientCounts::default();
-    let text = text(&Measured { description: &description, fleet: &fleet, clients: &clients, lost_lines: 0 });
+    let alerts = vec![("a\"b".to_owned(), [2, 1, 5])];
+    let text = text(&Measured { description: &description, fleet: &fleet, clients: &clients, lost_lines: 0, alerts });
     let is_it = |line: &&str| !line.starts_with('#') && line.starts_with(metric);
     text.lines().filter(is_it).map(|line| line[metric.len()..].to_owned()).collect()
 }
@@ -69,6 +70,13 @@ fn lines(metric: &str) -> Vec<String> {
 #[test]
 fn names_are_escaped() {
     assert_eq!(lines("saoms_executions_total"), [r#"{component="hall/a \"b\" \\c\nd"} 5"#]);
+}
+
+#[test]
+fn alerts_are_counted_by_kind_and_state() {
+    let expected =
+        [r#"{kind="a\"b",state="waiting"} 2"#, r#"{kind="a\"b",state="acknowledged"} 1"#, r#"_total{kind="a\"b"} 5"#];
+    assert_eq!(lines("saoms_alerts"), expected);
 }
 
 #[test]

@@ -9,6 +9,7 @@ use serde_json::json;
 use tokio::sync::Mutex;
 
 use super::answer::{Refusal, waiting};
+use crate::alerts::AlertList;
 use crate::counts::ClientCounts;
 use crate::description::FleetDescription;
 use crate::log::LogTail;
@@ -38,6 +39,8 @@ pub struct ControlledFleet {
     pub(super) handle: Handle,
     /// Its log.
     pub(super) log: Arc<LogTail>,
+    /// Its alerts.
+    pub(super) alerts: Arc<AlertList>,
     /// What passes the messages of its topics on.
     pub(super) topics: Arc<TopicWatch>,
     /// Takes a line of events, or an order.
@@ -55,12 +58,12 @@ pub struct ControlledFleet {
 }
 
 impl ControlledFleet {
-    /// A fleet with its remote control, its log and its topics, which are observers of it. `send` takes a line
-    /// of events or an order, or says what is wrong with it; `down` ends the fleet.
+    /// A fleet with its remote control, its log, its topics and its alerts, which are observers of it. `send`
+    /// takes a line of events or an order, or says what is wrong with it; `down` ends the fleet.
     pub fn new(
         description: FleetDescription,
         handle: Handle,
-        (log, topics): (Arc<LogTail>, Arc<TopicWatch>),
+        (log, topics, alerts): (Arc<LogTail>, Arc<TopicWatch>, Arc<AlertList>),
         send: impl Fn(&str) -> Result<SentLine, String> + Send + Sync + 'static,
         down: impl Fn() + Send + Sync + 'static,
     ) -> ControlledFleet {
@@ -70,6 +73,7 @@ impl ControlledFleet {
             handle,
             log,
             topics,
+            alerts,
             send,
             down,
             counts: Arc::default(),
@@ -87,7 +91,7 @@ impl ControlledFleet {
 
     /// A snapshot as JSON.
     pub(super) fn snapshot_text(&self) -> String {
-        json!({"fleet": self.description, "status": self.handle.status()}).to_string()
+        json!({"fleet": self.description, "status": self.handle.status(), "alerts": self.alerts.waiting()}).to_string()
     }
 
     /// The metrics as text.
@@ -95,7 +99,7 @@ impl ControlledFleet {
         let fleet = self.handle.metrics();
         let lost_lines = self.lost_lines.load(Ordering::Relaxed);
         let (description, clients) = (&self.description, &*self.counts);
-        metrics::text(&Measured { description, fleet: &fleet, clients, lost_lines })
+        metrics::text(&Measured { description, fleet: &fleet, clients, lost_lines, alerts: self.alerts.counts() })
     }
 }
 

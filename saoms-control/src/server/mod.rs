@@ -1,6 +1,7 @@
 //! The server in the program of a fleet.
 
 mod access;
+mod alerts;
 mod answer;
 mod connections;
 mod fleet;

@@ -93,7 +93,7 @@ fn paths(body: &str) -> Vec<String> {
 }
 
 /// A name as one word of a line.
-fn word(name: &str) -> Option<String> {
+pub(super) fn word(name: &str) -> Option<String> {
     let word: String =
         name.chars().map(|letter| if letter.is_alphanumeric() { letter } else { '-' }).take(64).collect();
     (!word.is_empty()).then_some(word)

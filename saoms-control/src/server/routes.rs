@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use super::access::with_body;
 use super::answer::{Answer, Refusal, done, json_text, waiting};
 use super::fleet::ControlledFleet;
-use super::{logs, orders, time, topics};
+use super::{alerts, logs, orders, time, topics};
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -76,6 +76,22 @@ const ROUTES: &[Route] = &[
         ],
         body: None,
         serve: || get(why),
+    },
+    Route {
+        method: "get",
+        path: "/v1/alerts",
+        doc: "What needs a person, as a list, or with `follow=true` as server-sent events: the list, then each change.",
+        query: &[("follow", "`true` to get changes as they come")],
+        body: None,
+        serve: || get(alerts::list),
+    },
+    Route {
+        method: "post",
+        path: "/v1/alerts/ack",
+        doc: "Acknowledges alerts; `acknowledged` has their numbers.",
+        query: &[("by", "who does it, for the log")],
+        body: Some("the numbers of the alerts, separated by blanks; without any, all that wait"),
+        serve: || post(alerts::acknowledge),
     },
     Route {
         method: "post",

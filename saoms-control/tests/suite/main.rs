@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use saoms_control::{
-    Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkListener, Places, SentLine,
-    Token, TokenFile, TopicWatch, openapi,
+    AlertList, Client, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkListener, Places,
+    SentLine, Token, TokenFile, TopicWatch, openapi,
 };
 use saoms_core::schedule::{RunningFleet, Settings};
 use saoms_lang::assembly::Assembly;
@@ -39,6 +39,7 @@ fn served() -> Served {
     let socket = folder.path().join("fleet.sock");
     let log: Arc<LogTail> = Arc::default();
     let topics: Arc<TopicWatch> = Arc::default();
+    let alerts: Arc<AlertList> = Arc::default();
     let settings = Settings { limit: Some(Duration::from_secs(60)), ..Settings::simulated(1) };
     let fleet =
         RunningFleet::start(Assembly::default(), settings, vec![Arc::clone(&log) as _, Arc::clone(&topics) as _])
@@ -61,7 +62,7 @@ fn served() -> Served {
     let down = move || {
         counted.fetch_add(1, Ordering::SeqCst);
     };
-    let controlled = ControlledFleet::new(description, fleet.handle(), (log, topics), send, down);
+    let controlled = ControlledFleet::new(description, fleet.handle(), (log, topics, alerts), send, down);
     let token = folder.path().join("fleet.sock.token");
     let network = NetworkListener::bind("127.0.0.1:0", false, TokenFile::create(&token).unwrap()).unwrap();
     let of_network = Client::of_network(&network.url(), Token::read(&token).unwrap()).unwrap();

@@ -29,6 +29,15 @@ pub enum Occurrence {
         /// The line.
         text: String,
     },
+    /// A person is needed, or no longer.
+    Alert {
+        /// Its kind, such as `assistance`.
+        kind: Arc<str>,
+        /// What it is about, where a component may have several of a kind; else empty.
+        subject: Arc<str>,
+        /// What is wrong; `None`: it is over.
+        text: Option<String>,
+    },
     /// A component wrote a line to the classic console.
     Console {
         /// The line.
@@ -85,11 +94,16 @@ pub enum Occurrence {
         /// The component that was called.
         provider: Arc<str>,
     },
-    /// The code of the component has not returned for two periods, and its hardware is stopped.
+    /// The code of the component has not returned for two periods if it has hardware, which is stopped then; else for
+    /// ten periods and five seconds.
     Hangs {
         /// The time since its code was called.
         time: Duration,
+        /// True if it has hardware.
+        stops: bool,
     },
+    /// The code of a component that hung has returned.
+    Returned,
     /// The hardware of the component could not be stopped.
     NotStopped {
         /// Message of the failure.
@@ -113,9 +127,10 @@ impl Occurrence {
     pub fn level(&self) -> Level {
         match self {
             Occurrence::Log { level, .. } | Occurrence::Note { level, .. } => *level,
-            Occurrence::Console { .. } | Occurrence::Replaced { .. } => Level::Info,
-            Occurrence::Started | Occurrence::Left => Level::Debug,
+            Occurrence::Console { .. } | Occurrence::Replaced { .. } | Occurrence::Returned => Level::Info,
+            Occurrence::Started | Occurrence::Left | Occurrence::Alert { text: None, .. } => Level::Debug,
             Occurrence::Failed { restart: None, .. }
+            | Occurrence::Alert { text: Some(_), .. }
             | Occurrence::Overrun { .. }
             | Occurrence::Abandoned
             | Occurrence::NotStopped { .. } => Level::Error,
@@ -133,8 +148,13 @@ impl Occurrence {
 impl fmt::Display for Occurrence {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Occurrence::Log { text, .. } | Occurrence::Console { text } | Occurrence::Note { text, .. } => {
-                formatter.write_str(text)
+            Occurrence::Log { text, .. }
+            | Occurrence::Console { text }
+            | Occurrence::Note { text, .. }
+            | Occurrence::Alert { text: Some(text), .. } => formatter.write_str(text),
+            Occurrence::Alert { kind, subject, text: None } => {
+                let of = if subject.is_empty() { "" } else { " of " };
+                write!(formatter, "the alert `{kind}`{of}{subject} is over")
             }
             Occurrence::Started => formatter.write_str("started"),
             Occurrence::Left => formatter.write_str("has shut down"),
@@ -168,11 +188,12 @@ impl fmt::Display for Occurrence {
             Occurrence::Overrun { missed } => {
                 write!(formatter, "stopped, because executions could not start in time: {missed} would be left out")
             }
-            Occurrence::Hangs { time } => write!(
-                formatter,
-                "has not returned for {}: its hardware is stopped",
-                saoms_api::host::format_duration(Duration::from_millis(time.as_millis() as u64))
-            ),
+            Occurrence::Hangs { time, stops } => {
+                let time = saoms_api::host::format_duration(Duration::from_millis(time.as_millis() as u64));
+                let then = if *stops { ": its hardware is stopped" } else { "" };
+                write!(formatter, "has not returned for {time}{then}")
+            }
+            Occurrence::Returned => formatter.write_str("has returned"),
             Occurrence::NotStopped { message } => write!(formatter, "its hardware may still move: {message}"),
             Occurrence::Standstill(standstill) => standstill.fmt(formatter),
             Occurrence::Abandoned => formatter.write_str("did not end in time and is abandoned"),

@@ -40,7 +40,9 @@ impl Notification {
     fn size(&self) -> usize {
         match self {
             Notification::Event(RunEvent {
-                what: Occurrence::Log { text, .. } | Occurrence::Console { text }, ..
+                what:
+                    Occurrence::Log { text, .. } | Occurrence::Console { text } | Occurrence::Alert { text: Some(text), .. },
+                ..
             }) => text.len(),
             _ => 0,
         }

@@ -232,12 +232,16 @@ impl RunningFleet {
     }
 }
 
+/// The kind of alerts about a file that cannot be written.
+const FILE: &str = "file";
+
 /// Starts the thread that delivers records of the journal, if an observer wants them.
 fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDelivery>>> {
     let Some(records) = shared.lock().records.clone() else { return Ok(None) };
     let shared = Arc::clone(shared);
-    let deliver =
-        move || deliver_records(&records, &shared.observers, |failure| shared.note(Level::Error, failure.to_string()));
+    let deliver = move || {
+        deliver_records(&records, &shared.observers, |failure| shared.alert(FILE, "journal", failure.to_string()))
+    };
     thread::Builder::new().name("saoms-journal".to_owned()).spawn(deliver).map(Some)
 }
 

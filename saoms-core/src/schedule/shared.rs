@@ -194,6 +194,13 @@ impl Shared {
         self.events.put(RunEvent { time, component: None, what: Occurrence::Note { level, text } });
     }
 
+    /// Queues an alert of the fleet as a whole.
+    pub(super) fn alert(&self, kind: &str, subject: &str, text: String) {
+        let time = Time::from_nanos(self.clock.now());
+        let what = Occurrence::Alert { kind: kind.into(), subject: subject.into(), text: Some(text) };
+        self.events.put(RunEvent { time, component: None, what });
+    }
+
     pub(super) fn progress(&self) -> RunProgress {
         let time = Time::from_nanos(self.clock.now());
         let periods = self.executions.load(Ordering::Relaxed);

@@ -51,10 +51,14 @@ pub(crate) fn release(arguments: &ReleaseArguments) -> Exit {
     give(&arguments.fleet, "release", &arguments.components, "released")
 }
 
-fn give(fleet: &RunningFleetArguments, order: &str, components: &[String], done: &str) -> Exit {
-    // The journal says who it was; whoever can order that may also name somebody else.
+/// The query that says who it is; whoever can order something may also name somebody else.
+pub(super) fn by() -> String {
     let by = std::env::var("USER").or_else(|_| std::env::var("LOGNAME")).unwrap_or_default();
-    let query = if by.is_empty() { String::new() } else { format!("?by={}", escape(&by)) };
+    if by.is_empty() { String::new() } else { format!("?by={}", escape(&by)) }
+}
+
+fn give(fleet: &RunningFleetArguments, order: &str, components: &[String], done: &str) -> Exit {
+    let query = by();
     let answer = match fleet.ask("POST", &format!("/v1/{order}{query}"), &components.join(" ")) {
         Ok(answer) => answer,
         Err(exit) => return exit,

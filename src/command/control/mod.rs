@@ -1,5 +1,6 @@
 //! Commands that reach a running fleet: each is a client of the server in the program that runs it.
 
+mod alerts;
 mod emergency;
 mod fleet;
 mod logs;
@@ -11,6 +12,7 @@ mod time;
 mod top;
 mod topic;
 
+pub(super) use alerts::{AlertsArguments, alerts};
 pub(super) use emergency::{EmergencyStopArguments, ReleaseArguments, estop, release};
 pub(super) use fleet::{RunningFleetArguments, escape};
 pub(super) use logs::{LogsArguments, logs};

@@ -97,7 +97,9 @@ fn shown(answer: &Value) -> String {
             said(component),
         ]);
     }
-    format!("{}\n\n{table}", headline(answer))
+    let alerts = answer["alerts"].as_array().into_iter().flatten();
+    let alerts: String = alerts.map(|alert| format!("\n{}", super::alerts::line(alert))).collect();
+    format!("{}{alerts}\n\n{table}", headline(answer))
 }
 
 /// What a component says of itself.

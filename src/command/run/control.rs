@@ -10,8 +10,8 @@ use clap::Args;
 use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_control::{
-    ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkError, NetworkListener, Places,
-    SentLine, TokenFile, TopicWatch, default_socket, token_beside,
+    AlertList, ControlServer, ControlledFleet, FleetDescription, Listener, LogTail, NetworkError, NetworkListener,
+    Places, SentLine, TokenFile, TopicWatch, default_socket, token_beside,
 };
 use saoms_core::observe::Observer;
 use saoms_core::schedule::Handle;
@@ -95,6 +95,7 @@ impl Control {
         signals: &Signalled,
         numbers: &Numbers,
         lost_lines: &Arc<AtomicU64>,
+        alerts: &Arc<AlertList>,
     ) -> Option<ControlServer> {
         let Control { places, description, log, topics } = self;
         let place = description.url.clone().zip(description.token_file.clone());
@@ -110,7 +111,10 @@ impl Control {
             })
         };
         let (fleet, ending) = (handle.clone(), signals.ending());
-        let fleet = ControlledFleet::new(description, handle.clone(), (log, topics), send, move || ending.down(&fleet));
+        let fleet =
+            ControlledFleet::new(description, handle.clone(), (log, topics, Arc::clone(alerts)), send, move || {
+                ending.down(&fleet)
+            });
         match ControlServer::start(places, fleet.with_lost_lines(Arc::clone(lost_lines))) {
             Ok(server) => {
                 if let Some((url, file)) = place {

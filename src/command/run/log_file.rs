@@ -5,11 +5,16 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use saoms_control::AlertList;
 use saoms_core::observe::{Interest, Observer, Occurrence, RotatingFile, RunEvent};
 use saoms_core::report::RunReport;
 
 use super::log_lines::LogStyle;
 use crate::output::{counted, displayed, eprint};
+
+/// Kind and subject of the alert about the file.
+const FILE: &str = "file";
+const LOG: &str = "log";
 
 /// The file of the log. A line that cannot be written is counted, and the next one tried again.
 pub(super) struct LogFile {
@@ -19,11 +24,28 @@ pub(super) struct LogFile {
     lost: Arc<AtomicU64>,
     /// True if it was told that the file cannot be moved aside.
     stays: AtomicBool,
+    /// True if the last line could not be written.
+    fails: AtomicBool,
+    /// What is told of that.
+    alerts: Arc<AlertList>,
 }
 
 impl LogFile {
     pub(super) fn new(path: PathBuf, file: RotatingFile, style: LogStyle) -> LogFile {
-        LogFile { path, style, file: Mutex::new(file), lost: Arc::default(), stays: AtomicBool::new(false) }
+        LogFile {
+            path,
+            style,
+            file: Mutex::new(file),
+            lost: Arc::default(),
+            stays: AtomicBool::new(false),
+            fails: AtomicBool::new(false),
+            alerts: Arc::default(),
+        }
+    }
+
+    /// The same observer, which raises an alert while lines cannot be written.
+    pub(super) fn with_alerts(self, alerts: &Arc<AlertList>) -> LogFile {
+        LogFile { alerts: Arc::clone(alerts), ..self }
     }
 
     /// The number of lines that could not be written.
@@ -39,10 +61,21 @@ impl LogFile {
         {
             self.tell("moved aside", &error, "it grows");
         }
-        if let Err(error) = file.write(line.as_bytes())
-            && self.lost.fetch_add(1, Ordering::Relaxed) == 0
-        {
-            self.tell("written", &error, "lines are lost, and counted");
+        match file.write(line.as_bytes()) {
+            Ok(()) => {
+                if self.fails.swap(false, Ordering::Relaxed) {
+                    self.alerts.over(FILE, LOG);
+                }
+            }
+            Err(error) => {
+                if self.lost.fetch_add(1, Ordering::Relaxed) == 0 {
+                    self.tell("written", &error, "lines are lost, and counted");
+                }
+                if !self.fails.swap(true, Ordering::Relaxed) {
+                    let path = self.path.display();
+                    self.alerts.raise(FILE, LOG, format!("the log cannot be written at `{path}`: {error}"));
+                }
+            }
         }
     }
 

@@ -23,6 +23,7 @@ use clap::{Args, ValueEnum};
 use saoms_api::Level;
 use saoms_api::extension::{EventLanguage, PictureRegistration};
 use saoms_api::host::one_line;
+use saoms_control::AlertList;
 use saoms_core::observe::Observer;
 use saoms_core::report::RunStatus;
 use saoms_core::schedule::{ClockKind, Handle, RunningFleet, Settings, Speed};
@@ -215,6 +216,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let style = LogStyle::of(&arguments.log, &assembly);
     let Some(files_written) = RunFiles::of(arguments, read, style) else { return Exit::WrongInput };
     let RunFiles { report, picture, journal, log } = files_written;
+    let alerts: Arc<AlertList> = Arc::default();
+    let log = log.map(|log| log.with_alerts(&alerts));
     let lost_lines = log.as_ref().map(LogFile::lost).unwrap_or_default();
     // With a file, somebody wants the whole run, seen or not.
     let is_standard = |one: &Option<Output>| one.as_ref().is_none_or(Output::is_standard);
@@ -229,6 +232,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     observers.extend(journal.map(|journal| Arc::new(journal) as Arc<dyn Observer>));
     observers.extend(report.clone().map(|report| report as Arc<dyn Observer>));
     observers.extend(picture.clone().map(|picture| picture as Arc<dyn Observer>));
+    observers.push(Arc::clone(&alerts) as Arc<dyn Observer>);
     let mut notes = Vec::new();
     let control = match Control::of(arguments, &mut notes) {
         Ok(control) => control,
@@ -242,7 +246,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         // A run that has not begun does not end, and only one in virtual time has a speed.
         let _ = arguments.paused.then(|| handle.pause());
         let _ = arguments.speed.map(|speed| handle.set_speed(speed));
-        server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines));
+        server = control.and_then(|control| control.serve(handle, &signals, &numbers, &lost_lines, &alerts));
     };
     let fleet = match RunningFleet::start_with(assembly, settings(arguments), observers, before) {
         Ok(fleet) => fleet,

@@ -181,6 +181,13 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     if (strcmp(actor->does, "speak") == 0) {
         saoms_log(host, SAOMS_INFO, "speaks");
     }
+    if (strcmp(actor->does, "alert") == 0) {
+        SaomsBytes over = {NULL, 0}, none = {NULL, 1};
+        host->functions->alert(host->state, saoms_text("jam"), saoms_text("left"), saoms_text("the left belt jams"));
+        host->functions->alert(host->state, saoms_text("jam"), saoms_text("right"), saoms_text("the right belt jams"));
+        host->functions->alert(host->state, saoms_text("jam"), saoms_text("right"), over);
+        host->functions->alert(host->state, none, saoms_text(""), saoms_text("of no kind"));
+    }
     if (strcmp(actor->does, "null views") == 0) {
         SaomsRecordView record = {saoms_text("id"), saoms_text("text"), saoms_text("a,"), NULL, 1};
         host->functions->report(host->state, saoms_text("c.null"), NULL);

@@ -1,5 +1,6 @@
 //! Commands that reach a running fleet, against real processes.
 
+mod alerts;
 mod emergency;
 mod exposition;
 mod hang;

@@ -129,6 +129,9 @@ impl Component for Busy {
         );
         let raised = (context.raise("fire size=2 to Hall\u{fc}"), context.raise("flood"));
         context.info(format_args!("{raised:?}"));
+        context.alert("assistance", 7, "needs \u{e9}");
+        context.alert("empty", "", "");
+        context.alert_over("assistance", 7);
         context.count("a.c", -3);
         context.vote(Work::GivenUp);
         context.vote(Work::Done);

@@ -197,6 +197,11 @@ impl Host for FakeHost {
         self.lines.push(format!("{level:?}: {line}"));
     }
 
+    fn alert(&mut self, kind: &str, subject: &str, line: Option<fmt::Arguments<'_>>) {
+        let line = line.map(|line| line.to_string());
+        self.lines.push(format!("alert {kind} `{subject}`: {line:?}"));
+    }
+
     fn console(&mut self, line: fmt::Arguments<'_>) {
         self.lines.push(line.to_string());
     }

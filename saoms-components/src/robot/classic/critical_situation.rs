@@ -1,7 +1,7 @@
 use std::cmp::Reverse;
 
 use saoms_api::{
-    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Saved, Subscription, info, record, warn,
+    Cause, Context, Failure, Loop, LoopClass, Publisher, Record, Recordable, Saved, Subscription, info, record,
 };
 
 use crate::messages::{
@@ -9,7 +9,7 @@ use crate::messages::{
     LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList, RobotState,
 };
 use crate::robot::lasting::lasting;
-use crate::robot::{Help, RobotKnowledge};
+use crate::robot::{ASSISTANCE, Help, RobotKnowledge};
 
 /// Asks for help when the robot cannot go on, and heals other robots (listings 6.7 to 6.10).
 ///
@@ -210,7 +210,8 @@ impl ClassicCriticalSituation {
     ) -> Result<(), Failure> {
         knowledge.retire(context)?;
         context.send(&self.situations, knowledge.situation(kind))?;
-        warn!(context, "breaks down at {}: asks for help, and for human assistance", knowledge.block);
+        let block = knowledge.block;
+        context.alert(ASSISTANCE, "", format_args!("breaks down at {block}: asks for help, and for human assistance"));
         // The luggage that the robot was interested in waits again, for robots that dropped it because of that.
         if let Some(request) = knowledge.lists.requests.settle() {
             let job = request.job;

@@ -1,4 +1,4 @@
-use saoms_api::{Context, Failure, Level, Loop, LoopClass, Record, Recordable, Saved, info, record};
+use saoms_api::{Context, Failure, Loop, LoopClass, Record, Recordable, Saved, info, record};
 
 use crate::grid::{Block, UNREACHABLE};
 use crate::robot::lasting::lasting;
@@ -243,7 +243,7 @@ impl Loop for SafeBattery {
                 knowledge.trouble = Some(Trouble::Battery);
                 context.count("stranded", 1);
                 let block = knowledge.block;
-                context.log(Level::Error, format_args!("is stranded at {block}: its battery is empty"));
+                context.alert("stranded", "", format_args!("is stranded at {block}: its battery is empty"));
             }
             SafeBatteryDecision::Leave => {
                 knowledge.may_go();

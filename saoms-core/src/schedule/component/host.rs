@@ -408,6 +408,13 @@ impl Host for ComponentHost<'_> {
         }
     }
 
+    fn alert(&mut self, kind: &str, subject: &str, line: Option<fmt::Arguments<'_>>) {
+        if self.part.spent.has_line() {
+            let (kind, subject, text) = (kind.into(), subject.into(), line.map(|line| line.to_string()));
+            self.emit(Occurrence::Alert { kind, subject, text });
+        }
+    }
+
     fn console(&mut self, line: fmt::Arguments<'_>) {
         if self.part.spent.has_line() && self.shared.events.wants_console() {
             self.emit(Occurrence::Console { text: line.to_string() });

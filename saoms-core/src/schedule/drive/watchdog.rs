@@ -64,7 +64,9 @@ fn take_over(shared: &Arc<Shared>, mut engine: std::sync::MutexGuard<'_, Engine>
         let now = shared.clock.now();
         engine.emit(now, index, Occurrence::Slow { what: job.name(), budget: shared.settings.budget });
     }
+    let stops = Arc::clone(&engine.stops);
     shared.release(engine);
+    stops.watch();
     if shared.settings.realtime {
         // Both only lower a priority, which is always allowed.
         let _ = sys::set_normal(slow);

@@ -73,7 +73,9 @@ pub(super) fn hand_over<'a>(shared: &'a Arc<Shared>, mut engine: MutexGuard<'a, 
         return engine;
     }
     engine.roles.workers += 1;
+    let stops = Arc::clone(&engine.stops);
     shared.release(engine);
+    stops.watch();
     let spawned = spawn_thread(shared, "saoms-worker", work);
     let mut engine = shared.lock();
     if let Err(error) = spawned {

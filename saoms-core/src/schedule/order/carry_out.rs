@@ -143,8 +143,7 @@ impl Engine {
             self.stop_at_once(&new);
         }
         self.tell_stopped(&components, is_stopped, cause, when);
-        let what = if is_stopped { "emergency stop" } else { "release" };
-        self.log_stopped(&components, what, by.as_deref(), when);
+        self.log_stopped(&components, is_stopped, by.as_deref(), when);
         Ok(())
     }
 

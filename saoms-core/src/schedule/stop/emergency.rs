@@ -13,11 +13,14 @@ use saoms_lang::assembly::ComponentSpec;
 use crate::observe::Occurrence;
 use crate::schedule::change;
 use crate::schedule::engine::Engine;
-use crate::schedule::engine::slot::{NEVER, SlotState};
+use crate::schedule::engine::slot::{NEVER, Slot, SlotState};
 use crate::schedule::members::UnknownComponent;
 
 /// The property by which a component hears that it is stopped.
 pub(crate) const STOPPED: &str = "stopped";
+
+/// The kind of the alert about an emergency stop.
+const EMERGENCY_STOP: &str = "emergency_stop";
 
 /// True if components of this specification hear of an emergency stop by a live property `stopped`, and go on;
 /// executions of others are left out.
@@ -122,14 +125,29 @@ impl Engine {
         self.enqueue(index, when);
     }
 
-    /// Logs an emergency stop or a release.
-    pub(in crate::schedule) fn log_stopped(&mut self, components: &[u32], what: &str, by: Option<&str>, now: u64) {
+    /// Logs an emergency stop or a release. A stop is an alert until nothing is stopped any more.
+    pub(in crate::schedule) fn log_stopped(
+        &mut self,
+        components: &[u32],
+        is_stopped: bool,
+        by: Option<&str>,
+        now: u64,
+    ) {
+        let what = if is_stopped { "emergency stop" } else { "release" };
         let names: Vec<&str> = components.iter().map(|index| &*self.slots[*index as usize].name).collect();
         let by = by.map(|name| format!(" by {name}")).unwrap_or_default();
         let whom = match names[..] {
             [] => "no component moves anything".to_owned(),
             _ => names.join(", "),
         };
-        self.note(now, Occurrence::Note { level: Level::Warning, text: format!("{what}{by}: {whom}") });
+        let text = format!("{what}{by}: {whom}");
+        let (kind, subject) = (EMERGENCY_STOP.into(), "".into());
+        if is_stopped && !components.is_empty() {
+            return self.note(now, Occurrence::Alert { kind, subject, text: Some(text) });
+        }
+        self.note(now, Occurrence::Note { level: Level::Warning, text });
+        if !components.is_empty() && !self.slots.iter().any(Slot::is_stopped) {
+            self.note(now, Occurrence::Alert { kind, subject, text: None });
+        }
     }
 }

@@ -7,7 +7,7 @@ use saoms_api::Level;
 
 use crate::observe::Occurrence;
 use crate::schedule::engine::Engine;
-use crate::schedule::engine::slot::NEVER;
+use crate::schedule::engine::slot::{NEVER, SlotState};
 use crate::schedule::settings::ClockKind;
 use crate::schedule::shared::Shared;
 
@@ -17,8 +17,10 @@ const LOOK: (Duration, Duration) = (Duration::from_millis(5), Duration::from_mil
 /// period.
 const LEAST: u64 = 50_000_000;
 const WITHOUT_PERIOD: u64 = 1_000_000_000;
+/// Least time without a return after which a component without hardware hangs.
+const WITHOUT_HARDWARE: u64 = 5_000_000_000;
 
-/// Begins to watch a fleet in real time for code that does not return although hardware moves. In virtual time the
+/// Begins to watch a fleet in real time for code that does not return: hardware may move meanwhile. In virtual time the
 /// watchdog of virtual time does so.
 pub(super) fn watch(fleet: &Arc<Shared>) {
     if fleet.settings.clock == ClockKind::Virtual {
@@ -36,7 +38,8 @@ pub(super) fn watch(fleet: &Arc<Shared>) {
     }
 }
 
-/// Stops the hardware of components that hang; the time until the next look, or `None` after the end of the run.
+/// Tells which components hang, and stops their hardware; the time until the next look, or `None` after the end of the
+/// run.
 fn look(fleet: &Weak<Shared>) -> Option<Duration> {
     let fleet = fleet.upgrade()?;
     if fleet.ended.load(Ordering::Acquire) {
@@ -45,34 +48,45 @@ fn look(fleet: &Weak<Shared>) -> Option<Duration> {
     let now = fleet.clock.now_without_pause();
     let mut engine = fleet.lock();
     let mut shortest = NEVER;
-    for place in 0..engine.with_hardware.len() {
-        let index = engine.with_hardware[place];
-        let allowed = engine.allowed_time(index);
-        shortest = shortest.min(allowed);
-        engine.stop_if_hanging(index, allowed, now);
+    for index in 0..engine.slots.len() as u32 {
+        let stops = engine.with_hardware.contains(&index);
+        let allowed = engine.allowed_time(index, stops);
+        shortest = if stops { shortest.min(allowed) } else { shortest };
+        engine.look_at(index, allowed, stops, now);
     }
     fleet.release(engine);
     Some(Duration::from_nanos(shortest / 4).clamp(LOOK.0, LOOK.1))
 }
 
 impl Engine {
-    /// Time within which the code of a component has to return, or its hardware is stopped.
-    fn allowed_time(&self, index: u32) -> u64 {
+    /// Time within which the code of a component has to return.
+    fn allowed_time(&self, index: u32, stops: bool) -> u64 {
         match self.slots[index as usize].policy.period {
+            period if !stops => period.saturating_mul(10).max(WITHOUT_HARDWARE),
             0 => WITHOUT_PERIOD,
             period => period.saturating_mul(2).max(LEAST),
         }
     }
 
-    fn stop_if_hanging(&mut self, index: u32, allowed: u64, now: u64) {
+    /// Tells that a component hangs, or does no longer, and stops its hardware when it does.
+    fn look_at(&mut self, index: u32, allowed: u64, stops: bool, now: u64) {
         let slot = &mut self.slots[index as usize];
-        let since = slot.out_since;
-        if slot.body.is_some() || now.saturating_sub(since) < allowed || slot.hangs_since == since {
+        let (since, hung) = (slot.out_since, slot.hangs_since);
+        let is_out =
+            slot.body.is_none() && matches!(slot.state, SlotState::Starting | SlotState::Active | SlotState::Leaving);
+        if hung != NEVER && !(is_out && hung == since) {
+            slot.hangs_since = NEVER;
+            self.emit(now, index, Occurrence::Returned);
+            return;
+        }
+        if !is_out || now.saturating_sub(since) < allowed || hung == since {
             return;
         }
         slot.hangs_since = since;
-        self.emit(now, index, Occurrence::Hangs { time: Duration::from_nanos(now - since) });
-        self.stops.request_of(index);
-        self.stop_its_hardware(index);
+        self.emit(now, index, Occurrence::Hangs { time: Duration::from_nanos(now - since), stops });
+        if stops {
+            self.stops.request_of(index);
+            self.stop_its_hardware(index);
+        }
     }
 }

@@ -31,6 +31,8 @@ pub(crate) struct Stops {
     threads: StopThreads,
     /// True once there was one.
     any: AtomicBool,
+    /// True once the fleet is watched for code that does not return.
+    is_watched: AtomicBool,
     /// The fleet, which is told what could not be stopped.
     fleet: OnceLock<Weak<Shared>>,
 }
@@ -90,11 +92,18 @@ impl Stops {
         if !self.any.swap(true, Ordering::Relaxed) {
             lock(&ALL).retain(|known| known.strong_count() > 0);
             lock(&ALL).push(Arc::downgrade(self));
-            if let Some(fleet) = self.fleet.get().and_then(Weak::upgrade) {
-                hang::watch(&fleet);
-            }
+            self.watch();
         }
         registered
+    }
+
+    /// Watches the fleet for code that does not return, from the first time on that there may be such code.
+    pub(crate) fn watch(&self) {
+        if !self.is_watched.swap(true, Ordering::Relaxed)
+            && let Some(fleet) = self.fleet.get().and_then(Weak::upgrade)
+        {
+            hang::watch(&fleet);
+        }
     }
 
     /// The functions of a component.

@@ -3,7 +3,7 @@
 mod records;
 mod substitute;
 
-use saoms_api::{Cause, Context, Failure, Level, Loop, LoopClass, Publisher, Saved, Subscription, info};
+use saoms_api::{Cause, Context, Failure, Loop, LoopClass, Publisher, Saved, Subscription, info};
 
 use crate::grid::Block;
 use crate::messages::{
@@ -11,7 +11,7 @@ use crate::messages::{
     LuggageStage, ROBOT_STATE, RobotState,
 };
 use crate::robot::lasting::lasting;
-use crate::robot::{Help, Rival, RobotKnowledge, Trouble};
+use crate::robot::{ASSISTANCE, Help, Rival, RobotKnowledge, Trouble};
 
 use super::energy::Feasibility;
 use super::patience::Idle;
@@ -373,7 +373,7 @@ impl SafeCriticalSituation {
         let situation = knowledge.situation(kind);
         context.count("assistance", 1);
         let (block, what, doing) = (knowledge.block, trouble.words(), doing(kind));
-        context.log(Level::Error, format_args!("{what} at {block} {doing}: needs assistance"));
+        context.alert(ASSISTANCE, "", format_args!("{what} at {block} {doing}: needs assistance"));
         context.send(&self.situations, situation)?;
         if !knowledge.lists.anybody_awake()
             && let Some(sleeper) = knowledge.best_sleeper(&[])

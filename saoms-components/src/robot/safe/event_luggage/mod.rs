@@ -7,7 +7,7 @@ use saoms_api::{Cause, Context, Failure, Field, Level, Loop, LoopClass, Publishe
 use crate::grid::{Block, UNREACHABLE};
 use crate::messages::{EVENT_LUGGAGE, EventLuggage, LuggageStage};
 use crate::robot::lasting::lasting;
-use crate::robot::{Job, JobEnd, Request, RobotKnowledge};
+use crate::robot::{ASSISTANCE, Job, JobEnd, Request, RobotKnowledge};
 
 use super::energy::Feasibility;
 use super::patience::{Attempt, Idle};
@@ -197,8 +197,9 @@ impl Loop for SafeEventLuggage {
                 context.count("assistance", 1);
                 context.vote(Work::GivenUp);
                 let (Job { luggage, to, .. }, why) = (job, why.words());
-                context.log(
-                    Level::Error,
+                context.alert(
+                    ASSISTANCE,
+                    luggage,
                     format_args!("cannot carry luggage {luggage} to {to} any more: {why}; needs assistance"),
                 );
                 (job, LuggageStage::GivenUp)
