@@ -14,6 +14,7 @@ mod component;
 mod drive;
 mod engine;
 mod fleet;
+mod handle;
 mod hold;
 mod inject;
 mod members;
@@ -31,7 +32,8 @@ mod topics;
 mod why;
 
 pub use change::{ChangeError, Changed, SetError, StartError, Takeover};
-pub use fleet::{Handle, Hold, RunningFleet};
+pub use fleet::RunningFleet;
+pub use handle::{Handle, Hold};
 pub use hold::{HoldError, Speed};
 pub use inject::{InjectError, InjectedContent, Injection, is_from_outside};
 pub use members::UnknownComponent;
