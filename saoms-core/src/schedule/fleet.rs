@@ -1,3 +1,12 @@
+use std::fs::File;
+use std::io;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+use saoms_api::host::contain;
+use saoms_api::{Level, Time};
+use saoms_lang::assembly::Assembly;
+
 use super::change::{self, StartError};
 use super::drive;
 use super::engine::RunPhase;
@@ -10,13 +19,6 @@ use super::shared::Shared;
 use crate::journal::ComponentName;
 use crate::observe::{Beginning, Observer, RecordDelivery, deliver_records};
 use crate::report::RunReport;
-use saoms_api::host::contain;
-use saoms_api::{Level, Time};
-use saoms_lang::assembly::Assembly;
-use std::fs::File;
-use std::io;
-use std::sync::Arc;
-use std::thread::{self, JoinHandle};
 
 /// A fleet that runs.
 ///
