@@ -33,7 +33,7 @@ impl Observer for Listener {
     fn event(&self, event: &RunEvent) {
         let (log, text) = match &event.what {
             Occurrence::Console { text } => (false, text),
-            Occurrence::Log { text, .. } => (true, text),
+            Occurrence::Log { text, .. } | Occurrence::Alert { text: Some(text), .. } => (true, text),
             _ => return,
         };
         let component = event.component.clone().unwrap_or_default();
