@@ -4,6 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use saoms_api::Context;
+use saoms_api::host::calendar_date;
 
 /// A list as Java prints it: `[a, b]`.
 pub struct JavaList<I>(pub I);
@@ -47,7 +48,7 @@ impl Timestamp {
 impl fmt::Display for Timestamp {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (seconds, millis) = (self.0.as_secs(), self.0.subsec_millis());
-        let (year, month, day) = date(seconds / 86_400);
+        let (year, month, day) = calendar_date(seconds / 86_400);
         let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
         write!(formatter, "{year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}.")?;
         match millis {
@@ -57,20 +58,6 @@ impl fmt::Display for Timestamp {
             thousandths => write!(formatter, "{thousandths:03}"),
         }
     }
-}
-
-/// Year, month and day of a number of days since 1970-01-01, by Howard Hinnant's algorithm `civil_from_days`
-/// ("chrono-Compatible Low-Level Date Algorithms", 2013). The number is not negative.
-const fn date(days: u64) -> (u64, u64, u64) {
-    let day = days + 719_468;
-    let (era, day_of_era) = (day / 146_097, day % 146_097);
-    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted_month = (5 * day_of_year + 2) / 153;
-    let day_of_month = day_of_year - (153 * shifted_month + 2) / 5 + 1;
-    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
-    let year = year_of_era + era * 400 + if month <= 2 { 1 } else { 0 };
-    (year, month, day_of_month)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The contract with hosts of components: the scheduler, the checker, the testkit, the code that the macros generate.
 //! Not for authors of components.
 
+mod calendar;
 pub mod cdr;
 pub mod contain;
 pub mod declaration;
@@ -27,8 +28,9 @@ pub use crate::service::{Interface, Invocation, Operation, Reference, ReferenceF
 pub use crate::time::{format_duration, parse_duration};
 pub use crate::topic::{TopicDeclaration, TopicKind};
 
-pub use saoms_derive::WriteProperties;
 /// The text of a property, or its name: a short or shared one is copied without a copy of its letters.
+pub use calendar::calendar_date;
+pub use saoms_derive::WriteProperties;
 pub use smol_str::SmolStr;
 pub use visible::{Visible, is_invisible, one_line, shorten};
 pub use xml::escaped;

@@ -258,6 +258,10 @@ impl Engine {
                 return Some(index);
             }
             if let Some((_, pending)) = self.orders.waiting.remove(place) {
+                if is_over {
+                    // It was withdrawn, and whoever gave it knows that.
+                    continue;
+                }
                 if let (Some(_), Order::Set { property, value, .. }) = (pending.part_of, &pending.order) {
                     self.set_at_rest(index, property, value);
                     continue;

@@ -498,13 +498,3 @@ fn a_file_that_ends_too_early_is_closed_with_all_end_tags() {
     assert_eq!(found.matches("error").count(), 1, "{found}");
     assert!(found.contains("add `</component></composite>` at the end"), "{found}");
 }
-
-#[test]
-fn a_misspelt_property_is_told_although_its_component_has_no_end_tag() {
-    let open =
-        r#"<component name="A"><implementation.java class="example.Robot001"/><property name="spede">2</property>"#;
-    let other = r#"<component name="B"><implementation.java class="example.Robot001"/></component>"#;
-    let found = faults_of(&[&fleet(&format!("{open}\n{other}"))], &[]);
-    assert!(found.contains("error S0103") && found.contains("has no property `spede`"), "{found}");
-    assert!(found.contains("replace `spede` with `speed`"), "{found}");
-}

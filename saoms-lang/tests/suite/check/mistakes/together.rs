@@ -449,3 +449,13 @@ fn a_damaged_component_hides_unknown_ones_only_where_its_name_is_unreadable() {
     "#]]
     .assert_eq(&with_tag("<component name>"));
 }
+
+#[test]
+fn a_misspelt_property_is_told_although_its_component_has_no_end_tag() {
+    let open =
+        r#"<component name="A"><implementation.java class="example.Robot001"/><property name="spede">2</property>"#;
+    let other = r#"<component name="B"><implementation.java class="example.Robot001"/></component>"#;
+    let found = faults_of(&[&fleet(&format!("{open}\n{other}"))], &[]);
+    assert!(found.contains("error S0103") && found.contains("has no property `spede`"), "{found}");
+    assert!(found.contains("replace `spede` with `speed`"), "{found}");
+}
