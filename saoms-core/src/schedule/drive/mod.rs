@@ -4,6 +4,8 @@
 pub(super) mod pulse;
 mod real;
 mod supervise;
+#[cfg(test)]
+mod tests;
 mod virtual_time;
 mod watchdog;
 mod workers;

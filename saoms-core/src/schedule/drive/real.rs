@@ -25,6 +25,8 @@ pub(super) fn run(shared: &Arc<Shared>, role: u64) {
     }
     engine.roles.thread = sys::thread_id();
     let mut now = shared.clock.now();
+    // A fleet may have started before this thread runs, so that it does not sleep first.
+    shared.pulse.awake_at(shared.clock.on_machine(now));
     let mut load = Load { awake_since: now, overloaded: false, warned: false };
     let mut woke = true;
     loop {
