@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicI32, Ordering};
 
 use saoms_api::host::present::{Function, Owner, here, is_of_program, libraries, library_at};
 
+use super::thread_end;
+
 /// The process of the program: in another one, that code of a library forked, nobody is to be told.
 static PROCESS: AtomicI32 = AtomicI32::new(0);
 
@@ -32,7 +34,8 @@ pub(super) enum Blame {
 
 /// Whose code the present thread runs, the top of whose stack is there. A signal handler may ask.
 pub(super) fn blame(top: usize) -> Blame {
-    match here() {
+    let destructor = || thread_end::present().map(|owner| (owner, Function::ThreadEnd));
+    match here().or_else(destructor) {
         Some((owner, function)) => Blame::Call(owner, function),
         // On a thread of the program addresses may be left from a call that has returned.
         None if is_of_program() => Blame::Nobody,
@@ -45,7 +48,7 @@ const LOOKED_AT: usize = 1 << 14;
 const LOOK: usize = 512;
 
 /// The library of the first address on a stack, from this one on, that leads into code of one.
-fn library_above(top: usize) -> Option<&'static str> {
+pub(super) fn library_above(top: usize) -> Option<&'static str> {
     let start = top & !(LOOK - 1);
     (start..start.saturating_add(LOOKED_AT)).step_by(LOOK).find_map(|from| {
         let mut words = [0_usize; LOOK / size_of::<usize>()];

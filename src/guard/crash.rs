@@ -5,6 +5,8 @@ use std::mem::MaybeUninit;
 use std::ptr;
 use std::sync::OnceLock;
 
+use saoms_api::host::present::library_at;
+
 use super::blame::{Blame, blame, is_program, write};
 use super::hardware;
 use super::signals::{UseAs, keep_for};
@@ -60,10 +62,11 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
     unsafe {
         let is_of_code = (*info).si_code > 0;
         let mut action: libc::sigaction = MaybeUninit::zeroed().assume_init();
-        match blame(stack_pointer(context).unwrap_or_default()) {
+        let top = registers(context).map(|(top, _)| top);
+        match blame(top.unwrap_or_default()) {
             Blame::Call(owner, function) => {
                 if signal == libc::SIGSEGV && is_of_code {
-                    let distance = stack_pointer(context).map(|top| top.abs_diff((*info).si_addr() as usize));
+                    let distance = top.map(|top| top.abs_diff((*info).si_addr() as usize));
                     meaning = if distance.is_some_and(|far| far < NEAR) { OVERFLOW } else { meaning };
                 }
                 write(&["error: ", &owner.text, " crashed ", function.place(), ": ", meaning, "\n"]);
@@ -73,7 +76,13 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
                 write(&["error: a thread of library `", library, "` crashed: ", meaning, "\n"]);
                 action.sa_sigaction = libc::SIG_DFL;
             }
-            Blame::Nobody => action = BEFORE[place].get().copied().unwrap_or(action),
+            Blame::Nobody => match registers(context).and_then(|(_, code)| library_at(code)) {
+                Some(library) => {
+                    write(&["error: code of library `", library, "` crashed: ", meaning, "\n"]);
+                    action.sa_sigaction = libc::SIG_DFL;
+                }
+                None => action = BEFORE[place].get().copied().unwrap_or(action),
+            },
         }
         if is_program() {
             hardware::stop();
@@ -86,18 +95,21 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
     }
 }
 
-/// The top of the stack at the time of the signal.
+/// The top of the stack at the time of the signal, and the address of the code that ran.
 ///
 /// # Safety
 /// It is the context that the system gave to a signal handler.
-unsafe fn stack_pointer(context: *mut c_void) -> Option<usize> {
+unsafe fn registers(context: *mut c_void) -> Option<(usize, usize)> {
     let context = context.cast::<libc::ucontext_t>();
     // SAFETY: as the caller promises.
     unsafe {
         #[cfg(target_arch = "x86_64")]
-        return context.as_ref().map(|context| context.uc_mcontext.gregs[libc::REG_RSP as usize] as usize);
+        return context.as_ref().map(|context| {
+            let register = |number: c_int| context.uc_mcontext.gregs[number as usize] as usize;
+            (register(libc::REG_RSP), register(libc::REG_RIP))
+        });
         #[cfg(target_arch = "aarch64")]
-        return context.as_ref().map(|context| context.uc_mcontext.sp as usize);
+        return context.as_ref().map(|context| (context.uc_mcontext.sp as usize, context.uc_mcontext.pc as usize));
         #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
         return context.as_ref().and(None);
     }

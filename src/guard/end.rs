@@ -11,7 +11,7 @@ use std::sync::atomic::Ordering;
 use saoms_api::host::present;
 
 use super::ENDS;
-use super::blame::{Blame, blame, is_program, leave, next, write};
+use super::blame::{Blame, blame, is_program, leave, library_above, next, write};
 use super::hardware;
 use crate::Exit;
 
@@ -29,14 +29,21 @@ fn end(code: c_int, by: &str) -> ! {
     if ENDS.load(Ordering::SeqCst) || !is_program() {
         leave(code);
     }
-    match blame(ptr::from_ref(&top) as usize) {
+    let top = ptr::from_ref(&top) as usize;
+    match blame(top) {
         Blame::Call(owner, function) => {
             write(&["error: ", &owner.text, " ended the whole process, by `", by, "` ", function.place(), "\n"]);
         }
         Blame::Thread(library) => {
             write(&["error: a thread of library `", library, "` ended the whole process, by `", by, "`\n"]);
         }
-        Blame::Nobody => write(&["error: a thread of a library ended the whole process, by `", by, "`\n"]),
+        // Code that a thread of the program calls by itself, such as the destructor of a key.
+        Blame::Nobody => match library_above(top) {
+            Some(library) => {
+                write(&["error: code of library `", library, "` ended the whole process, by `", by, "`\n"])
+            }
+            None => write(&["error: code of a library ended the whole process, by `", by, "`\n"]),
+        },
     }
     hardware::stop();
     leave(Exit::Failed as c_int)

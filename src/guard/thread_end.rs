@@ -10,7 +10,7 @@ use std::mem::transmute;
 use std::ptr;
 use std::sync::OnceLock;
 
-use saoms_api::host::present::library_at;
+use saoms_api::host::present::{Owner, library_at};
 
 use super::blame::next;
 
@@ -27,6 +27,13 @@ struct Node {
 thread_local! {
     /// Without a destructor, which would be registered here.
     static NEWEST: Cell<*mut Node> = const { Cell::new(ptr::null_mut()) };
+    /// The library whose destructor runs.
+    static RUNS: Cell<Option<&'static Owner>> = const { Cell::new(None) };
+}
+
+/// The library whose destructor runs on the present thread. A signal handler may ask.
+pub(super) fn present() -> Option<&'static Owner> {
+    RUNS.get()
 }
 
 unsafe extern "C" {
@@ -92,8 +99,10 @@ unsafe extern "C" fn run(_: *mut c_void) {
         // SAFETY: it was made by `Box::into_raw`, and is taken out of the list once.
         let node = unsafe { Box::from_raw(NEWEST.get()) };
         NEWEST.set(node.before);
+        RUNS.set(library_at(node.destructor as usize).map(Owner::of_library));
         // SAFETY: its code is of the program or of a library that is never unloaded; the pointer is its own.
         unsafe { (node.destructor)(node.of) };
+        RUNS.set(None);
     }
 }
 

@@ -115,6 +115,8 @@ functions! {
     Destroy "the destructor",
     /// A rule over whole fleets.
     Check "a rule over fleets",
+    /// What a thread of the program calls when it ends.
+    ThreadEnd "the destructor of a thread-local variable",
 }
 
 impl Function {
@@ -154,6 +156,8 @@ impl Drop for Registered {
 thread_local! {
     /// Without a destructor, so that a signal handler can read it at any time.
     static HERE: Cell<Option<&'static ThreadCall>> = const { Cell::new(None) };
+    /// Stays true while the thread ends, when `HERE` is empty again.
+    static IS_OF_PROGRAM: Cell<bool> = const { Cell::new(false) };
     /// In a child of `fork`: what its thread did then, and what is done when that returns.
     static FORKED: Cell<Option<(&'static ThreadCall, Returned)>> = const { Cell::new(None) };
     static SUBJECT: Cell<Option<*const str>> = const { Cell::new(None) };
@@ -195,6 +199,7 @@ fn register() -> &'static ThreadCall {
         new
     });
     HERE.set(Some(call));
+    IS_OF_PROGRAM.set(true);
     // In the last moments of a thread nothing gives it back, and it is leaked.
     let _ = REGISTERED.try_with(|registered| registered.set(Some(Registered(call))));
     call
@@ -302,7 +307,7 @@ pub fn libraries() -> impl Iterator<Item = &'static str> {
 
 /// True if this thread ever ran code of a library that it called: then it is a thread of the program.
 pub fn is_of_program() -> bool {
-    HERE.get().is_some()
+    IS_OF_PROGRAM.get()
 }
 
 /// A range of addresses with code of a library, in a list that only grows: a signal handler reads it.

@@ -25,6 +25,29 @@ static void *alarm_later(void *nothing) {
     return nothing;
 }
 
+/* Of the C library: what `thread_local` of C++ and `thread_local!` of Rust call. */
+extern int __cxa_thread_atexit_impl(void (*destructor)(void *), void *of, void *library);
+
+static volatile int *volatile no_address = NULL;
+
+static void exit_of(void *of) {
+    (void)of;
+    exit(0);
+}
+
+static void crash_of(void *of) {
+    (void)of;
+    *no_address = 1;
+}
+
+/* Has it called at the end of the present thread, by the destructor of a key. */
+static void at_key(void (*destructor)(void *)) {
+    pthread_key_t key;
+    if (pthread_key_create(&key, destructor) == 0) {
+        pthread_setspecific(key, &key);
+    }
+}
+
 /* Does it, if it is one of these. */
 static void act_on_process(const char *does) {
     if (strcmp(does, "hangs") == 0) {
@@ -47,6 +70,14 @@ static void act_on_process(const char *does) {
         abort();
     } else if (strcmp(does, "exit") == 0) {
         exit(0);
+    } else if (strcmp(does, "local exits") == 0) {
+        __cxa_thread_atexit_impl(exit_of, NULL, NULL);
+    } else if (strcmp(does, "local crashes") == 0) {
+        __cxa_thread_atexit_impl(crash_of, NULL, NULL);
+    } else if (strcmp(does, "key exits") == 0) {
+        at_key(exit_of);
+    } else if (strcmp(does, "key crashes") == 0) {
+        at_key(crash_of);
     } else if (strcmp(does, "frees twice") == 0) {
         char *volatile memory = malloc(24);
         free(memory);

@@ -28,8 +28,9 @@ struct Told {
     trace: Value,
 }
 
-/// Without the folder of the source.
+/// Without the library, which only one of them has, and the folder of the source.
 fn plain(text: &str) -> String {
+    let text = text.replace(&format!(" (library `{}`)", library("bad").display()), "");
     let mut parts = text.split("panicked at ");
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |text, part| {

@@ -47,6 +47,25 @@ fn acts(at: &str, does: &str) -> String {
 }
 
 #[test]
+fn a_failure_is_told_with_the_library() {
+    let of_library = format!(" (library `{}`)", library("bad").display());
+    for does in ["fail", "panic"] {
+        for at in ["new", "initialize", "execute", "receive", "shutdown"] {
+            let run = second(&(honest() + &acts(at, does)), &libraries());
+            let line = run.text.lines().find(|line| line.contains("Bad") && line.contains(at));
+            assert!(line.is_some_and(|line| line.ends_with(&of_library)), "{of_library} is missing in\n{}", run.text);
+        }
+        let inside = format!("<saoms:loop name=\"Switch\">{}</saoms:loop>", property("at", "plan"));
+        let run = second(&(honest() + &component("Bad", "bad.Lamp", &inside)), &libraries());
+        assert!(run.reasons().contains("loop `Switch`: ") && run.reasons().contains(&of_library), "{}", run.text);
+        // A caller that passes on what its provider answers fails in its own code.
+        let caller = component("Caller", "bad.Actor", "<reference name=\"callee\" target=\"Bad/callee\"/>");
+        let run = second(&(honest() + &acts("serve", does) + &caller), &libraries());
+        assert!(run.reasons().contains("Caller") && run.reasons().contains(&of_library), "{}", run.text);
+    }
+}
+
+#[test]
 fn a_panic_in_execute_receive_or_shutdown_is_a_failure_of_its_component() {
     for at in ["execute", "receive", "shutdown"] {
         for (does, expected) in [("panic", format!("no more of {at}")), ("nasty", "without a message".to_owned())] {

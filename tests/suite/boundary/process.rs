@@ -34,6 +34,25 @@ fn an_end_of_the_process_is_a_failure_by_whatever_function() {
     assert_eq!(output.status.code(), Some(1));
 }
 
+/// Nothing calls that code any more when a thread of the program ends.
+#[test]
+fn what_a_library_does_at_the_end_of_a_thread_is_told() {
+    let of_local = " in the destructor of a thread-local variable";
+    for (does, before, expected, signal) in [
+        ("local exits", "error: library `", format!("ended the whole process, by `exit`{of_local}"), None),
+        ("local crashes", "error: library `", format!("crashed{of_local}: SIGSEGV"), Some(libc::SIGSEGV)),
+        ("key exits", "error: code of library `", "ended the whole process, by `exit`\n".to_owned(), None),
+        ("key crashes", "error: code of library `", "crashed: SIGSEGV".to_owned(), Some(libc::SIGSEGV)),
+    ] {
+        // The program waits for the function that stops hardware, so that it sees the end of its thread.
+        let output = ended_with(&bad("h.Motor", &format!("hangs in stop, {does}"), ""), &[]);
+        let told = stderr(&output);
+        let is_told = told.contains(before) && told.contains(&format!("libhostile.so` {expected}"));
+        assert!(is_told, "{does}: {expected} is missing in\n{}", text(&output));
+        assert_eq!((output.status.signal(), output.status.code() == Some(1)), (signal, signal.is_none()), "{does}");
+    }
+}
+
 /// A run whose library does this to the process while it is loaded.
 fn loaded(definition: &str) -> std::process::Output {
     ended_with(&bad("h.Actor", "", ""), &[definition])

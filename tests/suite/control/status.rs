@@ -43,6 +43,7 @@ fn a_status_that_cannot_be_read_is_a_failure_of_its_component() {
         let (code, text) = running.end();
         assert_eq!(code, Some(1), "{does}: {text}");
         assert!(text.contains("component `Bad` ") && text.contains(expected), "{does}: {text}");
+        assert!(text.contains("libactor.so`)\n"), "with its library: {does}: {text}");
     }
 }
 

@@ -3,6 +3,7 @@ use std::io;
 
 use saoms_api::Failure;
 
+use crate::schedule::component::library::in_library;
 use crate::schedule::os::realtime::RealtimeError;
 
 /// Error of a change that was not made. The fleet is as it was.
@@ -21,6 +22,8 @@ pub enum ChangeError {
         component: String,
         /// Its class.
         class: String,
+        /// The library of the code that failed, if it is not linked.
+        library: Option<Box<str>>,
         /// Its failure.
         failure: Failure,
     },
@@ -34,8 +37,9 @@ impl fmt::Display for ChangeError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ChangeError::NotNow { component, why } => write!(formatter, "component `{component}`: {why}"),
-            ChangeError::Failed { component, class, failure } => {
-                write!(formatter, "component `{component}` of class `{class}` could not start: {failure}")
+            ChangeError::Failed { component, class, library, failure } => {
+                let library = library.as_deref().map(in_library).unwrap_or_default();
+                write!(formatter, "component `{component}` of class `{class}` could not start: {failure}{library}")
             }
             ChangeError::Unknown(component) => write!(formatter, "the fleet has no component `{component}`"),
             ChangeError::Ending => formatter.write_str("the run ends"),
@@ -55,6 +59,8 @@ pub enum StartError {
         component: String,
         /// Its class.
         class: String,
+        /// The library of the code that failed, if it is not linked.
+        library: Option<Box<str>>,
         /// Its failure.
         failure: Failure,
     },
@@ -69,8 +75,9 @@ pub enum StartError {
 impl fmt::Display for StartError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            StartError::Component { component, class, failure } => {
-                write!(formatter, "component `{component}` of class `{class}` could not start: {failure}")
+            StartError::Component { component, class, library, failure } => {
+                let library = library.as_deref().map(in_library).unwrap_or_default();
+                write!(formatter, "component `{component}` of class `{class}` could not start: {failure}{library}")
             }
             StartError::Realtime(error) => error.fmt(formatter),
             StartError::Observer(failure) => failure.fmt(formatter),
@@ -94,7 +101,9 @@ impl std::error::Error for StartError {
 impl From<ChangeError> for StartError {
     fn from(error: ChangeError) -> StartError {
         match error {
-            ChangeError::Failed { component, class, failure } => StartError::Component { component, class, failure },
+            ChangeError::Failed { component, class, library, failure } => {
+                StartError::Component { component, class, library, failure }
+            }
             // The other errors need a running fleet.
             other => StartError::Observer(Failure::new(other.to_string())),
         }

@@ -9,6 +9,7 @@ use super::{ChangeError, Changed, as_members};
 use crate::assemble::{ChangePlan, Difference, providers_first};
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
+use crate::schedule::component::library::{library_of, with_library};
 use crate::schedule::engine::slot::{PendingRequest, SlotState};
 use crate::schedule::engine::{Engine, RunPhase};
 use crate::schedule::shared::Shared;
@@ -218,7 +219,8 @@ impl<'a> Change<'a> {
     fn failed(&self, culprit: u32, failure: Failure) -> ChangeError {
         let engine = self.shared.lock();
         let spec = &engine.slots[culprit as usize].spec;
-        ChangeError::Failed { component: spec.path.clone(), class: spec.class.name().to_owned(), failure }
+        let library = library_of(spec, failure.message()).map(Into::into);
+        ChangeError::Failed { component: spec.path.clone(), class: spec.class.name().to_owned(), library, failure }
     }
 
     /// Leaves everything as it was.
@@ -260,7 +262,8 @@ impl<'a> Change<'a> {
         body.part.outbox.clear();
         engine.put_back(number, body);
         if let Err(failure) = result {
-            let message = format!("could not shut down: {failure}");
+            let message =
+                format!("could not shut down: {}", with_library(&engine.slots[number as usize].spec, failure));
             engine.emit(now, number, Occurrence::Failed { message, restart: None });
         }
         self.shared.release(engine);

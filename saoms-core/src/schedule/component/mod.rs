@@ -5,4 +5,5 @@ mod call;
 mod declared;
 mod host;
 pub(super) mod lasting;
+pub(super) mod library;
 pub(super) mod spent;

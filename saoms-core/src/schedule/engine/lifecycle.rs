@@ -8,6 +8,7 @@ use super::trace::TraceStep;
 use super::{Engine, RunPhase};
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
+use crate::schedule::component::library::with_library;
 use crate::schedule::settings::nanos;
 
 /// Requests about a periodic component, at any time and from any thread. They take effect after the code that runs at
@@ -172,7 +173,7 @@ impl Engine {
             Job::Execute | Job::React | Job::Ask | Job::Describe | Job::Order => "",
             Job::Shutdown => "could not shut down: ",
         };
-        let mut message = format!("{doing}{failure}");
+        let mut message = format!("{doing}{}", with_library(&body.part.spec, failure));
         if unsent > 0 {
             message.push_str(&format!(" (messages of this execution that are not sent: {unsent})"));
         }

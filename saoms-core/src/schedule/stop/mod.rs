@@ -19,6 +19,7 @@ use saoms_api::{Failure, StopFunction};
 pub(crate) use self::emergency::STOPPED;
 pub use self::emergency::hears_stops;
 use self::threads::StopThreads;
+use super::component::library::with_library;
 use super::engine::Engine;
 use super::shared::Shared;
 use crate::observe::Occurrence;
@@ -157,7 +158,9 @@ impl Stops {
         let Err(failure) = contained(|| registered.function.stop()).and_then(|stopped| stopped) else { return };
         let Some(fleet) = self.fleet.get().and_then(Weak::upgrade) else { return };
         let mut engine = fleet.lock();
-        engine.hardware_moves(registered.component, failure.to_string(), fleet.clock.now());
+        let spec = &engine.slots[registered.component as usize].spec;
+        let message = with_library(spec, failure);
+        engine.hardware_moves(registered.component, message, fleet.clock.now());
         fleet.release(engine);
     }
 }

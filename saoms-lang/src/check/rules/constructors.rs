@@ -17,7 +17,7 @@ use crate::check::tasks::unique_values::RepeatedValues;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
 use crate::registry::PropertyDeclaration;
-use saoms_api::host::{PropertyValue, contain::contained, present};
+use saoms_api::host::{PropertyValue, contain::contained, one_line, present};
 use saoms_api::{Failure, Finding};
 use smol_str::SmolStr;
 
@@ -34,7 +34,8 @@ fn partly(
     let construct = |values: &[(SmolStr, PropertyValue)]| dropped(class.class.construct(values));
     let unsure: Vec<&PropertyDeclaration> = unsure.iter().filter_map(|place| class.table.all[*place].own()).collect();
     if unsure.is_empty() {
-        return judge(|| construct(subject.values), subject, class.class.name(), repeated, report);
+        let class = (class.class.name(), class.class.origin());
+        return judge(|| construct(subject.values), subject, class, repeated, report);
     }
     let ends: Option<Vec<[PropertyValue; 2]>> = unsure.iter().map(|one| one.ends()).collect();
     let Some(ends) = ends else { return };
@@ -77,7 +78,7 @@ fn dropped<T>(made: Result<T, Failure>) -> Result<(), Failure> {
 fn judge(
     construct: impl FnOnce() -> Result<(), Failure>,
     subject: Subject<'_>,
-    class: &str,
+    (class, library): (&str, Option<&Path>),
     repeated: &RepeatedValues,
     report: &mut Report<'_>,
 ) {
@@ -85,7 +86,8 @@ fn judge(
     let construct = || present::about(&about, construct);
     let Err(failure) = contained(construct).and_then(|result| result) else { return };
     if failure.findings().is_empty() {
-        let message = format!("{about}: {failure}");
+        let library = library.map(|path| format!(" (library `{}`)", one_line(&path.display().to_string())));
+        let message = format!("{about}: {failure}{}", library.unwrap_or_default());
         report.push(Diagnostic::new(&codes::CONSTRUCTION, subject.at, message).help(help(class)));
         return;
     }
@@ -156,11 +158,13 @@ pub(crate) fn check_all(
             findings(&found, subject, class.name(), repeated, report);
         } else if is_asked(class.origin(), class.is_only_read()) && loads(class.origin(), class.load(), subject, report)
         {
-            judge(|| dropped(class.construct(subject.values)), subject, class.name(), repeated, report);
+            let name = (class.name(), class.origin());
+            judge(|| dropped(class.construct(subject.values)), subject, name, repeated, report);
         }
         for (class, subject) in check.loops.iter().flat_map(loops::Resolved::changed) {
             if is_asked(class.origin(), class.is_only_read()) && loads(class.origin(), class.load(), subject, report) {
-                judge(|| dropped(class.construct(subject.values)), subject, class.name(), repeated, report);
+                let name = (class.name(), class.origin());
+                judge(|| dropped(class.construct(subject.values)), subject, name, repeated, report);
             }
         }
     }
