@@ -8,6 +8,7 @@ mod boundary;
 mod copy;
 mod error;
 mod file;
+mod invisible;
 mod library;
 mod metadata;
 mod named;

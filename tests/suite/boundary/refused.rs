@@ -122,6 +122,27 @@ fn a_library_without_metadata_or_with_damaged_ones() {
 }
 
 #[test]
+fn a_library_with_names_that_steer_the_terminal() {
+    // Escapes in JSON, and in C around it.
+    for (name, from, to, shown) in [
+        ("class", "good.Sender", "good\\\\u001b[2J", "`good\\u{1b}[2J` (class)"),
+        ("package", "from-c", "from\u{202e}c", "`from\\u{202e}c` (package)"),
+        ("line", "good.Sender", "good\\\\nerror: no", "`good\\nerror: no` (class)"),
+        (
+            "property",
+            "\"periodic\"",
+            "\"periodic\",\"properties\":[{\"name\":\"a\\\\u0007\",\"type\":\"string\"}]",
+            "`a\\u{7}` (name)",
+        ),
+    ] {
+        let path = from_c(&format!("steers-{name}"), Some(&METADATA.replacen(from, to, 1)), &[]);
+        let said = refused(&path);
+        assert_says(&said, &["has metadata that cannot be read: the name ", shown, "give it another name"]);
+        assert!(!said.contains(['\u{1b}', '\u{202e}', '\u{7}']), "{said}");
+    }
+}
+
+#[test]
 fn a_library_for_an_older_or_newer_boundary() {
     let expected = ["this program has version 3", "build the plugin with saoms-api"];
     let path = said("older.so", "\"abi\":3", b"\"abi\":1");
