@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
-use std::net::TcpStream;
+use std::net::{TcpStream, ToSocketAddrs};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::description::FleetDescription;
 use crate::network::server_of;
-use crate::place::{folder, remove_if_dead, token_beside};
+use crate::place::{connect, folder, remove_if_dead, token_beside};
 use crate::token::Token;
 
 /// Time for which an answer is waited for.
@@ -140,8 +140,8 @@ impl Client {
 
     fn connect(&self, patience: Duration) -> io::Result<Box<dyn Connection>> {
         let stream: Box<dyn Connection> = match &self.place {
-            Place::Socket(path) => Box::new(UnixStream::connect(path)?),
-            Place::Network(server, _) => Box::new(TcpStream::connect(server)?),
+            Place::Socket(path) => Box::new(connect(path)?),
+            Place::Network(server, _) => Box::new(connect_to_one(server, patience)?),
         };
         stream.be_patient(Some(patience))?;
         Ok(stream)
@@ -194,6 +194,18 @@ impl Client {
         let value = self.request_within(INTRODUCTION, "GET", "/v1/fleet", "")?.json()?;
         serde_json::from_value(value).map_err(|error| ClientError::Malformed(error.to_string()))
     }
+}
+
+/// Connects to the first address of a server that answers in time.
+fn connect_to_one(server: &str, patience: Duration) -> io::Result<TcpStream> {
+    let mut last = io::Error::new(ErrorKind::NotFound, "the name has no address");
+    for address in server.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, patience) {
+            Ok(stream) => return Ok(stream),
+            Err(error) => last = error,
+        }
+    }
+    Err(last)
 }
 
 /// A connection to a server.

@@ -1,12 +1,20 @@
 //! Where the sockets of running fleets are, and the other files that only their user may use.
 
 use std::env;
-use std::fs::{self, DirBuilder, Permissions};
+use std::fs::{self, DirBuilder, File, Permissions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::{DirBuilderExt, FileTypeExt, MetadataExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
-use std::process;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use socket2::{Domain, SockAddr, Socket, Type};
+
+/// Time for a connection and for a lock: a program that was stopped (SIGSTOP) gives neither.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// Time between two attempts to get the lock, which is held for microseconds.
+const PAUSE: Duration = Duration::from_millis(1);
 
 /// The folder with the sockets of the user's fleets: `saoms` in `$XDG_RUNTIME_DIR`, which belongs to the user alone, or
 /// else `/tmp/saoms-UID`.
@@ -61,12 +69,13 @@ impl Listener {
         in_own_folder(path)?;
         // A socket refuses who connects between `bind` and `listen`, as one of a program that has ended does, and
         // would be removed as such: it gets its name when it listens.
-        let hidden = path.with_file_name(format!(".{}", process::id()));
+        let name = path.file_stem().unwrap_or_default().display();
+        let hidden = path.with_file_name(format!(".{name}"));
         let is_seen_by_others = path.parent() == Some(&folder());
         let first = if is_seen_by_others { &hidden } else { path };
         let socket = match UnixListener::bind(first) {
             Err(error) if error.kind() == ErrorKind::AddrInUse => {
-                remove_if_dead(first)?;
+                remove_dead(first)?;
                 UnixListener::bind(first)?
             }
             bound => bound?,
@@ -76,10 +85,11 @@ impl Listener {
         if !is_seen_by_others {
             return Ok(Listener { socket, file: first });
         }
+        let _locked = locked(&folder())?;
         // A link replaces no other file, as moving it would.
         match fs::hard_link(&hidden, path) {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                remove_if_dead(path)?;
+                remove_dead(path)?;
                 fs::hard_link(&hidden, path)?;
             }
             linked => linked?,
@@ -98,6 +108,7 @@ impl OwnFile {
 
 impl Drop for OwnFile {
     fn drop(&mut self) {
+        let _locked = self.path.parent().filter(|parent| *parent == folder()).map(locked);
         // Another program may have put its own file there.
         let is_own = fs::symlink_metadata(&self.path).is_ok_and(|file| (file.dev(), file.ino()) == self.identity);
         if is_own {
@@ -125,14 +136,58 @@ fn make_private(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Removes a socket on which nobody listens.
+/// Locks a folder: between the look at a file and its removal nobody may put another one there.
+fn locked(folder: &Path) -> io::Result<File> {
+    let file = File::open(folder)?;
+    // Whoever holds the lock may have been stopped.
+    let until = Instant::now() + PATIENCE;
+    while let Err(error) = file.try_lock() {
+        match error {
+            TryLockError::WouldBlock if Instant::now() < until => thread::sleep(PAUSE),
+            TryLockError::WouldBlock => {
+                let message = format!("another program holds the lock of the folder `{}`", folder.display());
+                return Err(io::Error::new(ErrorKind::TimedOut, message));
+            }
+            TryLockError::Error(error) => return Err(error),
+        }
+    }
+    Ok(file)
+}
+
+/// Removes a socket on which nobody listens from the folder of the user's fleets.
 pub(crate) fn remove_if_dead(path: &Path) -> io::Result<()> {
+    // One that was stopped makes who asks wait: nobody holds the lock meanwhile.
+    is_dead(path)?;
+    let _locked = locked(&folder())?;
+    remove_dead(path)
+}
+
+/// Removes a socket on which nobody listens.
+fn remove_dead(path: &Path) -> io::Result<()> {
+    is_dead(path)?;
+    fs::remove_file(path)
+}
+
+/// `Ok` if nobody listens on a socket.
+fn is_dead(path: &Path) -> io::Result<()> {
     if !fs::symlink_metadata(path)?.file_type().is_socket() {
         return Err(io::Error::new(ErrorKind::AlreadyExists, "there is a file, which is no socket"));
     }
-    match UnixStream::connect(path) {
+    match connect(path) {
         Ok(_) => Err(io::Error::new(ErrorKind::AddrInUse, "another program listens there")),
-        Err(error) if error.kind() == ErrorKind::ConnectionRefused => fs::remove_file(path),
+        Err(error) if error.kind() == ErrorKind::ConnectionRefused => Ok(()),
         Err(error) => Err(error),
     }
+}
+
+/// Connects to a socket within [`PATIENCE`].
+pub(crate) fn connect(path: &Path) -> io::Result<UnixStream> {
+    let socket = Socket::new(Domain::UNIX, Type::STREAM, None)?;
+    // It bounds the time for which a connection waits in the queue, too.
+    socket.set_write_timeout(Some(PATIENCE))?;
+    socket.connect(&SockAddr::unix(path)?).map_err(|error| match error.kind() {
+        ErrorKind::WouldBlock => io::Error::new(ErrorKind::TimedOut, "it takes no connection"),
+        _ => error,
+    })?;
+    Ok(socket.into())
 }

@@ -1,6 +1,6 @@
 //! Messages of topics, for clients that follow them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use saoms_core::observe::{Interest, Observer, SentMessage};
@@ -30,7 +30,19 @@ pub(crate) struct Follower {
     topic: String,
     watch: Arc<TopicWatch>,
     handle: Handle,
+    /// What the topic retained before.
+    retained: VecDeque<Arc<str>>,
     new: Option<broadcast::Receiver<Arc<str>>>,
+}
+
+/// What a follower gets.
+pub(crate) enum Followed {
+    /// A message in JSON that the topic retained before.
+    Retained(Arc<str>),
+    /// A new message in JSON.
+    Sent(Arc<str>),
+    /// Number of messages that were lost here.
+    Lost(u64),
 }
 
 impl TopicWatch {
@@ -38,7 +50,7 @@ impl TopicWatch {
         self.watched.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Follows a topic from now on.
+    /// Follows a topic from now on, after what it retains.
     ///
     /// # Errors
     /// The fleet has no such topic.
@@ -53,17 +65,32 @@ impl TopicWatch {
                 first
             }
         };
+        let schema = watched.get(topic).map(|one| one.schema.clone());
         drop(watched);
-        Ok(Follower { topic: topic.to_owned(), watch: Arc::clone(self), handle: handle.clone(), new: Some(new) })
+        let topic = topic.to_owned();
+        let mut follower = Follower {
+            topic,
+            watch: Arc::clone(self),
+            handle: handle.clone(),
+            retained: VecDeque::new(),
+            new: Some(new),
+        };
+        if let Some(schema) = schema {
+            follower.retained = handle.retained(&follower.topic)?.iter().map(|sent| json(sent, &schema)).collect();
+        }
+        Ok(follower)
     }
 }
 
 impl Follower {
-    /// The next message, as JSON; `Err` is the number of messages that were lost before it. `None` is the end.
-    pub(crate) async fn next(&mut self) -> Option<Result<Arc<str>, u64>> {
+    /// What comes next; `None` is the end.
+    pub(crate) async fn next(&mut self) -> Option<Followed> {
+        if let Some(message) = self.retained.pop_front() {
+            return Some(Followed::Retained(message));
+        }
         match self.new.as_mut()?.recv().await {
-            Ok(message) => Some(Ok(message)),
-            Err(broadcast::error::RecvError::Lagged(lost)) => Some(Err(lost)),
+            Ok(message) => Some(Followed::Sent(message)),
+            Err(broadcast::error::RecvError::Lagged(lost)) => Some(Followed::Lost(lost)),
             Err(broadcast::error::RecvError::Closed) => None,
         }
     }
@@ -89,10 +116,14 @@ impl Observer for TopicWatch {
     fn message(&self, sent: &SentMessage) {
         let watched = self.lock();
         let Some(one) = watched.get(&*sent.topic) else { return };
-        let message = one.schema.decode(sent.message.bytes());
-        let time = sent.message.header().sent.as_secs_f64();
-        let shown = json!({"time_s": time, "component": &*sent.component, "message": message.ok()});
         // The last follower may be about to leave.
-        let _ = one.new.send(shown.to_string().into());
+        let _ = one.new.send(json(sent, &one.schema));
     }
+}
+
+/// A message as clients get it.
+fn json(sent: &SentMessage, schema: &Schema) -> Arc<str> {
+    let message = schema.decode(sent.message.bytes());
+    let time = sent.message.header().sent.as_secs_f64();
+    json!({"time_s": time, "component": &*sent.component, "message": message.ok()}).to_string().into()
 }

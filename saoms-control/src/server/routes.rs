@@ -144,7 +144,8 @@ const ROUTES: &[Route] = &[
     Route {
         method: "get",
         path: "/v1/topics/{topic}/messages",
-        doc: "The messages of a topic as they come, as server-sent events.",
+        doc: "The messages of a topic as they come, as server-sent events; those of a state topic that it retains come \
+            first, as events `retained`.",
         query: &[],
         body: None,
         serve: || get(topics::echo),

@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 use super::answer::{Answer, Refusal, json_text, waiting};
 use super::fleet::ControlledFleet;
 use super::orders;
+use crate::topics::Followed;
 
 type Fleet = State<Arc<ControlledFleet>>;
 
@@ -21,15 +22,16 @@ pub(super) async fn list(State(fleet): Fleet) -> Answer {
     json_text(waiting(move || json!(fleet.handle.topics()).to_string()).await?)
 }
 
-/// The messages of a topic as they come, an event each. The event `lost` says how many came faster than the client took
-/// them.
+/// The messages of a topic as they come, an event each, after those that it retains, as events `retained`. The event
+/// `lost` says how many came faster than the client took them.
 pub(super) async fn echo(State(fleet): Fleet, Path(topic): Path<String>) -> Answer {
     let follower = fleet.topics.follow(&topic, &fleet.handle).map_err(Refusal::unprocessable)?;
     let counts = Arc::clone(&fleet.counts);
     let events = stream::unfold((follower, counts), |(mut follower, counts)| async move {
         let event = match follower.next().await? {
-            Ok(message) => Event::default().data(&*message),
-            Err(lost) => {
+            Followed::Retained(message) => Event::default().event("retained").data(&*message),
+            Followed::Sent(message) => Event::default().data(&*message),
+            Followed::Lost(lost) => {
                 counts.lost.fetch_add(lost, Ordering::Relaxed);
                 Event::default().event("lost").data(lost.to_string())
             }

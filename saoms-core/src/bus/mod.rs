@@ -191,6 +191,11 @@ impl Bus {
         self.topics[subscription.topic.0 as usize].is_addressed
     }
 
+    /// The messages that a state topic retains, the oldest first; none of an event topic.
+    pub fn retained(&self, topic: TopicId) -> Vec<SharedMessage> {
+        self.topics[topic.0 as usize].retained()
+    }
+
     /// True if there are messages that a reader has not collected.
     pub fn has_news(&self, subscription: &TopicReader) -> bool {
         self.topics[subscription.topic.0 as usize].has_news(&subscription.reader)

@@ -220,6 +220,15 @@ impl BusTopic {
         }
     }
 
+    /// The retained messages, the oldest first.
+    pub(super) fn retained(&self) -> Vec<SharedMessage> {
+        let mut messages = Vec::new();
+        if let Some(table) = self.store.table() {
+            table.collect(&mut 0, &mut messages);
+        }
+        messages
+    }
+
     pub(super) fn rewind(&mut self, reader: &mut ReadPosition) {
         match (reader, &mut self.regions) {
             (ReadPosition::State { read, .. }, _) => *read = 0,

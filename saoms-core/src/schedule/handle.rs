@@ -23,7 +23,7 @@ use super::takers::{RaiseError, Takers};
 use super::topics;
 use super::why;
 use crate::journal::LiveJournal;
-use crate::observe::{Observer, RunProgress};
+use crate::observe::{Observer, RunProgress, SentMessage};
 use crate::status::{FleetMetrics, FleetPhase, FleetStatus, TopicStatus};
 
 /// Time for which the answers of components are waited for.
@@ -269,6 +269,14 @@ impl Handle {
     /// The fleet has no such topic.
     pub fn watch(&self, topic: &str, observer: &Arc<dyn Observer>, wanted: bool) -> Result<Schema, InjectError> {
         topics::watch(&self.shared, topic, observer, wanted)
+    }
+
+    /// The messages that a state topic retains, the oldest first; none of an event topic.
+    ///
+    /// # Errors
+    /// The fleet has no such topic.
+    pub fn retained(&self, topic: &str) -> Result<Vec<SentMessage>, InjectError> {
+        topics::retained(&self.shared, topic)
     }
 
     /// Progress of the run.

@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
+use saoms_api::host::SharedMessage;
 use saoms_api::rule::nearest;
 use serde_json::Value;
 
 use super::engine::Engine;
-use super::inject::InjectError;
+use super::inject::{InjectError, OUTSIDE_NAME};
 use super::shared::Shared;
 use crate::bus::TopicId;
-use crate::observe::Observer;
+use crate::observe::{Observer, SentMessage};
 use crate::status::{TopicReaderStatus, TopicStatus};
 use saoms_lang::schema::Schema;
 
@@ -71,6 +72,22 @@ pub(super) fn topics(shared: &Shared) -> Vec<TopicStatus> {
         }
     }
     all.into_iter().map(|(_, topic)| topic).collect()
+}
+
+/// The messages that a state topic retains, the oldest first.
+///
+/// # Errors
+/// The fleet has no such topic.
+pub(super) fn retained(shared: &Shared, topic: &str) -> Result<Vec<SentMessage>, InjectError> {
+    let engine = shared.lock();
+    let id = engine.topic(topic)?;
+    let name = engine.bus.name(id);
+    let sent = |message: SharedMessage| {
+        let sender = engine.slots.get(message.header().sender as usize);
+        let component = sender.map_or_else(|| Arc::from(OUTSIDE_NAME), |slot| Arc::clone(&slot.name));
+        SentMessage { topic: Arc::clone(name), component, message }
+    };
+    Ok(engine.bus.retained(id).into_iter().map(sent).collect())
 }
 
 /// Lets an observer get the messages of a topic, or no more. Gives the schema of the messages.

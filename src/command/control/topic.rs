@@ -54,7 +54,7 @@ struct InfoArguments {
     fleet: RunningFleetArguments,
 }
 
-/// Show the messages of a topic as they come, until the fleet ends
+/// Show the messages of a topic: what a state topic retains, then those that come, until the fleet ends
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 struct EchoArguments {
@@ -167,21 +167,21 @@ fn info(arguments: &InfoArguments) -> Result<(), Exit> {
     Ok(())
 }
 
-/// The messages of a topic as they come, in JSON.
-fn messages(fleet: &RunningFleetArguments, topic: &str) -> Result<impl Iterator<Item = String> + use<>, Exit> {
+/// The messages of a topic as they come, in JSON, each with whether the topic had retained it before.
+fn messages(fleet: &RunningFleetArguments, topic: &str) -> Result<impl Iterator<Item = (bool, String)> + use<>, Exit> {
     let response = fleet.request("GET", &format!("/v1/topics/{}/messages", escape(topic)), "")?;
     Ok(response.events().filter_map(|(name, data)| {
         if name == "lost" {
             eprint(&format!("warning: {data} messages came faster than they were read, and are lost\n"));
             return None;
         }
-        Some(data)
+        Some((name == "retained", data))
     }))
 }
 
 fn echo(arguments: &EchoArguments) -> Result<(), Exit> {
     let most = arguments.count.map_or(usize::MAX, |count| usize::try_from(count).unwrap_or(usize::MAX));
-    for message in messages(&arguments.fleet, &arguments.topic)?.take(most) {
+    for (_, message) in messages(&arguments.fleet, &arguments.topic)?.take(most) {
         let Ok(sent) = serde_json::from_str::<Value>(&message) else { continue };
         match arguments.fleet.format {
             Format::Human => {
@@ -201,7 +201,7 @@ fn echo(arguments: &EchoArguments) -> Result<(), Exit> {
 fn hz(arguments: &HzArguments) -> Result<(), Exit> {
     let topic = find(&arguments.fleet, &arguments.topic)?;
     let name = topic["name"].as_str().unwrap_or_default().to_owned();
-    let mut messages = messages(&arguments.fleet, &name)?;
+    let mut messages = messages(&arguments.fleet, &name)?.filter(|(is_retained, _)| !is_retained);
     let (sender, counted) = std::sync::mpsc::channel();
     // It ends with the process: no message may come for long.
     let count = move || while messages.next().is_some_and(|_| sender.send(()).is_ok()) {};

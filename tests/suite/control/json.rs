@@ -69,7 +69,9 @@ fn the_log_and_messages_steer_no_terminal_and_are_json_all_the_same() {
     let world = component("World", "saoms.World", "");
     let robot = component("Rob&#x9b;ot1", "saoms.Robot", "<reference name=\"world\" target=\"World\"/>");
     let running = Running::start(&composite(&(world + &robot)), &["--stay"]);
+    running.until("Rob\u{9b}ot1", |robot| robot["values"]["state"] == "free");
     running.told(&["estop", "Rob\u{9b}ot1"]);
+    // A robot that is stopped says nothing more: it is what the topic retains.
     let line = running.told(&["topic", "echo", "POSTOPIC", "-n", "1", "--format", "json"]);
     assert!(serde_json::from_str::<Value>(&line).is_ok() && !line.contains('\u{9b}'), "{line:?}");
     let lines = running.told(&["logs", "--format", "json"]);

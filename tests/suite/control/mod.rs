@@ -19,13 +19,17 @@ mod why;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Output, Stdio};
-use std::thread::sleep;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread::{sleep, spawn};
 use std::time::Duration;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::support::{command, stderr, stdout, text};
+
+/// Time after which a command that does not end is killed.
+const LONGEST: Duration = Duration::from_secs(120);
 
 /// A fleet that runs until it is ended, in a folder of its own, with a folder for sockets that no other test uses.
 pub(super) struct Running {
@@ -67,9 +71,21 @@ impl Running {
         self.folder.path()
     }
 
-    /// Runs another command beside it.
+    /// Runs another command beside it, which is killed if it does not end.
     pub(super) fn ask(&self, arguments: &[&str]) -> Output {
-        command(arguments).current_dir(self.folder()).env("XDG_RUNTIME_DIR", self.folder()).output().unwrap()
+        let mut command = command(arguments);
+        command.current_dir(self.folder()).env("XDG_RUNTIME_DIR", self.folder());
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let (pid, (ended, end)) = (child.id(), channel::<()>());
+        spawn(move || {
+            if end.recv_timeout(LONGEST) == Err(RecvTimeoutError::Timeout) {
+                // SAFETY: no pointers; the process is not waited for to its end before `ended` is dropped.
+                unsafe { libc::kill(pid as libc::pid_t, libc::SIGKILL) };
+            }
+        });
+        let output = child.wait_with_output().unwrap();
+        drop(ended);
+        output
     }
 
     /// What a command says that is taken.

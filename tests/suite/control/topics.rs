@@ -50,3 +50,20 @@ fn messages_are_followed_counted_and_published() {
     running.told(&["down"]);
     assert_eq!(running.end().0, Some(0));
 }
+
+#[test]
+fn what_a_state_topic_retains_is_shown_and_not_counted() {
+    let running = Running::start(&fleet(), &["--stay"]);
+    running.until("Robot1", |robot| robot["values"]["state"] == "free");
+    // Nothing is sent any more.
+    running.told(&["estop"]);
+    for _ in 0..2 {
+        let line = running.told(&["topic", "echo", "POSTOPIC", "-n", "1", "--format", "json"]);
+        let retained: Value = serde_json::from_str(&line).unwrap();
+        assert!(retained["component"].as_str().unwrap().starts_with("Robot"), "{line}");
+        assert!(retained["time_s"].is_f64() && retained["message"]["block"].is_object(), "{line}");
+    }
+    let counted = running.told(&["topic", "hz", "POSTOPIC", "--for", "300ms", "--format", "json"]);
+    let counted: Value = serde_json::from_str(&counted).unwrap();
+    assert_eq!(counted["messages"], 0, "{counted}");
+}
