@@ -304,6 +304,9 @@ static SaomsStatus patrol_shutdown(void *component, const SaomsHostHandle *host,
 
 #define TOPIC(name, kind, message) "{\"topic\":\"" name "\",\"kind\":\"" kind "\",\"message\":\"" message "\",\"schema\":"
 
+/* In these messages the field `robot` says who speaks: nobody outside the fleet sends them in the robot's name. */
+#define ROBOT_SPEAKS ", \"speakers\": [{\"field\": \"robot\"}]},"
+
 SAOMS_METADATA static const char metadata[] =
     JSON({"saoms": "plugin", "abi": 3, "package": "patrol", "version": "0.1.0", "entry": "patrol_plugin", "classes": [
         {"contract": 1, "class": "patrol.Robot", "kind": "periodic",
@@ -311,7 +314,7 @@ SAOMS_METADATA static const char metadata[] =
          "properties": [
             {"name": "ID", "type": "string", "doc": "The robot's name.", "required": true, "nonEmpty": true, "unique": "robot"},
             {"name": "number", "type": "integer", "doc": "The robot's number.", "min": 1, "max": 4294967295,
-             "required": true, "unique": "robot number"},
+             "required": true, "unique": "robot number", "speaker": true},
             {"name": "left", "type": "integer", "doc": "The first column of the rectangle.", "unit": "blocks", "min": 0,
              "max": 10000, "default": "0"},
             {"name": "top", "type": "integer", "doc": "The first row; the robot starts at the first block of both.",
@@ -321,7 +324,8 @@ SAOMS_METADATA static const char metadata[] =
             {"name": "bottom", "type": "integer", "doc": "The last row.", "unit": "blocks", "min": 0, "max": 10000,
              "default": "10"}],
          "publishes": [)
-    TOPIC("POSTOPIC", "state", "Position") POSITION "}," TOPIC("RLMSTOPIC", "state", "RobotList") ROBOT_LIST "},"
+    TOPIC("POSTOPIC", "state", "Position") POSITION ROBOT_SPEAKS
+    TOPIC("RLMSTOPIC", "state", "RobotList") ROBOT_LIST ROBOT_SPEAKS
     TOPIC("ELMSTOPIC", "event", "EventLuggage") EVENT_LUGGAGE "}], \"subscribes\": ["
     TOPIC("POSTOPIC", "state", "Position") POSITION "}," TOPIC("ELMSTOPIC", "event", "EventLuggage") EVENT_LUGGAGE
     "}], \"services\": [], \"references\": [{\"name\": \"world\", \"interface\":" HARDWARE ", \"optional\": true}]}]}";

@@ -16,6 +16,7 @@ use crate::{Cause, Field, Time};
 /// | --- | --- |
 /// | `key = "field"` | the integer field that is the key of a state topic |
 /// | `place = "block"` | the field that is the block of the message, a struct with `#[field(pair)]`: subscriptions can receive a [region](crate::Context::set_region) alone |
+/// | `speaker("robot", unless(stage = "REQUEST"))` | an integer field that [names the speaker](#who-speaks) |
 /// | `name = "sensor_msgs/msg/LaserScan"` | the name, if it is not that of the struct |
 /// | `constants(NO_FIX: i8 = -1, FIX: i8 = 0)` | constants of the struct, which stand in the schema, too |
 ///
@@ -39,6 +40,32 @@ use crate::{Cause, Field, Time};
 /// let none = Fix { stamp: Default::default(), status: Fix::NO_FIX, covariance: [0.0; 4] };
 /// assert_eq!(none.status, -1);
 /// ```
+///
+/// # Who speaks
+/// A field that is a `speaker` holds the number of the component that sends the message: one of its
+/// [properties](crate::Properties) is `speaker`, too. A message from outside the fleet in the name of a component of
+/// the fleet is refused. With `only(field = "CONSTANT")` the field names the speaker in such messages alone, with
+/// `unless(...)` in all others. `instead` ends the sentence that tells an operator what to do instead.
+/// ```
+/// use saoms_api::{Field, Message};
+///
+/// #[derive(Clone, Copy, Debug, Field)]
+/// enum Stage {
+///     Request,
+///     Taken,
+/// }
+///
+/// /// A job: a request without a number, or the answer of the robot that takes it.
+/// #[derive(Clone, Debug, Message)]
+/// #[message(speaker("robot", unless(stage = "REQUEST"), instead = "send a request"))]
+/// struct Job {
+///     robot: u32,
+///     stage: Stage,
+/// }
+///
+/// let speakers = r#"[{"field":"robot","unless":{"stage":"REQUEST"},"instead":"send a request"}]"#;
+/// assert_eq!(Job::SPEAKERS, speakers);
+/// ```
 pub trait Message: Field + Clone + fmt::Debug + Send + Sync + 'static {
     /// The name of the type, as tools show it.
     const NAME: &'static str;
@@ -50,6 +77,10 @@ pub trait Message: Field + Clone + fmt::Debug + Send + Sync + 'static {
     fn key(&self) -> Option<u64> {
         None
     }
+
+    /// The fields that say who speaks, as the `speakers` of a [declaration](crate::host::declaration); empty where
+    /// there is none.
+    const SPEAKERS: &'static str = "";
 
     /// True if messages of this type have a block.
     const HAS_PLACE: bool = false;

@@ -76,6 +76,11 @@ impl<M: Message> Topic<M> {
         M::SCHEMA
     }
 
+    /// The fields of its messages that say who speaks, for the declaration of a class.
+    pub const fn speakers(&self) -> &'static str {
+        M::SPEAKERS
+    }
+
     /// The declaration for the host when a component publishes or subscribes.
     pub const fn declaration(&self) -> TopicDeclaration<'static> {
         TopicDeclaration { name: self.name, kind: self.kind, message: M::NAME, schema: M::SCHEMA }

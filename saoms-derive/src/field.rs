@@ -6,6 +6,7 @@ use syn::{Data, DeriveInput, Error, Fields, Generics, Ident, LitStr, Result, Typ
 use crate::constants::{self, Constant};
 use crate::enumeration;
 use crate::json::{self, Json};
+use crate::speaker::{self, Speaker};
 
 /// `#[derive(Message)]`.
 pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
@@ -13,6 +14,7 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
     let mut name = input.ident.unraw().to_string();
     let mut key: Option<LitStr> = None;
     let mut place: Option<LitStr> = None;
+    let mut speakers: Vec<Speaker> = Vec::new();
     let mut constants = Vec::new();
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("message")) {
         attribute.parse_nested_meta(|meta| {
@@ -22,16 +24,24 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
                 key = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("place") {
                 place = Some(meta.value()?.parse()?);
+            } else if meta.path.is_ident("speaker") {
+                speakers.push(Speaker::of(meta.input)?);
             } else if meta.path.is_ident("constants") {
                 constants.extend(Constant::list(meta.input)?);
             } else {
                 return Err(meta.error(
-                    "expected `name = \"...\"`, `key = \"field\"`, `place = \"field\"` or `constants(NAME: u8 = 1)`",
+                    "expected `name = \"...\"`, `key = \"field\"`, `place = \"field\"`, `speaker(\"field\")` or \
+                     `constants(NAME: u8 = 1)`",
                 ));
             }
             Ok(())
         })?;
     }
+    speakers.iter().flat_map(Speaker::fields).try_for_each(|field| key_field(field, &fields).map(drop))?;
+    let speakers = (!speakers.is_empty()).then(|| {
+        let text = speaker::list(&speakers);
+        quote!(const SPEAKERS: &'static str = #text;)
+    });
     let place_field = place.as_ref().map(|place| key_field(place, &fields)).transpose()?;
     let place_name = place_field.as_ref().map(|field| field.unraw().to_string()).unwrap_or_default();
     let place = place.as_ref().zip(place_field).map(|(text, field)| place_of(text, field, &fields));
@@ -61,6 +71,7 @@ pub(crate) fn message(input: &DeriveInput) -> Result<TokenStream> {
         impl ::saoms_api::Message for #ident {
             const NAME: &'static str = #name;
             const SCHEMA: &'static str = #schema;
+            #speakers
 
             #key
             #place

@@ -16,6 +16,7 @@ mod loops;
 mod parts;
 mod properties;
 mod range;
+mod speaker;
 
 use proc_macro::TokenStream;
 use syn::{DeriveInput, ItemTrait, parse_macro_input};

@@ -47,6 +47,8 @@ pub(crate) fn topic(text: &mut Json, topic: &Path) {
     text.plain(",\"schema\":");
     text.json(quote!(#topic.schema()));
     text.text(quote!(::saoms_api::host::declaration::optional_topic(#topic.is_optional())));
+    text.text(quote!(::saoms_api::host::declaration::speakers_of_topic(#topic.speakers())));
+    text.json(quote!(#topic.speakers()));
     text.plain("}");
 }
 

@@ -33,6 +33,7 @@ struct Property<'a> {
     unique: String,
     required_text: bool,
     live: bool,
+    speaker: bool,
     language: String,
     plays: Vec<String>,
 }
@@ -253,6 +254,7 @@ impl<'a> Property<'a> {
             unique: String::new(),
             required_text: false,
             live: false,
+            speaker: false,
             language: String::new(),
             plays: Vec::new(),
         };
@@ -281,10 +283,12 @@ impl<'a> Property<'a> {
                     property.required_text = true;
                 } else if meta.path.is_ident("live") {
                     property.live = true;
+                } else if meta.path.is_ident("speaker") {
+                    property.speaker = true;
                 } else {
                     return Err(meta.error(
                         "expected one of `name`, `default`, `range`, `unit`, `allowed`, `unique`, `required_text`, \
-                         `live`, `language`, `plays`, `flatten`",
+                         `live`, `speaker`, `language`, `plays`, `flatten`",
                     ));
                 }
                 Ok(())
@@ -478,6 +482,9 @@ impl<'a> Property<'a> {
         }
         if property.live {
             text.plain(",\"live\":true");
+        }
+        if property.speaker {
+            text.plain(",\"speaker\":true");
         }
         text.text(flag(",\"many\":true", quote!(#shape.many)));
         text.member("unique", &property.unique);

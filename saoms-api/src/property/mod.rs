@@ -116,6 +116,7 @@ impl From<&str> for PropertyValue {
 /// | `range = 1..=99` | for numbers; also `0.0..1.0`, `1..`, `..=9`, and `"1ms"..="1h"` for durations |
 /// | `unit = "m"` | shown to people |
 /// | `allowed("a", "b")` | for strings |
+/// | `speaker` | it says as whom the component speaks, in [messages](crate::Message#who-speaks) that name their speaker |
 /// | `unique = "robot"` | no two components of a composite have the same value for properties with this word |
 /// | `required_text` | for strings: not empty, not blank |
 /// | `flatten` | the field is a property struct itself, whose properties stand here |

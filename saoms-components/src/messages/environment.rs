@@ -69,6 +69,11 @@ pub enum LuggageStage {
 
 /// A request to bring luggage from one block to another, or the response of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+#[message(speaker(
+    "robot",
+    unless(stage = "REQUEST"),
+    instead = "for new luggage publish a request, and send `breakdown` to free what the robot has taken"
+))]
 pub struct EventLuggage {
     /// Number of the robot that responds; in a request 0, or the number of the only robot that it is for.
     pub robot: u32,

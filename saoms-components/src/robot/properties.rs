@@ -20,11 +20,11 @@ const DISCHARGE: f64 = 2.0;
 #[derive(Clone, Debug, Properties)]
 pub struct RobotProperties {
     /// Name of the robot.
-    #[property(name = "ID", required_text, unique = "robot")]
+    #[property(name = "ID", required_text, unique = "robot", speaker)]
     pub(crate) id: SmolStr,
     /// Number of the robot; by default the digits at the end of its ID. Between equal robots the lower number goes
     /// first.
-    #[property(range = 1.., unique = "robot number")]
+    #[property(range = 1.., unique = "robot number", speaker)]
     pub(crate) number: Option<u32>,
     /// Column of the block with its charger, where it starts.
     #[property(default = 0, range = 0..)]

@@ -185,7 +185,8 @@ impl Handle {
     /// of the trace.
     ///
     /// # Errors
-    /// The fleet has no such topic, the message does not fit its schema, or the run ends.
+    /// The fleet has no such topic, the message does not fit its schema, it speaks in the name of a component of the
+    /// fleet, or the run ends.
     pub fn inject(&self, injection: Injection) -> Result<(), InjectError> {
         inject::inject(&self.shared, injection)
     }

@@ -12,6 +12,7 @@ use serde_json::Value;
 use super::engine::{Engine, RunPhase};
 use super::order::PendingOrder;
 use super::shared::Shared;
+use super::speakers::ForeignSpeaker;
 use super::takers::EventMessage;
 use crate::bus::TopicId;
 use crate::journal::JournalEntry;
@@ -74,6 +75,13 @@ pub enum InjectError {
         /// Found and expected content.
         error: String,
     },
+    /// It speaks in the name of a component of the fleet.
+    Speaker {
+        /// The topic.
+        topic: String,
+        /// The component, and what says so.
+        speaker: Box<ForeignSpeaker>,
+    },
     /// The run ends.
     Ending,
 }
@@ -93,6 +101,7 @@ impl fmt::Display for InjectError {
             InjectError::Content { topic, message, error } => {
                 write!(formatter, "topic `{topic}`: this is not a message `{message}`: {error}")
             }
+            InjectError::Speaker { topic, speaker } => write!(formatter, "topic `{topic}`: {speaker}"),
             InjectError::Ending => formatter.write_str("the run ends"),
         }
     }
@@ -184,6 +193,13 @@ pub(super) fn inject(shared: &Shared, injection: Injection) -> Result<(), Inject
             bytes
         }
     };
+    let speakers = shared.speakers();
+    if speakers.are_named_on(&topic) {
+        let message = schema.decode(&bytes).map_err(|error| refused(schema.name(), error.to_string()))?;
+        if let Some(speaker) = speakers.find(&topic, &message) {
+            return Err(InjectError::Speaker { topic, speaker: Box::new(speaker) });
+        }
+    }
     let (key, place) = (schema.key(&bytes), schema.place(&bytes));
     add(shared, at, Due::Message { topic: id, bytes, key, place, text });
     Ok(())

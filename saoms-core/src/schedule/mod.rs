@@ -24,6 +24,7 @@ mod order;
 mod os;
 mod settings;
 mod shared;
+mod speakers;
 mod stop;
 mod takers;
 #[cfg(test)]
@@ -41,5 +42,6 @@ pub use metrics::TimerSign;
 pub use order::{Order, OrderError, OrderTicket, TimedOrder};
 pub use os::realtime::RealtimeError;
 pub use settings::{ClockKind, Settings};
+pub use speakers::ForeignSpeaker;
 pub use stop::{hears_stops, stop_hardware};
 pub use takers::{EventMessage, RaiseError, Takers};

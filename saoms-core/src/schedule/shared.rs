@@ -10,6 +10,7 @@ use super::names::SlotNames;
 use super::os::clock::Clock;
 use super::os::sys::Gate;
 use super::settings::Settings;
+use super::speakers::Speakers;
 use super::stop::Stops;
 use super::takers::Takers;
 use crate::journal::RecordQueue;
@@ -164,6 +165,24 @@ impl Shared {
             engine.takers.0 = Some(Arc::clone(&takers));
         }
         takers
+    }
+
+    /// The components that say who they are in messages.
+    pub(super) fn speakers(&self) -> Arc<Speakers> {
+        let (members, changes) = {
+            let engine = self.lock();
+            if let Some(known) = &engine.speakers {
+                return Arc::clone(known);
+            }
+            let members = engine.slots.iter().filter(|slot| slot.is_member());
+            (members.map(|slot| Arc::clone(&slot.spec)).collect::<Vec<_>>(), engine.takers.1)
+        };
+        let speakers = Arc::new(Speakers::of(members.into_iter()));
+        let mut engine = self.lock();
+        if engine.takers.1 == changes {
+            engine.speakers = Some(Arc::clone(&speakers));
+        }
+        speakers
     }
 
     pub(super) fn sections(&self) -> MutexGuard<'_, Sections> {

@@ -30,6 +30,7 @@ impl Engine {
 
 /// All topics with their publishers and readers. The topics of a component whose code runs are those that it declares.
 pub(super) fn topics(shared: &Shared) -> Vec<TopicStatus> {
+    let speakers = shared.speakers();
     let engine = shared.lock();
     let mut all: Vec<(TopicId, TopicStatus)> = engine
         .bus
@@ -40,6 +41,7 @@ pub(super) fn topics(shared: &Shared) -> Vec<TopicStatus> {
                 kind: engine.bus.kind(id).name(),
                 message: engine.bus.message(id).to_owned(),
                 schema: serde_json::from_str(engine.bus.schema(id)).unwrap_or(Value::Null),
+                speakers: speakers.fields(engine.bus.name(id)),
                 publishers: Vec::new(),
                 readers: Vec::new(),
             };

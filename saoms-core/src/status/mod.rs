@@ -121,6 +121,8 @@ pub struct TopicStatus {
     pub message: String,
     /// The fields of its messages, as declarations write them.
     pub schema: Value,
+    /// The fields that say who speaks, in words.
+    pub speakers: Vec<String>,
     /// The components that publish it.
     pub publishers: Vec<String>,
     /// The components that read it.

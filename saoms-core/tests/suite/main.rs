@@ -25,6 +25,7 @@ mod reaction;
 mod real_time;
 mod regions;
 mod services;
+mod speakers;
 mod standstill;
 mod start;
 mod status;

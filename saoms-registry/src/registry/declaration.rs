@@ -10,7 +10,7 @@ use serde::de::{Deserializer, Error};
 use serde_json::Value;
 use smol_str::SmolStr;
 
-use super::{DefaultLoops, KnowledgeDeclaration};
+use super::{DefaultLoops, KnowledgeDeclaration, SpeakerField};
 
 /// All that a class declares.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -129,6 +129,9 @@ pub struct PropertyDeclaration {
     pub many: bool,
     /// The word that it shares with all properties of the fleet that must not have its value, too.
     pub unique: Option<String>,
+    /// True if it says as whom the component speaks: as its number, or as the digits at the end of its text.
+    #[serde(default)]
+    pub speaker: bool,
     /// The language of its text (see [`PropertyLanguage`](saoms_api::extension::PropertyLanguage)).
     pub language: Option<String>,
     /// The words of the language whose events the class plays itself.
@@ -222,6 +225,9 @@ pub struct ClassTopic {
     /// True if its publishers need no reader.
     #[serde(default)]
     pub optional: bool,
+    /// The fields of its messages that say who speaks.
+    #[serde(default)]
+    pub speakers: Vec<SpeakerField>,
 }
 
 /// An event that a class takes from outside the fleet.
@@ -385,6 +391,24 @@ impl ClassDeclaration {
                 _ => self.property(property)?.default.as_ref().map(SmolStr::from),
             });
         self.loops.of(chosen.as_deref())
+    }
+
+    /// The number as which a component with these values speaks: that of the first property that says so and has a
+    /// number, or else the digits at the end of the first that has a text. `None` if its class declares none.
+    pub fn speaker(&self, values: &[(SmolStr, PropertyValue)]) -> Option<i128> {
+        let named = self.properties.iter().filter(|property| property.speaker);
+        let given = named.filter_map(|property| match values.iter().find(|(name, _)| *name == property.name) {
+            // Its type may not have been read yet.
+            Some((_, PropertyValue::Scalar(Scalar::Text(text)))) => property.check(text.clone()).ok(),
+            Some((_, PropertyValue::Scalar(value))) => Some(value.clone()),
+            _ => property.check(property.default.as_ref()?).ok(),
+        });
+        let given: Vec<Scalar> = given.collect();
+        let number = |value: &Scalar| if let Scalar::Integer(number) = value { Some(number.get()) } else { None };
+        given.iter().find_map(number).or_else(|| {
+            let text = given.iter().find_map(Scalar::as_text)?.trim();
+            text[text.trim_end_matches(|sign: char| sign.is_ascii_digit()).len()..].parse().ok()
+        })
     }
 
     /// Its property of this name.

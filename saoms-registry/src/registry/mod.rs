@@ -11,6 +11,7 @@ mod looping;
 mod near;
 mod read;
 mod rule;
+mod speaker;
 mod team;
 #[cfg(test)]
 mod tests;
@@ -33,6 +34,7 @@ pub use declaration::{inner_type, signature, type_name, type_words};
 pub use error::{Holder, RegistryError};
 pub use looping::{DeclaredEntry, DefaultLoops, KnowledgeDeclaration, LoopDeclaration, LoopProvider, RegisteredLoop};
 pub use rule::{RegisteredRule, RuleProvider};
+pub use speaker::SpeakerField;
 pub use team::{Team, TeamFault};
 
 use crate::ReservedCodes;

@@ -180,6 +180,36 @@ fn loops() -> Value {
     })
 }
 
+#[test]
+fn who_speaks_has_to_be_an_integer_field_and_a_number_or_a_text() {
+    let refused = |speaker: Value, kind: &str| {
+        let schema = json!({"name": "Said", "fields": [{"name": "who", "type": "uint32"}, {"name": "what", "type": "string"},
+            {"name": "stage", "type": {"enumeration": "uint8", "values": {"REQUEST": 0, "ANSWER": 1}}}]});
+        let class = json!({
+            "contract": 1, "class": "d.Speaker", "kind": "passive",
+            "properties": [{"name": "id", "type": kind, "required": true, "speaker": true}],
+            "publishes": [{"topic": "SAID", "kind": "event", "message": "Said", "schema": schema, "speakers": [speaker]}]
+        });
+        let added = Registry::new().add_provided(&class.to_string(), Arc::new(Registration::of::<Eye>()));
+        let head = "the declaration of class `d.Speaker` is malformed: ";
+        added.map_or_else(|error| error.to_string().replace(head, ""), |()| "fits".to_owned())
+    };
+    for (speaker, kind, words) in [
+        (json!({"field": "who", "unless": {"stage": "REQUEST"}}), "string", "fits"),
+        (json!({"field": "who", "only": {"stage": "ANSWER"}, "instead": "ask"}), "integer", "fits"),
+        (json!({"field": "whom"}), "string", "topic `SAID`: `speakers` names `whom`, which is no field of `Said`"),
+        (json!({"field": "what"}), "string", "topic `SAID`: `speakers` names `what` of `Said`, which is no integer"),
+        (
+            json!({"field": "who", "unless": {"stage": "Request"}}),
+            "string",
+            "topic `SAID`: `speakers` names `Request`, which is no constant of `stage` of `Said`",
+        ),
+        (json!({"field": "who"}), "float", "property `id` cannot be `speaker`: it is neither one integer nor one text"),
+    ] {
+        assert_eq!(refused(speaker, kind), words);
+    }
+}
+
 fn driver() -> Value {
     json!({"contract": 1, "loop": "c.Driver", "knowledge": "c.Cart", "senses": ["busy"], "effects": ["stopped"]})
 }

@@ -106,9 +106,10 @@ pub(super) fn looping(one: &LoopDeclaration) -> Result<(), String> {
 
 /// Checks the types of messages.
 fn schemas<'a>(mut topics: impl Iterator<Item = &'a ClassTopic>) -> Result<(), String> {
-    topics.try_for_each(|topic| match Schema::of(&topic.schema) {
-        Ok(_) => Ok(()),
-        Err(error) => Err(format!("the schema of topic `{}`: {error}", topic.name)),
+    topics.try_for_each(|topic| {
+        Schema::of(&topic.schema).map_err(|error| format!("the schema of topic `{}`: {error}", topic.name))?;
+        let speakers = topic.speakers.iter().try_for_each(|one| one.check(&topic.schema));
+        speakers.map_err(|error| format!("topic `{}`: {error}", topic.name))
     })
 }
 
@@ -122,6 +123,10 @@ fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {
         let name = &property.name;
         if (property.kind == PropertyKind::Complex) == property.properties.is_empty() {
             return Err(format!("property `{name}` of type {} has the wrong inner properties", property.kind.name()));
+        }
+        if property.speaker && (property.many || !matches!(property.kind, PropertyKind::Integer | PropertyKind::String))
+        {
+            return Err(format!("property `{name}` cannot be `speaker`: it is neither one integer nor one text"));
         }
         if let Some(default) = &property.default {
             property.check(default).map_err(|message| format!("the default of property `{name}`: {message}"))?;

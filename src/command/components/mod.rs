@@ -234,6 +234,9 @@ fn property_lines((property, preset): (&PropertyDeclaration, Option<&str>)) -> S
     if let Some(scope) = &property.unique {
         facts.push(format!("unique as {scope}"));
     }
+    if property.speaker {
+        facts.push("says who speaks".to_owned());
+    }
     let mut text = format!("  {}: {}\n", property.name, facts.join(", "));
     for line in wrapped(&property.doc, 96) {
         let _ = writeln!(text, "      {line}");
@@ -247,7 +250,11 @@ fn library_line(origin: Option<&Path>) -> String {
 }
 
 fn topic_line(topic: &ClassTopic) -> String {
-    format!("  {} ({} topic of {})\n", topic.name, topic.kind.name(), topic.message)
+    let mut text = format!("  {} ({} topic of {})\n", topic.name, topic.kind.name(), topic.message);
+    for speaker in &topic.speakers {
+        let _ = writeln!(text, "      who speaks: {speaker}");
+    }
+    text
 }
 
 fn interface_lines(name: &str, more: &str, interface: &InterfaceDeclaration) -> String {

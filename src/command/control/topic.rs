@@ -150,6 +150,9 @@ fn info(arguments: &InfoArguments) -> Result<(), Exit> {
                 .map_or_else(|| of["name"].as_str().map_or_else(|| of.to_string(), str::to_owned), str::to_owned);
             text.push_str(&format!("  {}: {}\n", word(&field["name"]), one_line(&of)));
         }
+        for speaker in topic["speakers"].as_array().into_iter().flatten() {
+            text.push_str(&format!("who speaks: {}\n", word(speaker)));
+        }
         text.push_str("published by\n");
         for publisher in topic["publishers"].as_array().into_iter().flatten() {
             text.push_str(&format!("  {}\n", word(publisher)));

@@ -1,6 +1,7 @@
 //! Commands that reach a running fleet, against real processes.
 
 mod alerts;
+mod by_hand;
 mod emergency;
 mod exposition;
 mod hang;

@@ -39,7 +39,8 @@ fn build(sources: &[PathBuf], library: &Path) {
     }
 }
 
-fn library() -> &'static Path {
+/// The robot in C.
+pub(crate) fn library() -> &'static Path {
     &LIBRARY.1
 }
 

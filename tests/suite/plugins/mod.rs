@@ -7,4 +7,5 @@ mod loops;
 mod reload;
 mod wheels;
 
+pub(crate) use c::library as c_library;
 pub(crate) use examples::library;

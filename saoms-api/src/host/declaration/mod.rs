@@ -35,6 +35,10 @@
 //!   them.
 //! - The `kind` of a topic is `state` or `event`; its name is the one before any `topicRename`. `"optional": true` in
 //!   one that is published declares that it needs no reader.
+//! - `"speakers": [{"field": "robot", "only": {"stage": "TAKEN"}, "unless": {"stage": "SEEN"}, "instead": "..."}]` in a
+//!   topic names the integer fields that say who speaks, and the constants of enumerations with which they do. A
+//!   message from outside in the name of a component that publishes the topic is refused; `instead` ends the sentence
+//!   that says what to do. It is no part of the schema: two ends need not agree in it.
 //! - `stops`, where it is `true`: its components register functions that stop their hardware.
 //! - `reacts`, where it is `true`: its components have a function for messages that trigger them.
 //! - `apart`, where it is `true`: its components never run on the thread of the timer.
@@ -98,6 +102,7 @@
 //! | `live` | `true`: it can be changed while the component runs |
 //! | `many` | `true`: any number of values; everything else applies to each |
 //! | `unique` | a word: no two components have the same value for properties with this word |
+//! | `speaker` | `true`: it says as whom the component speaks; a number counts before the digits at the end of a text |
 //! | `properties` | those of a `complex` one |
 //!
 //! Fields that do not apply are absent. [`Rule`] defines exactly which texts a scalar property accepts, for the checker
@@ -135,6 +140,14 @@ pub const fn optional_topic(is_optional: bool) -> ConstText {
     match is_optional {
         true => ConstText::Plain(",\"optional\":true"),
         false => ConstText::EMPTY,
+    }
+}
+
+/// What stands before the [fields that say who speaks](crate::Message::SPEAKERS) in the declaration of a topic.
+pub const fn speakers_of_topic(speakers: &str) -> ConstText {
+    match speakers.is_empty() {
+        true => ConstText::EMPTY,
+        false => ConstText::Plain(",\"speakers\":"),
     }
 }
 

@@ -314,6 +314,7 @@ impl<'a> Change<'a> {
             }
         }
         engine.takers = (None, engine.takers.1 + 1);
+        engine.speakers = None;
         engine.end_if_done(now);
         self.shared.release(engine);
         drop(outgoing);

@@ -33,6 +33,7 @@ use super::hold::Pace;
 use super::inject::Injections;
 use super::order::PendingOrders;
 use super::settings::{ClockKind, Settings, nanos};
+use super::speakers::Speakers;
 use super::stop::Stops;
 use super::takers::Takers;
 use crate::bus::Bus;
@@ -87,6 +88,8 @@ pub(crate) struct Engine {
     pub(crate) faults: Faults,
     /// The takers of events since the last change of the fleet, once somebody asked for them; the number of changes.
     pub(crate) takers: (Option<Arc<Takers>>, u64),
+    /// The components that say who they are in messages, once somebody asked for them since that change.
+    pub(crate) speakers: Option<Arc<Speakers>>,
     /// The number of each component, by its path.
     pub(crate) numbers: HashMap<Arc<str>, u32>,
     /// The component of a change that failed in a call, before the change was committed.
@@ -185,6 +188,7 @@ impl Engine {
             record_ids: Arc::default(),
             faults: settings.faults.clone(),
             takers: (None, 0),
+            speakers: None,
             numbers: HashMap::new(),
             held_failure: None,
             cause: None,
