@@ -9,6 +9,7 @@ use std::time::Duration;
 
 pub use nearest::nearest;
 
+use crate::event::Event;
 use crate::host::{PropertyValue, SmolStr};
 use crate::property::values_of;
 use crate::{Class, Finding, Properties};
@@ -253,6 +254,8 @@ pub struct ClassView<'a> {
     pub publishes: Vec<&'a str>,
     /// The classes of the loops, in their order.
     pub loops: Vec<&'a str>,
+    /// The events that it takes. A rule of a library gets none.
+    pub takes: Vec<Event>,
 }
 
 /// A component of a fleet, as rules see it.

@@ -33,7 +33,19 @@ impl ClassDeclaration {
 /// The fields of a message, as an event writes them.
 fn fields(schema: &Value) -> Vec<EventField> {
     let all = schema["fields"].as_array().into_iter().flatten();
-    all.map(|field| EventField { name: text(&field["name"]), of: field_type(&field["type"]) }).collect()
+    let field = |field: &Value| {
+        let of = &field["type"];
+        EventField { name: text(&field["name"]), of: field_type(of), message: struct_name(of) }
+    };
+    all.map(field).collect()
+}
+
+/// The name of the struct that a type is, or is made of.
+fn struct_name(mut value: &Value) -> String {
+    while let Some(inner) = ["optional", "sequence", "array", "bounded"].iter().find_map(|of| value.get(of)) {
+        value = inner;
+    }
+    if value.get("fields").is_some() { text(&value["name"]) } else { String::new() }
 }
 
 fn text(value: &Value) -> String {

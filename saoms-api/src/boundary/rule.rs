@@ -94,6 +94,7 @@ unsafe fn read_member<'a>(
                 extends: read_texts(&view.extends)?,
                 publishes: read_texts(&view.publishes)?,
                 loops: read_texts(&view.loops)?,
+                takes: Vec::new(),
             }),
             values,
             period: (view.period != u64::MAX).then(|| Duration::from_nanos(view.period)),

@@ -11,6 +11,8 @@ pub struct EventField {
     pub name: String,
     /// Its type.
     pub of: FieldType,
+    /// The name of the struct that its type is, or is made of; empty for others.
+    pub message: String,
 }
 
 /// The type of a field, or of a part of one.

@@ -57,7 +57,7 @@ impl Event {
     /// Its meaning, its fields and the classes that take it, in Markdown.
     pub fn described(&self) -> String {
         let mut text = format!("`{}`: {}", self.sample(), self.doc);
-        for EventField { name, of } in &self.fields {
+        for EventField { name, of, .. } in &self.fields {
             let optional = if of.is_optional() { ", optional" } else { "" };
             text.push_str(&format!("\n- `{name}`: {}{optional}", of.expected()));
         }

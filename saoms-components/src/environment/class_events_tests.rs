@@ -16,7 +16,7 @@ use super::player::{Player, ScenarioEvent};
 use super::scenario::Scenario;
 
 fn events() -> Events {
-    let field = |name: &str, of| EventField { name: name.to_owned(), of };
+    let field = |name: &str, of| EventField { name: name.to_owned(), of, message: String::new() };
     let number = |most: &str| FieldType::Scalar {
         kind: PropertyKind::Integer,
         bounds: Some(("0".to_owned(), most.to_owned())),

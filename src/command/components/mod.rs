@@ -122,7 +122,7 @@ fn event_lines(event: &Event) -> String {
     for line in wrapped(&event.doc, 96) {
         let _ = writeln!(text, "      {line}");
     }
-    for EventField { name, of } in &event.fields {
+    for EventField { name, of, .. } in &event.fields {
         let optional = if of.is_optional() { ", optional" } else { "" };
         let _ = writeln!(text, "      {name}: {}{optional}", of.expected());
     }

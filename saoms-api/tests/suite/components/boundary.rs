@@ -448,6 +448,7 @@ fn a_rule_finds_the_same_behind_the_boundary() {
         extends: vec!["{}", "{1}"],
         publishes: vec!["A", "B"],
         loops: vec!["test.Dimmer"],
+        takes: Vec::new(),
     };
     let one = ComponentView {
         path: "hall/robot",

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use saoms_api::rule::{Code, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
+use super::event_block;
 use crate::environment::{Spanned, Spot};
 use crate::messages::AREA;
 use crate::rules::budget::Budget;
@@ -17,7 +18,8 @@ pub(in crate::rules) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5001",
         name: "luggage-place",
-        meaning: "A scenario has luggage at a block that no robot can enter: the block is outside the map, or blocked.",
+        meaning: "A scenario has luggage at a block that no robot can enter: the block is outside the map, or blocked. Or an \
+            event that another class takes is at a block outside the map, which is a warning.",
         severity: Severity::Error,
         rule: None,
     },
@@ -52,6 +54,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             }
         }
     }
+    findings.extend(event_block::check(fleet));
     findings
 }
 

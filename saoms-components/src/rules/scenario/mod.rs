@@ -2,6 +2,7 @@
 
 pub(super) mod broken_twice;
 pub(super) mod early_end;
+mod event_block;
 pub(super) mod luggage;
 pub(crate) mod no_work;
 pub(super) mod unknown_robot;

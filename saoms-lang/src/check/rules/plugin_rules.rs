@@ -308,6 +308,7 @@ fn class_view<'s>(
             extends: class.extended_json().collect(),
             publishes: published.map(|topic| topic.name.as_str()).collect(),
             loops: loops.iter().map(|one| one.class.name()).collect(),
+            takes: class.declaration().events().collect(),
         })
     };
     Rc::clone(known.entry((class, loops.as_ptr())).or_insert_with(make))
