@@ -197,6 +197,8 @@ fn parsed() -> Arguments {
             && let Some(own) = meant_option(word)
         {
             error.remove(ContextKind::Suggested);
+            // It shows the option that is most like the word, not the one that is meant.
+            error.remove(ContextKind::Usage);
             error.insert(ContextKind::SuggestedArg, ContextValue::String(own.to_owned()));
         }
         if error.kind() == ErrorKind::UnknownArgument

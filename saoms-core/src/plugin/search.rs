@@ -93,6 +93,7 @@ impl Search {
                 Err(error) => found.left_out.push(error),
             }
         };
+        let mut unreadable = BTreeSet::new();
         for path in &self.named {
             if !path.is_dir() {
                 look(path, true, &mut found);
@@ -103,6 +104,8 @@ impl Search {
                 look(library, false, &mut found);
             }
             if libraries.is_empty() {
+                // It may lie beside a composite, too.
+                unreadable.insert(identity(path));
                 let message = match fs::read_dir(path) {
                     Ok(_) => "there is no library (`*.so`) in this folder".to_owned(),
                     Err(error) => error.to_string(),
@@ -110,7 +113,6 @@ impl Search {
                 found.errors.push(PluginError::Unreadable { path: path.clone(), message });
             }
         }
-        let mut unreadable = BTreeSet::new();
         for folder in self.folders.iter().chain(&self.around) {
             match fs::read_dir(folder) {
                 Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {

@@ -386,6 +386,29 @@ fn what_makes_the_work_too_long_for_a_battery_is_shown() {
 }
 
 #[test]
+fn times_are_no_cause_where_a_battery_counts_blocks_alone() {
+    let folder = empty_folder("hints/blocks");
+    let slow = "\"saoms.World\"/><property name=\"moveTime\">3s</property>";
+    for (energy, label) in [
+        ("<property name=\"discharge\">5</property>", Some("-- a move takes 30 executions")),
+        ("<property name=\"dischargePerBlock\">40</property><property name=\"chargePerSecond\">2</property>", None),
+        (
+            "<property name=\"dischargePerSecond\">4</property><property name=\"chargePerSecond\">2</property>",
+            Some("-- a move takes 3 s"),
+        ),
+    ] {
+        let text = hall("\"saoms.World\"/>", slow).replace("\"saoms.Robot\"/>", &format!("\"saoms.Robot\"/>{energy}"));
+        fs::write(folder.join("fleet.composite"), text).unwrap();
+        let text = String::from_utf8(saoms_in(&folder, &["check", "fleet.composite"]).stderr).unwrap();
+        assert!(text.contains("error[S5006]") && text.contains(" % of a battery"), "{text}");
+        match label {
+            Some(label) => assert!(text.contains(label), "{text}"),
+            None => assert!(!text.contains("a move takes"), "{text}"),
+        }
+    }
+}
+
+#[test]
 fn a_task_property_of_a_passive_class_is_to_be_removed() {
     let broker = "<component name=\"B\"><implementation.rust class=\"saoms.MessageBroker\"/><property name=\"ID\" \
                   value=\"B\"/></component></composite>";

@@ -95,6 +95,7 @@ fn several_files_need_a_folder() {
         let told = stderr(&saoms(&["run", "composites/hall.composite", written, "10s"]));
         assert!(told.contains(&format!("tip: a similar argument exists: '{meant}'")), "{told}");
         assert_eq!(told.matches("tip:").count(), 1, "{told}");
+        assert!(!told.contains("--timer-slack"), "{told}");
     }
     for version in ["-v", "-V"] {
         let output = saoms(&["run", "composites/hall.composite", version]);

@@ -92,26 +92,44 @@ fn check_luggage(fleet: &FleetView<'_>, events: &str, luggage: &[LuggageLine]) -
             return useless;
         }
     }
+    // How far a battery lasts that counts blocks alone does not depend on how long they take.
+    let consumption = &robots[0].properties;
+    let is_by_distance = consumption.discharge_per_block.is_some() && consumption.discharge_per_second.is_none();
+    let is_timeless = is_by_distance && !findings.is_empty();
     // Luggage that no robot can bring is no load. What a classic robot does in a time with an empty battery is unknown.
     if findings.is_empty() && is_safe {
         findings.extend(overloaded(&area, &ranges, luggage, &mut ways));
     }
-    findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], &ranges[0])).collect()
+    let times = (!is_timeless).then_some(&ranges[0]);
+    findings.into_iter().map(|finding| explained(fleet, finding, &area, robots[0], times)).collect()
 }
 
-/// The finding with the properties that make the work take long, as far as the composite gives them.
-fn explained(fleet: &FleetView<'_>, finding: Finding, area: &WorldMap, robot: &FleetRobot, range: &Range) -> Finding {
-    let executions = |count: u32, what: &str| match count {
-        1 => None,
-        count => Some(format!("{what} takes {count} executions")),
+/// The finding with the properties that make the work take energy, and, if times matter, of a robot of this range,
+/// those that make it take long, as far as the composite gives them.
+fn explained(
+    fleet: &FleetView<'_>,
+    finding: Finding,
+    area: &WorldMap,
+    robot: &FleetRobot,
+    times: Option<&Range>,
+) -> Finding {
+    let takes = |count: fn(&Range) -> u32, what: &str| {
+        let range = times?;
+        let count = Some(count(range)).filter(|count| *count > 1)?;
+        Some(match range.physical {
+            Some(_) => format!("{what} takes {} s", f64::from(count) * range.period),
+            None => format!("{what} takes {count} executions"),
+        })
     };
-    let (properties, takes) = (&robot.properties, "% of a battery");
-    let discharge = properties.discharge.map(|percent| format!("each execution takes {percent} {takes}"));
-    let of_block = properties.discharge_per_block.map(|percent| format!("each block takes {percent} {takes}"));
-    let of_second = properties.discharge_per_second.map(|percent| format!("each second takes {percent} {takes}"));
+    let properties = &robot.properties;
+    let energy =
+        |percent: Option<f64>, what: &str| percent.map(|percent| format!("each {what} takes {percent} % of a battery"));
+    let discharge = energy(properties.discharge, "execution");
+    let of_block = energy(properties.discharge_per_block, "block");
+    let of_second = energy(properties.discharge_per_second, "second");
     let causes = [
-        (area.index, "moveTime", executions(range.moving, "a move")),
-        (area.index, "handlingTime", executions(range.handling, "collecting or depositing")),
+        (area.index, "moveTime", takes(|range| range.moving, "a move")),
+        (area.index, "handlingTime", takes(|range| range.handling, "collecting or depositing")),
         (robot.index, "discharge", discharge),
         (robot.index, "dischargePerBlock", of_block),
         (robot.index, "dischargePerSecond", of_second),
