@@ -5,11 +5,12 @@ use std::mem::MaybeUninit;
 use std::ptr;
 use std::sync::OnceLock;
 
-use saoms_api::host::present::library_at;
+use saoms_api::host::present::{libraries, library_at};
 
-use super::blame::{Blame, blame, is_program, write};
+use super::blame::{Blame, blame, is_program, libraries_joined, write};
 use super::hardware;
 use super::signals::{UseAs, keep_for};
+use super::stray::Origin;
 
 /// The signals of a crash, with what they mean.
 const CRASHES: [(c_int, &str); 7] = [
@@ -81,7 +82,12 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
                     write(&["error: code of library `", library, "` crashed: ", meaning, "\n"]);
                     action.sa_sigaction = libc::SIG_DFL;
                 }
-                None => action = BEFORE[place].get().copied().unwrap_or(action),
+                None => {
+                    if is_of_code || Origin::of(info).is_of_this_process() {
+                        tell_of_program(meaning);
+                    }
+                    action = BEFORE[place].get().copied().unwrap_or(action);
+                }
             },
         }
         if is_program() {
@@ -92,6 +98,21 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
         if !is_of_code {
             libc::raise(signal);
         }
+    }
+}
+
+/// Tells a crash of the program itself, which finds out what code of a library did before: to its memory, or to the
+/// limits of the process. Part by part: the stack for signals of a thread of the program has no room for a line.
+#[cold]
+#[inline(never)]
+fn tell_of_program(meaning: &str) {
+    if is_program() && libraries().next().is_some() {
+        let write = |part: &str| {
+            crate::output::write_error(part.as_bytes());
+        };
+        write("error: the program crashed, maybe since code of library `");
+        libraries_joined().for_each(write);
+        ["` damaged or limited its memory: ", meaning, "\n"].into_iter().for_each(write);
     }
 }
 

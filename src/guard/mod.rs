@@ -6,6 +6,7 @@ mod end;
 mod floats;
 mod hang;
 mod hardware;
+mod limits;
 mod own_end;
 mod signals;
 mod stray;
@@ -40,6 +41,7 @@ pub(crate) fn install() {
         keep_folder();
         keep_mask();
         floats::keep();
+        limits::keep();
         thread_end::prepare();
         blame::keep_process();
         crash::install();
@@ -73,14 +75,27 @@ fn look(owner: &'static Owner, function: Function) {
     signals::unblock(&owner.text, &place);
     signals::take_back(&owner.text, &place);
     floats::take_back(&owner.text, &place);
+    limits::take_back(&owner.text, &place);
     tell_lost_descriptors(&owner.text, &place);
+}
+
+/// The libraries whose code runs here, for a text in quotes.
+pub(crate) fn libraries() -> String {
+    blame::libraries_joined().collect()
+}
+
+/// Looks at what code of libraries has done, before the program writes what it was asked for.
+pub(crate) fn look_at_end() {
+    if INSTALLED.is_completed() {
+        look_again();
+    }
 }
 
 /// Looks at what code of libraries that has run for longer has done.
 fn look_again() {
-    let libraries: String = blame::libraries_joined().collect();
-    let who = format!("code of library `{libraries}`");
+    let who = format!("code of library `{}`", libraries());
     signals::take_back(&who, "");
+    limits::take_back(&who, "");
     tell_lost_descriptors(&who, "");
 }
 

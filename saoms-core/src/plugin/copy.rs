@@ -12,6 +12,9 @@ use object::read::elf::{Dyn as _, FileHeader as _};
 
 use super::library::why;
 
+/// How libraries are loaded: all that they call is bound at once, and their own `dlclose` does not unload them.
+pub(super) const FLAGS: i32 = RTLD_NOW | RTLD_LOCAL | libc::RTLD_NODELETE;
+
 /// A copy of a library, until it is loaded: the loaded code does not need the name of its file any more.
 pub(super) struct PrivateCopy {
     pub(super) path: PathBuf,
@@ -50,7 +53,7 @@ impl PrivateCopy {
         }
         for dependency in dependencies(library).unwrap_or_default() {
             // SAFETY: whoever names a library wants its code to run, and this is a part of it.
-            let loaded = unsafe { Library::open(Some(&dependency), RTLD_NOW | RTLD_LOCAL) };
+            let loaded = unsafe { Library::open(Some(&dependency), FLAGS) };
             // Never unloaded, as the library.
             std::mem::forget(loaded.map_err(|error| why(&error, &dependency))?);
         }
@@ -107,7 +110,7 @@ mod tests {
         let copy = PrivateCopy { path: elsewhere.path().join("copy"), is_beside: false };
         fs::copy(&library, &copy.path).unwrap();
         // SAFETY: the code is that above.
-        let open = || unsafe { Library::open(Some(&copy.path), RTLD_NOW | RTLD_LOCAL) };
+        let open = || unsafe { Library::open(Some(&copy.path), FLAGS) };
         assert!(open().is_err());
         copy.load_dependencies(&library).unwrap();
         open().unwrap();

@@ -6,11 +6,11 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::{error, fmt, fs, slice};
 
-use libloading::os::unix::{Library, RTLD_LOCAL, RTLD_NOW, Symbol};
+use libloading::os::unix::{Library, Symbol};
 use saoms_abi::{EntryPoint, PluginTable, VERSION};
 use saoms_api::host::present::{self, Function, Owner, enter, looked_after};
 
-use super::copy::PrivateCopy;
+use super::copy::{FLAGS, PrivateCopy};
 use super::tables::{all, whole};
 use super::{Code, ImportedClass, ImportedLoopClass, ImportedRule, Metadata, PluginError};
 
@@ -130,7 +130,7 @@ fn loaded(path: &Path) -> Result<&'static Library, String> {
     copy.load_dependencies(path)?;
     // All that it calls is bound now: a function that nobody has would end the program when it is called first.
     // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
-    let library = unsafe { Library::open(Some(&copy.path), RTLD_NOW | RTLD_LOCAL) };
+    let library = unsafe { Library::open(Some(&copy.path), FLAGS) };
     // Never unloaded: its functions, texts and threads are in use until the program ends.
     let library: &'static Library = Box::leak(Box::new(library.map_err(|error| why(&error, &copy.path))?));
     loaded.push((stamp, library));

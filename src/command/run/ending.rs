@@ -135,7 +135,11 @@ fn cannot_wait() {
         }
     }
     guard::forget_signals();
-    eprint("warning: Ctrl-C ends the process without a report: code of a library closed what the program waits with\n");
+    let libraries = guard::libraries();
+    eprint(&format!(
+        "warning: Ctrl-C ends the process without a report: code of library `{libraries}` closed what the program waits \
+         with\n"
+    ));
 }
 
 /// Ends the process although something runs, and says what it is. Hardware is stopped before.

@@ -274,6 +274,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         fleet.wait_for_end();
         limit_patience(arguments.grace);
     }
+    crate::guard::look_at_end();
     let outcome = fleet.run_to_end().outcome;
     drop((hold, reload, server, notifier));
     if report.is_some_and(|report| report.output.has_failed())

@@ -1,11 +1,12 @@
 /* Components in C that do to the process, or ask of the program, what they must not, by the property `does`. */
+/* For `dladdr`. */
+#define _GNU_SOURCE
 #include <pthread.h>
 #include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "process.h"
@@ -284,9 +285,6 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     } else if (does(actor, "takes signals")) {
         signal(SIGINT, SIG_IGN);
         signal(SIGTERM, SIG_IGN);
-    } else if (does(actor, "limits files")) {
-        struct rlimit none = {0, 0};
-        setrlimit(RLIMIT_FSIZE, &none);
     } else if (does(actor, "traps")) {
         raise(SIGTRAP);
     } else if (strncmp(actor->does, "at the end ", 11) == 0) {

@@ -1,9 +1,11 @@
 /* What code of a library can do to the process that it runs in, by name. */
+#include <dlfcn.h>
 #include <fenv.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -48,6 +50,13 @@ static void at_key(void (*destructor)(void *)) {
     }
 }
 
+static void limit(int resource) {
+    struct rlimit none;
+    getrlimit(resource, &none);
+    none.rlim_cur = 0;
+    setrlimit(resource, &none);
+}
+
 /* Does it, if it is one of these. */
 static void act_on_process(const char *does) {
     if (strcmp(does, "hangs") == 0) {
@@ -78,6 +87,20 @@ static void act_on_process(const char *does) {
         at_key(exit_of);
     } else if (strcmp(does, "key crashes") == 0) {
         at_key(crash_of);
+    } else if (strcmp(does, "limits memory") == 0) {
+        limit(RLIMIT_AS);
+        limit(RLIMIT_DATA);
+    } else if (strcmp(does, "limits descriptors") == 0) {
+        limit(RLIMIT_NOFILE);
+    } else if (strcmp(does, "limits files") == 0) {
+        limit(RLIMIT_FSIZE);
+    } else if (strcmp(does, "closes itself") == 0) {
+        Dl_info self;
+        void *handle = dladdr((void *)limit, &self) == 0 ? NULL : dlopen(self.dli_fname, RTLD_NOW);
+        int count;
+        for (count = 0; handle != NULL && count < 10; count++) {
+            dlclose(handle);
+        }
     } else if (strcmp(does, "frees twice") == 0) {
         char *volatile memory = malloc(24);
         free(memory);

@@ -2,12 +2,11 @@
 //! ends as it would without them.
 
 use std::io::{BufRead, BufReader};
-use std::os::unix::process::ExitStatusExt;
 use std::process::{Command, Output, Stdio};
 
 use super::build::c_library_of;
 use super::run::{Run, component, in_folder, property, second};
-use crate::support::{PROGRAM, command, stderr, text};
+use crate::support::{PROGRAM, command, text};
 
 pub(super) fn bad(class: &str, does: &str, inside: &str) -> String {
     component("Bad", class, &(property("does", does) + inside))
@@ -241,17 +240,6 @@ fn a_crash_on_a_thread_of_a_library_is_told_with_the_library() {
     let output = ended("traps");
     assert!(text(&output).contains("component `Bad` of library `"), "{}", text(&output));
     assert!(text(&output).contains("crashed in `execute`: SIGTRAP"), "{}", text(&output));
-}
-
-#[test]
-fn a_file_that_may_not_grow_is_told() {
-    let output = ended("limits files");
-    assert_eq!((output.status.signal(), output.status.code()), (None, Some(1)), "{}", text(&output));
-    assert!(
-        stderr(&output).contains("the report could not be written to `r.json`: File too large"),
-        "{}",
-        text(&output)
-    );
 }
 
 #[test]

@@ -174,6 +174,38 @@ fn the_rounding_of_numbers_that_a_library_changes_at_its_start_is_given_back_by_
 }
 
 #[test]
+fn limits_that_a_library_lowers_are_given_back_by_name() {
+    for (does, limits) in [
+        ("limits memory", "RLIMIT_AS, RLIMIT_DATA"),
+        ("limits descriptors", "RLIMIT_NOFILE"),
+        ("limits files", "RLIMIT_FSIZE"),
+    ] {
+        for (at, place) in [("made: ", "the constructor"), ("begins: ", "`initialize`")] {
+            let output = assert_named(&format!("{at}{does}"), &format!("lowered {limits} of the process in {place}:"));
+            assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+            assert_eq!(stderr(&output).matches(limits).count(), 1, "once: {}", text(&output));
+        }
+    }
+    // What is found out at the end of the run is given back before the report is written.
+    for (does, limit) in [("limits descriptors", "RLIMIT_NOFILE"), ("limits files", "RLIMIT_FSIZE")] {
+        let output = ended(does);
+        assert!(
+            stderr(&output).contains(&format!("libhostile.so` lowered {limit} of the process:")),
+            "{}",
+            text(&output)
+        );
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    }
+}
+
+/// A library is never unloaded, also where it tries.
+#[test]
+fn a_library_that_closes_itself_goes_on() {
+    let output = ended("closes itself");
+    assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{}", text(&output));
+}
+
+#[test]
 fn signals_that_a_library_takes_over_or_blocks_at_its_start_are_given_back_by_name() {
     for (does, expected) in [
         ("made: takes SIGINT", "took over the signal SIGINT in the constructor: it ends the run again"),
@@ -217,6 +249,9 @@ fn a_crash_that_nobody_is_to_blame_for_ends_with_its_own_signal() {
     // The stack for signals of a thread of the program is small.
     let output = ended("aborts later");
     assert_eq!(output.status.signal(), Some(libc::SIGABRT), "{}", text(&output));
+    // The program finds out what was done to its memory, in its own code.
+    assert!(stderr(&output).contains("libhostile.so` "), "{}", text(&output));
+    assert!(stderr(&output).contains(": SIGABRT"), "{}", text(&output));
 }
 
 #[test]
