@@ -17,7 +17,7 @@ mod server;
 mod token;
 mod topics;
 
-pub use alerts::{Acknowledgement, Alert, AlertList};
+pub use alerts::{Acknowledgement, Alert, AlertList, AlertTarget};
 pub use client::{Client, ClientError, Response, running};
 pub use date::date;
 pub use description::FleetDescription;

@@ -59,6 +59,13 @@ impl Token {
         Ok(Token(text.to_owned()))
     }
 
+    /// A token that somebody else made, such as that of a service which is told of alerts. `None` if a header cannot
+    /// hold it.
+    pub fn of(text: &str) -> Option<Token> {
+        let is_one = (1..=LENGTHS.1).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_graphic());
+        is_one.then(|| Token(text.to_owned()))
+    }
+
     fn new() -> io::Result<Token> {
         let mut chance = [0_u8; CHANCE];
         File::open("/dev/urandom")?.read_exact(&mut chance)?;

@@ -210,7 +210,8 @@ fn roam(side: i32) -> Result<f64, Box<dyn std::error::Error>> {
             loops: Arc::default(),
         });
     }
-    let fleet = RunningFleet::start(Assembly { components }, Settings::simulated(0), Vec::new())?;
+    let fleet =
+        RunningFleet::start(Assembly { components, ..Assembly::default() }, Settings::simulated(0), Vec::new())?;
     let periods = (200_000 / count as u64).max(5);
     let mut best = f64::INFINITY;
     for round in 0..5 {
@@ -336,7 +337,7 @@ fn start(shape: &Shape) -> Result<RunningFleet, Box<dyn std::error::Error>> {
             loops: std::sync::Arc::default(),
         });
     }
-    Ok(RunningFleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
+    Ok(RunningFleet::start(Assembly { components, ..Assembly::default() }, Settings::simulated(1), Vec::new())?)
 }
 
 /// The memory of this process, in bytes.

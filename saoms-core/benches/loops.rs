@@ -210,5 +210,5 @@ fn start(changes: Option<&str>) -> Result<RunningFleet, Box<dyn std::error::Erro
         references: Vec::new(),
         loops: changes.map(of).into_iter().collect(),
     }];
-    Ok(RunningFleet::start(Assembly { components }, Settings::simulated(1), Vec::new())?)
+    Ok(RunningFleet::start(Assembly { components, ..Assembly::default() }, Settings::simulated(1), Vec::new())?)
 }

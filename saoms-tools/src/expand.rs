@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, HashSet};
 
 use saoms_api::Properties;
 use saoms_api::host::{PropertyValue, WriteProperties};
-use saoms_lang::assembly::{Assembly, ComponentSpec, OF_RESTART, Restart, TaskProperties, WireTarget};
+use saoms_lang::assembly::{Assembly, ComponentSpec, OF_RESTART, Restart, RunPolicy, TaskProperties, WireTarget};
 use saoms_lang::diagnostic::{Diagnostic, SetBy, Severity, SeverityLevel, codes};
-use saoms_lang::model::{Composite, SAOMS_NAMESPACE, SeverityRule, Version};
+use saoms_lang::model::{Composite, Hangup, SAOMS_NAMESPACE, SeverityRule, Version};
 use saoms_lang::project::Compilation;
 use smol_str::SmolStr;
 
@@ -44,7 +44,7 @@ pub fn expanded(compilation: &Compilation<Assembly>) -> Option<String> {
         });
         component(one, name, references)
     });
-    let mut root = root(like)
+    let mut root = run_settings(root(like), &assembly.run)
         .children(severities(like, &compilation.diagnostics))
         .children(components)
         .declare("", version.namespace());
@@ -74,6 +74,20 @@ fn root(like: &Composite) -> NewElement {
     NewElement::new("composite")
         .with("name", like.name.as_str())
         .maybe("targetNamespace", namespace.map(|namespace| namespace.as_str()))
+}
+
+/// Adds what the outermost composites say of the run.
+fn run_settings(root: NewElement, run: &RunPolicy) -> NewElement {
+    let url = run.alert_url.as_ref();
+    let hangup = (run.hangup != Hangup::default()).then_some(run.hangup.name());
+    let settings = [
+        ("s:alertUrl", url.map(|url| url.address.written())),
+        ("s:alertTokenEnv", url.and_then(|url| url.token_env.clone())),
+        ("s:alertCommand", run.alert_command.as_ref().map(|command| command.line.clone())),
+        ("s:hangup", hangup.map(str::to_owned)),
+    ];
+    let written = settings.into_iter().filter_map(|(name, value)| Some((name, value?)));
+    written.fold(root, |root, (name, value)| root.with(name, value).declare("s", SAOMS_NAMESPACE))
 }
 
 /// The codes that are lowered although the composite that is left has what they are about; each with what hides least.

@@ -18,8 +18,8 @@ pub(crate) use place::{Place, Sink, keep_folder};
 pub(crate) use replace::{keep_mask, mode_of_files, replace};
 pub(crate) use standard::{
     eprint, eprint_coloured, eprint_json, fail, has_failed, has_lost_descriptors, has_reader, keep_from_libraries,
-    limit_patience, own, print, print_as_is, print_json, print_json_line, printed, wait_for_input, wait_for_no_reader,
-    write_error,
+    limit_patience, lose_terminal, own, print, print_as_is, print_json, print_json_line, printed, wait_for_input,
+    wait_for_no_reader, write_error,
 };
 
 /// A path on one line, whatever characters are in it.

@@ -7,6 +7,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, AsRawFd, IntoRawFd, RawFd};
+use std::os::unix::fs::FileTypeExt;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 use std::sync::{LazyLock, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
@@ -26,6 +27,10 @@ static ERRORS: AtomicI32 = AtomicI32::new(0);
 
 /// True once something could not be written to standard output.
 static HAS_FAILED: AtomicBool = AtomicBool::new(false);
+
+/// True once a terminal took nothing any more, and whether the run goes on without one.
+static IS_TERMINAL_GONE: AtomicBool = AtomicBool::new(false);
+static MAY_TERMINAL_GO: AtomicBool = AtomicBool::new(false);
 
 /// True once a reader took nothing for longer than the patience lasted: it gets no lines with gaps between them.
 static IS_GIVEN_UP: AtomicBool = AtomicBool::new(false);
@@ -92,7 +97,13 @@ pub(crate) fn own() -> io::Result<File> {
 
 /// True if something could not be written to standard output, which was told.
 pub(crate) fn has_failed() -> bool {
-    HAS_FAILED.load(Ordering::SeqCst)
+    let has_lost_terminal = || IS_TERMINAL_GONE.load(Ordering::SeqCst) && !MAY_TERMINAL_GO.load(Ordering::SeqCst);
+    HAS_FAILED.load(Ordering::SeqCst) || has_lost_terminal()
+}
+
+/// Says that the terminal is lost, and that nobody misses it: that it cannot be written is no failure.
+pub(crate) fn lose_terminal() {
+    MAY_TERMINAL_GO.store(true, Ordering::SeqCst);
 }
 
 /// From now on waits no longer than this for a reader of standard output that reads nothing: it counts as gone then.
@@ -133,9 +144,20 @@ pub(crate) fn printed(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
             written
         }
     };
-    drop(standard);
     let Err(error) = written else { return };
-    if error.kind() == ErrorKind::BrokenPipe || HAS_FAILED.swap(true, Ordering::SeqCst) {
+    let about = standard.as_ref().and_then(|file| file.metadata().ok());
+    drop(standard);
+    if error.kind() == ErrorKind::BrokenPipe {
+        return;
+    }
+    // What a terminal that is lost says; the signal may come later.
+    let is_terminal =
+        error.raw_os_error() == Some(libc::EIO) && about.is_some_and(|about| about.file_type().is_char_device());
+    let is_first = match is_terminal {
+        true => !IS_TERMINAL_GONE.swap(true, Ordering::SeqCst) && !MAY_TERMINAL_GO.load(Ordering::SeqCst),
+        false => !HAS_FAILED.swap(true, Ordering::SeqCst),
+    };
+    if !is_first {
         return;
     }
     let help = match error.kind() {

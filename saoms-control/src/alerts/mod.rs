@@ -1,14 +1,22 @@
 //! Alerts of a fleet: what needs a person, in one list, until somebody acknowledges it or it is over.
 
+mod command;
+mod delivery;
 mod list;
+#[cfg(test)]
+mod tests;
+mod webhook;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
+use saoms_api::Level;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent};
 use serde_json::json;
 use tokio::sync::broadcast;
 
+pub use delivery::AlertTarget;
+use delivery::Targets;
 pub use list::{Acknowledgement, Alert};
 use list::{List, Subject};
 
@@ -23,16 +31,17 @@ const HANGS: &str = "hangs";
 const ABANDONED: &str = "abandoned";
 const NOT_STOPPED: &str = "not_stopped";
 
-/// An observer that keeps the alerts, and tells clients of changes.
+/// An observer that keeps the alerts, tells clients of changes, and has them delivered to the targets of the composite.
 #[derive(Debug)]
 pub struct AlertList {
     list: Mutex<List>,
+    targets: Mutex<Targets>,
     new: broadcast::Sender<Arc<str>>,
 }
 
 impl Default for AlertList {
     fn default() -> AlertList {
-        AlertList { list: Mutex::default(), new: broadcast::Sender::new(WAITING) }
+        AlertList { list: Mutex::default(), targets: Mutex::default(), new: broadcast::Sender::new(WAITING) }
     }
 }
 
@@ -57,9 +66,38 @@ impl Change {
     }
 }
 
+/// Numbers of alerts, for metrics.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct AlertCounts {
+    /// By kind: those that wait, those that are acknowledged and not over, and all that were raised.
+    pub(crate) kinds: Vec<(String, [u64; 3])>,
+    /// Changes that were not delivered, once for each target.
+    pub(crate) undelivered: u64,
+}
+
 impl AlertList {
     fn lock(&self) -> MutexGuard<'_, List> {
         self.list.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn targets(&self) -> MutexGuard<'_, Targets> {
+        self.targets.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Has each alert delivered from now on that is raised, over or acknowledged, by threads of their own. `started` is
+    /// the start of the run in seconds since 1970; `note` writes to the log of the fleet what fails.
+    pub fn deliver<N>(&self, fleet: &str, started: u64, targets: Vec<AlertTarget>, note: &N)
+    where
+        N: Fn(Level, String) + Clone + Send + 'static,
+    {
+        self.targets().start(fleet, started, targets, note);
+    }
+
+    /// Ends the delivery: what waits is tried once, for this time at most. Gives the number of changes that were not
+    /// delivered in the whole run.
+    pub fn finish(&self, patience: Duration) -> u64 {
+        let targets = std::mem::take(&mut *self.targets());
+        targets.finish(patience)
     }
 
     /// Says that a person is needed for something of this program, not of a component.
@@ -88,11 +126,15 @@ impl AlertList {
         }
     }
 
-    /// Tells clients of a change. Called under the lock of the list, so that all get the same order.
+    /// Tells clients and targets of a change. Called under the lock of the list, so that all get the same order.
     fn tell(&self, change: Change, alert: &Alert) {
         let text: Arc<str> = json!({"event": change.name(), "alert": alert}).to_string().into();
         // Nobody may follow.
         let _ = self.new.send(text);
+        // Another text calls nobody again.
+        if change != Change::Changed {
+            self.targets().put(change, alert);
+        }
     }
 
     /// Acknowledges the alerts of these numbers, or, without any, all that wait; gives their numbers.
@@ -119,9 +161,8 @@ impl AlertList {
         self.lock().all().filter(|one| one.waits()).cloned().collect()
     }
 
-    /// By kind: those that wait, those that are acknowledged and not over, and all that were raised.
-    pub(crate) fn counts(&self) -> Vec<(String, [u64; 3])> {
-        self.lock().counts()
+    pub(crate) fn counts(&self) -> AlertCounts {
+        AlertCounts { kinds: self.lock().counts(), undelivered: self.targets().undelivered() }
     }
 }
 

@@ -12,6 +12,7 @@ use saoms_core::status::{ComponentStatus, FleetMetrics, FleetPhase, TopicReaderS
 use serde_json::Value;
 use text::{Number, Samples};
 
+use crate::alerts::AlertCounts;
 use crate::counts::ClientCounts;
 use crate::description::FleetDescription;
 
@@ -22,8 +23,7 @@ pub(crate) struct Measured<'a> {
     pub(crate) clients: &'a ClientCounts,
     /// Lines of the file of the log that could not be written.
     pub(crate) lost_lines: u64,
-    /// Alerts by kind: those that wait, those that are acknowledged and not over, and all that were raised.
-    pub(crate) alerts: Vec<(String, [u64; 3])>,
+    pub(crate) alerts: AlertCounts,
 }
 
 /// A metric.
@@ -140,17 +140,19 @@ pub const METRICS: &[Metric] = metrics! {
     "saoms_alerts" gauge ["kind" "state"]
         "Alerts that are not over: those that wait for a person (waiting), and those that are acknowledged (acknowledged)."
         |measured, samples| {
-            for (kind, [waiting, acknowledged, _]) in &measured.alerts {
+            for (kind, [waiting, acknowledged, _]) in &measured.alerts.kinds {
                 samples.add(&[("kind", kind), ("state", "waiting")], *waiting as f64);
                 samples.add(&[("kind", kind), ("state", "acknowledged")], *acknowledged as f64);
             }
         };
     "saoms_alerts_total" counter ["kind"] "Alerts that were raised."
         |measured, samples| {
-            for (kind, [.., raised]) in &measured.alerts {
+            for (kind, [.., raised]) in &measured.alerts.kinds {
                 samples.add(&[("kind", kind)], *raised as f64);
             }
         };
+    "saoms_alerts_undelivered_total" counter [] "Changes of alerts that were not delivered to the address or the command of the composite."
+        |measured, samples| samples.add(&[], measured.alerts.undelivered as f64);
     "saoms_log_lost_total" counter [] "Lines that could not be written to the file of the log."
         |measured, samples| samples.add(&[], measured.lost_lines as f64);
     "saoms_control_clients" gauge [] "Clients that are connected."

@@ -61,7 +61,7 @@ fn lines(metric: &str) -> Vec<String> {
         seed: 0,
     };
     let clients = ClientCounts::default();
-    let alerts = vec![("a\"b".to_owned(), [2, 1, 5])];
+    let alerts = AlertCounts { kinds: vec![("a\"b".to_owned(), [2, 1, 5])], undelivered: 7 };
     let text = text(&Measured { description: &description, fleet: &fleet, clients: &clients, lost_lines: 0, alerts });
     let is_it = |line: &&str| !line.starts_with('#') && line.starts_with(metric);
     text.lines().filter(is_it).map(|line| line[metric.len()..].to_owned()).collect()
@@ -76,7 +76,8 @@ fn names_are_escaped() {
 fn alerts_are_counted_by_kind_and_state() {
     let expected =
         [r#"{kind="a\"b",state="waiting"} 2"#, r#"{kind="a\"b",state="acknowledged"} 1"#, r#"_total{kind="a\"b"} 5"#];
-    assert_eq!(lines("saoms_alerts"), expected);
+    assert_eq!(lines("saoms_alerts")[..3], expected);
+    assert_eq!(lines("saoms_alerts_undelivered_total"), [" 7"]);
 }
 
 #[test]

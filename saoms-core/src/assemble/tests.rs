@@ -75,7 +75,7 @@ fn assembly(text: &str) -> Assembly {
         }
         spec
     });
-    Assembly { components: components.collect() }
+    Assembly { components: components.collect(), ..Assembly::default() }
 }
 
 /// A plan in words, with the names of both assemblies.

@@ -30,7 +30,7 @@ pub(crate) fn assembly_of(text: &str, registry: &Registry) -> Assembly {
     let name = |line: &&str| line.split(' ').next().unwrap().to_owned();
     let names: Vec<String> = lines.iter().map(name).collect();
     let components = lines.iter().map(|line| component(line, registry, &names)).collect();
-    Assembly { components }
+    Assembly { components, ..Assembly::default() }
 }
 
 fn component(line: &str, registry: &Registry, names: &[String]) -> ComponentSpec {

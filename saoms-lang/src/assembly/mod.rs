@@ -2,6 +2,7 @@
 //!
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
+mod run_policy;
 mod task;
 pub(crate) mod topic_list;
 pub(crate) mod topic_rename;
@@ -13,6 +14,7 @@ use std::sync::Arc;
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
+pub use run_policy::{AlertCommand, AlertUrl, RunPolicy};
 pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
 pub use topic_list::TopicList;
 pub use topic_rename::TopicRenames;
@@ -25,6 +27,8 @@ use crate::registry::{RegisteredClass, RegisteredLoop};
 pub struct Assembly {
     /// Every component; its place here is its index.
     pub components: Vec<ComponentSpec>,
+    /// What the outermost composites say of the run.
+    pub run: RunPolicy,
 }
 
 /// One component, resolved.

@@ -6,6 +6,7 @@ use crate::assembly::{Assembly, ComponentSpec, Wire, WireTarget};
 use crate::check::classes;
 use crate::check::component::ComponentCheck;
 use crate::check::fleet::Fleet;
+use crate::check::run_settings;
 use crate::check::wiring::Wiring;
 use crate::source::Sources;
 
@@ -60,5 +61,5 @@ pub(crate) fn assemble(
             loops: check.loops?.specs,
         });
     }
-    Some(Assembly { components })
+    Some(Assembly { components, run: run_settings::policy(fleet, sources) })
 }

@@ -18,6 +18,7 @@ mod parameters;
 mod properties;
 mod report;
 mod rules;
+mod run_settings;
 mod tasks;
 mod unfolding;
 mod values;
@@ -89,8 +90,9 @@ pub fn check(
     // Where it is let pass that components share a value, that is no fault which others come of.
     let repeated = if severities.mentions(&codes::NOT_UNIQUE) { RepeatedValues::default() } else { repeated };
 
-    // Services, references, promotions and wires.
+    // Services, references, promotions and wires; what is said of the run.
     contracts::check(&fleet, report);
+    run_settings::check(&fleet, report);
     let wiring = wiring::check(&fleet, options, report);
 
     // Constructors, and rules of crates of components: the expensive ones.

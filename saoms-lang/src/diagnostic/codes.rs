@@ -153,6 +153,8 @@ codes! {
     VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not have the form that SCA requires.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways; only one is allowed.";
     EXCHANGE = "S2059" Warning "exchange" [AbsentComposite]: "A contribution exports a namespace in which it has nothing, or imports a namespace that no contribution around it exports.";
+    INNER_RUN_SETTING = "S2061" Warning "inner-run-setting" [WithoutEffect]: "A composite inside another one says where alerts are delivered, or what a lost terminal leads to, which only the outermost one can.";
+    RUN_SETTINGS_DIFFER = "S2062" Error "run-settings-differ": "Two outermost composites of one fleet say differently where alerts are delivered, or what a lost terminal leads to.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has a kind of implementation that this program cannot run.";

@@ -156,6 +156,9 @@ impl Loader<'_> {
                 "write it in the start tag of a `component`: {} has no such attribute",
                 quoted(kind.name)
             )),
+            None if vocabulary::own_names(&vocabulary::COMPOSITE).any(|known| known == name) => {
+                one.help("write it in the start tag of the outermost `composite`")
+            }
             None if names.is_empty() => one.help(format!("{} has no attributes of SAOMS", quoted(kind.name))),
             None => one.help(format!("its attributes of SAOMS are {}", names.join(", "))),
         });

@@ -33,6 +33,7 @@ impl Loader<'_> {
             components: Vec::new(),
             wires: Vec::new(),
             severities: Vec::new(),
+            run: self.run_settings(root),
             name,
         };
         self.children(root, &COMPOSITE, |loader, child, family, name| {

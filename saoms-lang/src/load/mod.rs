@@ -17,6 +17,7 @@ mod encoding;
 mod property;
 pub(crate) mod read;
 mod root;
+mod run_settings;
 #[cfg(test)]
 mod tests;
 pub mod vocabulary;

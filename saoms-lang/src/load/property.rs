@@ -63,7 +63,7 @@ impl Loader<'_> {
             must_supply: self.boolean(element, "mustSupply"),
             source: self.optional(element, "source"),
             file: if has_file { self.optional(element, "file") } else { None },
-            env: self.variable(element),
+            env: self.variable(element, "env"),
             from_file: None,
             document: None,
             values,
@@ -72,8 +72,8 @@ impl Loader<'_> {
     }
 
     /// The name of an environment variable. What no program can set is reported.
-    fn variable(&mut self, element: Element<'_>) -> Option<Text> {
-        let named = self.own(element, "env")?;
+    pub(super) fn variable(&mut self, element: Element<'_>, attribute: &str) -> Option<Text> {
+        let named = self.own(element, attribute)?;
         let is_name = |name: &str| {
             let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
             name.chars().all(is_letter) && !name.starts_with(|letter: char| letter.is_ascii_digit())
@@ -81,7 +81,7 @@ impl Loader<'_> {
         if is_name(&named) {
             return Some(named);
         }
-        let attribute = element.attribute_in(SAOMS_NAMESPACE, "env")?;
+        let attribute = element.attribute_in(SAOMS_NAMESPACE, attribute)?;
         let message = format!(
             "{} is not a name of an environment variable: use letters, digits and `_`, and no digit first",
             quoted(&named)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{ComponentElement, Origin, Property, ReferenceElement, ServiceElement, Version};
+use super::{ComponentElement, Origin, Property, ReferenceElement, RunSettings, ServiceElement, Version};
 use crate::diagnostic::SeverityLevel;
 use crate::source::{FileId, Located, Location, Text};
 use crate::syntax::Document;
@@ -38,6 +38,8 @@ pub struct Composite {
     pub wires: Vec<WireElement>,
     /// Its severity settings in order, those in its elements included.
     pub severities: Vec<SeverityRule>,
+    /// What it says of the run.
+    pub run: RunSettings,
 }
 
 /// An inclusion of all that another composite holds.

@@ -20,7 +20,9 @@ mod component;
 mod composite;
 mod contract;
 mod contribution;
+mod http_address;
 mod property;
+mod run_settings;
 
 pub use component::{
     ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Replicas, Row, Table,
@@ -30,7 +32,9 @@ pub use contract::{
     Binding, Callback, Contract, InterfaceElement, InterfaceKind, Multiplicity, ReferenceElement, ServiceElement,
 };
 pub use contribution::{Contribution, LibraryLink, Link, Missing, Naming};
+pub use http_address::{AddressFault, HttpAddress};
 pub use property::{ComponentProperty, Property, PropertyDetails, ValueDocument};
+pub use run_settings::{Hangup, RunSettings};
 
 use crate::source::{FileId, Location};
 use crate::syntax::{Document, Element, ElementId};

@@ -164,11 +164,16 @@ fn unusable(option: &str, error: &impl Display, help: &str) -> Exit {
     Exit::WrongInput
 }
 
+/// The name by which commands know the fleet.
+pub(super) fn fleet_name(arguments: &RunArguments) -> String {
+    let stem = arguments.fleet.files.first().and_then(|path| path.file_stem()).filter(|stem| *stem != "-");
+    stem.map_or_else(|| "fleet".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
 fn description(arguments: &RunArguments) -> FleetDescription {
     let files = &arguments.fleet.files;
-    let stem = files.first().and_then(|path| path.file_stem()).filter(|stem| *stem != "-");
     FleetDescription {
-        name: stem.map_or_else(|| "fleet".to_owned(), |stem| stem.to_string_lossy().into_owned()),
+        name: fleet_name(arguments),
         pid: std::process::id(),
         composites: files.iter().map(|path| path.display().to_string()).collect(),
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -3,27 +3,43 @@
 use std::mem::{ManuallyDrop, MaybeUninit};
 use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use saoms_api::Level;
 use saoms_api::host::contain::contained;
-use saoms_core::schedule::{Handle, stop_hardware};
+use saoms_core::schedule::{Handle, Order, stop_hardware};
+use saoms_lang::model::Hangup;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
-use crate::output::{Place, eprint, limit_patience, wait_for_no_reader};
+use crate::output::{Place, eprint, limit_patience, lose_terminal, wait_for_no_reader};
 use crate::{Exit, guard};
 use guard::keep_signals;
 
 /// The signals that end a run, handled from its first moment on.
 pub(super) struct Signalled(Arc<State>);
 
+/// Who stops machines when the terminal is lost, in the journal and the log.
+const LOST_TERMINAL: &str = "lost-terminal";
+/// The system and the shell tell of a lost terminal one after the other, and its reader goes away at about that time.
+const TOGETHER: Duration = Duration::from_secs(1);
+/// Time between two looks at whether it is lost.
+const LOOK: Duration = Duration::from_millis(10);
+
 struct State {
     grace: Duration,
+    /// True once a signal has come that ends the run.
     has_come: AtomicBool,
     /// True while the fleet starts.
     starts: AtomicBool,
+    /// What a lost terminal leads to, once the composite is read.
+    hangup: OnceLock<Hangup>,
+    /// When a terminal was lost that does not end the run.
+    lost: Mutex<Option<Instant>>,
+    /// The fleet, as soon as it can be reached.
+    reached: OnceLock<Handle>,
     /// The fleet, once it runs.
     fleet: OnceLock<Handle>,
 }
@@ -37,8 +53,15 @@ impl Signalled {
         let hangup = (!is_ignored(SIGHUP)).then_some(SIGHUP);
         guard::watch_ends();
         let signals = Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup));
-        let (has_come, starts) = (AtomicBool::new(false), AtomicBool::new(false));
-        let state = Arc::new(State { grace, has_come, starts, fleet: OnceLock::new() });
+        let state = Arc::new(State {
+            grace,
+            has_come: AtomicBool::new(false),
+            starts: AtomicBool::new(false),
+            hangup: OnceLock::new(),
+            lost: Mutex::default(),
+            reached: OnceLock::new(),
+            fleet: OnceLock::new(),
+        });
         let handled = Arc::clone(&state);
         keep_signals(&[(SIGINT, "SIGINT"), (SIGTERM, "SIGTERM"), (SIGHUP, "SIGHUP")]);
         let spawned = signals.and_then(|signals| {
@@ -59,9 +82,20 @@ impl Signalled {
         Signalled(state)
     }
 
-    /// Says that the fleet starts.
-    pub(super) fn starts(&self) {
+    /// Says that the fleet starts, and what a lost terminal leads to from now on.
+    pub(super) fn starts(&self, hangup: Hangup) {
+        // It is set once, by the one run.
+        let _ = self.0.hangup.set(hangup);
         self.0.starts.store(true, Ordering::SeqCst);
+    }
+
+    /// Says that the fleet can be reached, although it may still start.
+    pub(super) fn reaches(&self, fleet: &Handle) {
+        let lost = self.0.lost.lock().unwrap_or_else(PoisonError::into_inner);
+        let _ = self.0.reached.set(fleet.clone());
+        if lost.is_some() {
+            self.0.follow_hangup(fleet);
+        }
     }
 
     /// Ends this fleet from now on, and at once if a signal has come.
@@ -96,7 +130,14 @@ impl OperatorEnd {
 }
 
 impl State {
+    fn hangup(&self) -> Hangup {
+        self.hangup.get().copied().unwrap_or_default()
+    }
+
     fn handle(self: &Arc<State>, signal: i32) {
+        if signal == SIGHUP && self.hangup() != Hangup::End {
+            return self.lose_terminal();
+        }
         // Of a terminal that is closed, the system and the shell tell one after the other.
         let is_second = self.has_come.swap(true, Ordering::SeqCst) && signal != SIGHUP;
         if is_second || !self.starts.load(Ordering::SeqCst) {
@@ -107,6 +148,45 @@ impl State {
             Some(fleet) => fleet.stop(),
             None => self.give_up(Exit::Interrupted),
         }
+    }
+
+    /// Goes on without the terminal.
+    fn lose_terminal(&self) {
+        let mut lost = self.lost.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_told = lost.is_some_and(|before| before.elapsed() < TOGETHER);
+        *lost = Some(Instant::now());
+        lose_terminal();
+        limit_patience(self.grace);
+        if let Some(fleet) = self.reached.get().filter(|_| !is_told) {
+            self.follow_hangup(fleet);
+        }
+    }
+
+    /// Does what the composite chose for a lost terminal that does not end the run.
+    fn follow_hangup(&self, fleet: &Handle) {
+        let warn = |text: String| fleet.note(Level::Warning, text);
+        if self.hangup() == Hangup::GoOn {
+            return warn("the terminal is lost: the fleet goes on".to_owned());
+        }
+        warn("the terminal is lost: all that moves is stopped until `saoms release`".to_owned());
+        let stop = Order::EmergencyStop { components: Vec::new(), by: Some(LOST_TERMINAL.to_owned()) };
+        if let Err(error) = fleet.order(stop, None) {
+            warn(format!("nothing is stopped: {error}"));
+        }
+    }
+
+    /// True if a reader that goes away does so because the terminal is lost.
+    fn has_lost_terminal(&self) -> bool {
+        if self.hangup() == Hangup::End {
+            return false;
+        }
+        let is_lost = || self.lost.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+        let until = Instant::now() + TOGETHER;
+        // The reader may hear of it first.
+        while !is_lost() && Instant::now() < until {
+            thread::sleep(LOOK);
+        }
+        is_lost()
     }
 
     /// Ends the process after the grace if the fleet still starts.
@@ -161,13 +241,15 @@ fn is_ignored(signal: i32) -> bool {
     is_known && unsafe { action.assume_init() }.sa_sigaction == libc::SIG_IGN
 }
 
-/// Ends the fleet when nobody reads standard output any more, also while there is nothing to write.
-pub(super) fn end_without_reader(fleet: Handle) {
+/// Ends the fleet when nobody reads standard output any more, also while there is nothing to write; not if that comes
+/// of a lost terminal without which the fleet goes on.
+pub(super) fn end_without_reader(fleet: Handle, signals: &Signalled) {
     if !Place::is_standard_output_read() {
         return;
     }
+    let state = Arc::clone(&signals.0);
     let watch = move || {
-        if wait_for_no_reader().is_ok() {
+        if wait_for_no_reader().is_ok() && !state.has_lost_terminal() {
             fleet.stop();
         }
     };

@@ -1,5 +1,6 @@
 //! `saoms run`: checks composites and runs the fleet that they describe.
 
+mod alerts;
 mod console;
 mod control;
 mod ending;
@@ -36,6 +37,7 @@ use crate::arguments::{FleetArguments, Format, duration};
 use crate::fleet::{DiagnosticReport, compiled, files_read};
 use crate::guard::has_own_end;
 use crate::output::{Outputs, counted, displayed, eprint, eprint_coloured, eprint_json, limit_patience, print_json};
+use alerts::AlertDelivery;
 use console::Console;
 use control::{Control, NetworkArguments};
 use ending::{Signalled, end_without_reader};
@@ -56,7 +58,7 @@ Exit codes:
        written; or it is incomplete: work was given up
   2    the input is wrong: a composite, a value, the command line, a place where no file can be or that is read; nothing
        was started
-  130  ended by Ctrl-C, SIGTERM or SIGHUP";
+  130  ended by Ctrl-C, SIGTERM or SIGHUP (a lost terminal, unless `hangup` of the composite is `hold` or `goOn`)";
 
 /// Check composites and run the fleet that they describe together
 #[derive(Debug, Args)]
@@ -122,6 +124,11 @@ pub(crate) struct RunArguments {
     /// there is none without `--stay`, `--paused` or `--speed`
     #[arg(long, value_name = "PATH|none")]
     pub(crate) control: Option<String>,
+
+    /// Deliver alerts to the address and the command that the composite names (`alertUrl`, `alertCommand`): without
+    /// this, a composite sends nothing and runs no command
+    #[arg(long)]
+    pub(crate) alerts: bool,
 
     #[command(flatten)]
     pub(crate) log: LogArguments,
@@ -217,6 +224,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let Some(files_written) = RunFiles::of(arguments, read, style) else { return Exit::WrongInput };
     let RunFiles { report, picture, journal, log } = files_written;
     let alerts: Arc<AlertList> = Arc::default();
+    let mut delivery = match AlertDelivery::of(arguments, &assembly.run, &alerts) {
+        Ok(delivery) => delivery,
+        Err(exit) => return exit,
+    };
     let log = log.map(|log| log.with_alerts(&alerts));
     let lost_lines = log.as_ref().map(LogFile::lost).unwrap_or_default();
     // With a file, somebody wants the whole run, seen or not.
@@ -239,9 +250,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         Err(exit) => return exit,
     };
     observers.extend(control.iter().flat_map(Control::observers));
-    signals.starts();
+    signals.starts(assembly.run.hangup);
     let mut server = None;
     let before = |handle: &Handle| {
+        signals.reaches(handle);
+        delivery.start(handle);
         notes.drain(..).for_each(|note| handle.note(Level::Warning, note));
         // A run that has not begun does not end, and only one in virtual time has a speed.
         let _ = arguments.paused.then(|| handle.pause());
@@ -253,13 +266,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
         Err(error) => {
             let error = error.to_string();
             eprint(&format!("error: {}\n\nthe fleet did not start: nothing runs\n", one_line(&error)));
+            delivery.finish();
             return Exit::Failed;
         }
     };
     signals.end(fleet.handle());
     let notifier = Notifier::start(fleet.handle());
     if needs_reader {
-        end_without_reader(fleet.handle());
+        end_without_reader(fleet.handle(), &signals);
     }
     let hold = arguments.stay.then(|| fleet.handle().hold());
     let reload = watched.map(|watched| Reload::start(files, &watched, fleet.handle()));
@@ -276,6 +290,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     }
     crate::guard::look_at_end();
     let outcome = fleet.run_to_end().outcome;
+    delivery.finish();
     drop((hold, reload, server, notifier));
     if report.is_some_and(|report| report.output.has_failed())
         || picture.is_some_and(|picture| picture.output.has_failed())

@@ -156,6 +156,10 @@ fn systemd_finds_nothing_wrong_with_the_unit() {
         // A test cannot install it.
         Err(error) => println!("skipped: systemd-analyze is missing: {error}"),
     }
+    // What is added for alerts differs in the option alone.
+    let alerts = page.split("```ini\n").nth(2).unwrap().split("```").next().unwrap();
+    let started = |unit: &str| unit.lines().rfind(|line| line.starts_with("ExecStart=/")).unwrap().to_owned();
+    assert_eq!(started(alerts).replace(" --alerts", ""), started(unit));
     // The command line of the unit is one that there is.
     let line = unit.lines().find_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/saoms ")).unwrap();
     let line = line.replace("/etc/saoms/hall.composite", "composites/hall.composite");

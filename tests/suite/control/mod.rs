@@ -2,9 +2,11 @@
 
 mod alerts;
 mod by_hand;
+mod delivery;
 mod emergency;
 mod exposition;
 mod hang;
+mod hangup;
 mod json;
 mod metrics;
 mod network;
@@ -19,7 +21,7 @@ mod why;
 
 use std::fs;
 use std::path::Path;
-use std::process::{Child, Output, Stdio};
+use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{sleep, spawn};
 use std::time::Duration;
@@ -52,10 +54,17 @@ impl Running {
         Running::start_in(folder, arguments)
     }
 
-    fn start_in(folder: TempDir, arguments: &[&str]) -> Running {
+    pub(super) fn start_in(folder: TempDir, arguments: &[&str]) -> Running {
+        Running::start_with(folder, arguments, |_| {})
+    }
+
+    /// Starts `saoms run` on the composite in a folder, with what else its process is to have.
+    pub(super) fn start_with(folder: TempDir, arguments: &[&str], more: impl FnOnce(&mut Command)) -> Running {
         let mut run = command(&[&["run", "fleet.composite"], arguments].concat());
         run.current_dir(folder.path()).env("XDG_RUNTIME_DIR", folder.path());
-        let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        run.stdout(Stdio::piped()).stderr(Stdio::piped());
+        more(&mut run);
+        let child = run.spawn().unwrap();
         let running = Running { child: Some(child), folder };
         // Until it listens.
         for _ in 0..1000 {
@@ -123,6 +132,16 @@ impl Running {
             sleep(Duration::from_millis(20));
         }
         panic!("it never comes to that: {}", self.component(name));
+    }
+
+    /// Its process.
+    pub(super) fn pid(&self) -> u32 {
+        self.child.as_ref().unwrap().id()
+    }
+
+    /// Its standard output, for who reads it or goes away.
+    pub(super) fn take_output(&mut self) -> ChildStdout {
+        self.child.as_mut().unwrap().stdout.take().unwrap()
     }
 
     /// Waits for the end of the run: its exit code and what it printed.

@@ -21,7 +21,8 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
         "crate::check::",
         &[
             "judged", "options", "report", "values", "fleet", "parameters", "unfolding", "classes", "properties",
-            "loops", "component", "tasks", "contracts", "wiring", "rules", "assemble", "occurrences", "wanted_tables",
+            "loops", "component", "tasks", "contracts", "wiring", "rules", "run_settings", "assemble", "occurrences",
+            "wanted_tables",
         ],
     ),
     (

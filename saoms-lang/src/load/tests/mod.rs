@@ -2,6 +2,7 @@ mod extension;
 mod large;
 mod mended;
 mod reading;
+mod run_settings;
 mod slips;
 mod vocabulary;
 

@@ -160,6 +160,8 @@ pub enum Holds {
     Code,
     /// `allow`, `note`, `warning` or `error`.
     Level,
+    /// `end`, `hold` or `goOn`.
+    Hangup,
     /// Any text.
     Text,
 }

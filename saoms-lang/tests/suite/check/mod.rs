@@ -14,6 +14,7 @@ mod names;
 mod namespaces;
 mod policies;
 mod report;
+mod run_settings;
 mod support;
 mod tasks;
 mod unfolding;

@@ -22,7 +22,7 @@ use saoms_lang::load::vocabulary::{
     BINDING_SCA, COMPONENT, COMPONENT_PROPERTY, COMPOSITE, COMPOSITE_PROPERTY, COMPOSITE_REFERENCE, COMPOSITE_SERVICE,
     Holds, own_attributes,
 };
-use saoms_lang::model::Multiplicity;
+use saoms_lang::model::{Hangup, Multiplicity};
 use saoms_lang::syntax::{Element, ElementId};
 
 use super::scene::Scene;
@@ -115,6 +115,7 @@ fn value_of(scene: &Scene, element: ElementId, name: &str, value: Range<usize>, 
     }
     match known.holds {
         Holds::Boolean => names::words(&["true", "false"], &value),
+        Holds::Hangup => names::words(&Hangup::ALL.map(Hangup::name), &value),
         Holds::Level => names::words(&SeverityLevel::ALL.map(SeverityLevel::name), &value),
         Holds::Code => names::codes(scene, &value),
         Holds::Multiplicity => names::words(&Multiplicity::ALL.map(Multiplicity::name), &value),

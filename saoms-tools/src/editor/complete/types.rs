@@ -53,12 +53,15 @@ pub(super) fn elements(scene: &Scene, property: ElementId, range: &Range<usize>)
 /// Environment variables: one named after the composite and the property, then those that there are.
 pub(super) fn variables(scene: &Scene, property: ElementId, range: &Range<usize>) -> Vec<Proposal> {
     let file = scene.file();
+    let is_root = file.element(property).parent().is_none();
     let name = file.element(property).value("name").map(|at| &file.text[at]);
     let composite = file.outline.name.as_ref().map(|one| one.text.as_str());
-    let usual = composite.zip(name).map(|(composite, name)| {
-        let joined = format!("{composite}_{name}").to_uppercase();
-        joined.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
-    });
+    // Where it is not that of a property, it is for the token of alerts.
+    let usual =
+        composite.zip(name.filter(|_| !is_root).or(is_root.then_some("alert token"))).map(|(composite, name)| {
+            let joined = format!("{composite}_{name}").to_uppercase();
+            joined.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
+        });
     let one = |name: &str| Proposal::new(name, ProposalKind::Constant, range);
     let mut all: Vec<Proposal> =
         usual.iter().map(|name| one(name).detail("named after the property").rank(0)).collect();

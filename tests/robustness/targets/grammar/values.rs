@@ -71,7 +71,7 @@ pub(super) fn held(choices: &mut Choices<'_>, holds: Holds, registry: &Registry)
         Holds::Source => choices.of(&["$p", "$q", "$site", "$p/a", "$q/a/b", "p", "$none"]).to_owned(),
         Holds::Boolean => choices.of(&["true", "false", "1", "0", "yes"]).to_owned(),
         Holds::Multiplicity => choices.of(&["0..1", "1..1", "0..n", "1..n", "n..0"]).to_owned(),
-        Holds::Uri => choices.of(&["W/x", "none", "urn:t"]).to_owned(),
+        Holds::Uri => choices.of(&["W/x", "none", "urn:t", "http://a:1/b", "https://a", "http://a@b"]).to_owned(),
         Holds::File => choices.of(&["value.txt", "table.csv", "../value.txt", "none", "."]).to_owned(),
         Holds::Table => choices.of(&["table.csv", "table.csv", "value.txt", "none"]).to_owned(),
         Holds::Library => choices.of(&["none", "value.txt", "lib.so"]).to_owned(),
@@ -84,6 +84,7 @@ pub(super) fn held(choices: &mut Choices<'_>, holds: Holds, registry: &Registry)
         Holds::Variable => choices.of(&["SAOMS_ROBUSTNESS", "HOME", "9", "A=B"]).to_owned(),
         Holds::Code => codes::ALL[choices.below(codes::ALL.len())].id.to_owned(),
         Holds::Level => SeverityLevel::ALL[choices.below(SeverityLevel::ALL.len())].name().to_owned(),
+        Holds::Hangup => choices.of(&["end", "hold", "goOn", "go on"]).to_owned(),
         Holds::Text => choices.of(&["xsd:string", "xsd:int", "xsd:boolean", "because", "t:x", "W/R1"]).to_owned(),
     }
 }

@@ -156,6 +156,13 @@ fn names_that_can_be_known_are_proposed() {
     assert_eq!(proposed_among(&spaces, &others), ["urn:e"]);
     assert_eq!(proposed(&composite("<service name=\"|\" promote=\"R/lamp\"/>")), ["lamp"]);
     assert_eq!(proposed(&composite("<property name=\"max-speed\" s:env=\"|\"/>"))[0], "FLEET_MAX_SPEED");
+    let root = |attribute: &str| composite("").replacen(" name=", &format!(" {attribute} name="), 1);
+    assert_eq!(proposed(&root("s:alertTokenEnv=\"|\""))[0], "FLEET_ALERT_TOKEN");
+    assert_eq!(proposed(&root("s:hangup=\"|\"")), ["end", "hold", "goOn"]);
+    let attributes = proposed(&root("|"));
+    for own in ["s:alertCommand", "s:alertTokenEnv", "s:alertUrl", "s:hangup"] {
+        assert!(attributes.iter().any(|one| one == own), "{own}: {attributes:?}");
+    }
     let bound = format!("{WORLD}{ROBOT}<reference name=\"world\"><binding.sca uri=\"|\"/></reference></component>");
     assert_eq!(proposed(&composite(&bound)), ["World"]);
 }
