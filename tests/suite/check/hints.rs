@@ -239,7 +239,7 @@ fn one_fault_of_replicas_is_told_once() {
         ),
         ("zeros", ["Robot02", "Robot2"], ["A", "A"], TABLE, "S5005", "replace `Robot2` with `Robot02`"),
         (
-            "minutes",
+            "minutes-of-an-event",
             ["at 2s", "at 10m"],
             ["A", "A"],
             TABLE,
