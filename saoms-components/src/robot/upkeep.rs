@@ -16,6 +16,7 @@ impl RobotKnowledge {
         self.level_before = self.charge;
         if let Some(percent) = self.hardware.battery(context, self.number)? {
             self.battery.set_percent(percent);
+            self.level_before = self.battery.percent();
         }
         self.use_battery();
         Ok(())

@@ -146,6 +146,8 @@ fn a_low_measured_level_sends_the_robot_to_its_charger() {
         assert_eq!(run.count("luggage.delivered"), 2, "{}", run.log());
         assert!(at_first_pick(run.log_of("Robot1")).is_some());
     }
+    let first = "starts charging (battery 65.0 %)";
+    assert!(measured.log_of("Robot1")[0] == first, "by the gauge, not by the count: {}", measured.log());
     let why = serde_json::to_string(measured.journal()).unwrap();
     assert!(why.contains("65"), "the level of the gauge is in the journal: {why}");
     assert!(!serde_json::to_string(counted.journal()).unwrap().contains("\"65"), "the robot counted from 100 %");
