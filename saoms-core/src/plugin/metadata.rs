@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};
 use serde_json::value::RawValue;
 
-use super::{PluginError, invisible};
+use super::{PluginError, declared_names};
 
 /// Metadata of a library.
 #[derive(Debug, Deserialize)]
@@ -161,7 +161,7 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Metadata, PluginError> {
         return Err(PluginError::Version { path: path.to_owned(), found: head.abi, api: head.api });
     }
     let metadata: Metadata = serde_json::from_str(text).map_err(|error| malformed(error.to_string()))?;
-    invisible::check(text).map_err(malformed)?;
+    declared_names::check(text).map_err(malformed)?;
     if metadata.panic == "abort" {
         return Err(PluginError::Aborts { path: path.to_owned(), package: metadata.package });
     }

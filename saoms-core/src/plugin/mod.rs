@@ -6,9 +6,10 @@
 
 mod boundary;
 mod copy;
+mod declared_names;
 mod error;
 mod file;
-mod invisible;
+
 mod library;
 mod metadata;
 mod named;

@@ -143,6 +143,21 @@ fn a_library_with_names_that_steer_the_terminal() {
 }
 
 #[test]
+fn a_library_with_a_name_without_end() {
+    let long = "n".repeat(100_000);
+    let path = from_c("long", Some(&METADATA.replacen("good.Sender", &long, 1)), &[]);
+    let said = refused(&path);
+    assert_says(
+        &said,
+        &["metadata that cannot be read: the name `nnn", "(class) has 100000 bytes, expected at most 1000"],
+    );
+    assert!(said.len() < 1000, "{} bytes", said.len());
+    let listed = saoms(&folder(), &["components", "--plugin", path.to_str().unwrap()]);
+    assert_eq!(listed.code, Some(2), "{}", listed.text);
+    assert_says(&listed.text, &["has 100000 bytes"]);
+}
+
+#[test]
 fn a_library_for_an_older_or_newer_boundary() {
     let expected = ["this program has version 3", "build the plugin with saoms-api"];
     let path = said("older.so", "\"abi\":3", b"\"abi\":1");
