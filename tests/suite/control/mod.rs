@@ -1,5 +1,6 @@
 //! Commands that reach a running fleet, against real processes.
 
+mod alert_kinds;
 mod alerts;
 mod by_hand;
 mod delivery;

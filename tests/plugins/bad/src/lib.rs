@@ -154,6 +154,11 @@ impl Component for Actor {
         match &*self.properties.at {
             "message" => self.throw(context)?,
             "numbers" => Self::say_no_numbers(context),
+            "alert" => {
+                context.alert("jam", "left", "the left belt jams");
+                context.alert("jam", "right", format_args!("the {} belt jams", "right"));
+                context.alert_over("jam", "right");
+            }
             _ => {}
         }
         context.count("bad.executions", 1);
