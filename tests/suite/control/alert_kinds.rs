@@ -1,5 +1,5 @@
-//! What becomes an alert by itself, against real processes: empty batteries, hardware that moves, code that does not end,
-//! and files that cannot be written; and those of a plugin in Rust.
+//! What becomes an alert by itself, against real processes: empty batteries, hardware that moves, code that does not
+//! end, and files that cannot be written; and the alerts of a plugin in Rust.
 
 use std::fs;
 use std::os::unix::process::CommandExt;
