@@ -138,6 +138,18 @@ impl<'a> Context<'a> {
         self.host.raise(event)
     }
 
+    /// Unschedules this component after its present execution, as [`TaskInterface::unschedule`] and `saoms stop` do: it
+    /// shuts down, and starts anew when it is scheduled again. A passive component goes on.
+    ///
+    /// # Errors
+    /// The host unschedules nothing.
+    ///
+    /// [`TaskInterface::unschedule`]: crate::TaskInterface::unschedule
+    pub fn unschedule(&mut self) -> Result<(), Failure> {
+        // The name of an order is that of no event.
+        self.host.raise(crate::event::STOP)
+    }
+
     /// All messages that arrived for this period, oldest first. Asking twice gives the same messages.
     pub fn receive<M: Message>(&self, subscription: &Subscription<M>) -> Messages<'a, M> {
         Messages::new(self.inbox(subscription.index()))

@@ -8,6 +8,7 @@
 pub mod broker;
 pub mod console;
 pub mod environment;
+mod gone;
 pub mod grid;
 pub mod hardware;
 pub mod manual;

@@ -5,7 +5,7 @@ use std::fmt::{self, Write as _};
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::event::{EventCall, Events};
+use saoms_api::event::{EventCall, Events, STOP};
 use saoms_api::extension::LineFault;
 use saoms_api::host::{Host, LoopVisit};
 use saoms_api::host::{NamedLoops, Phase, PropertyValue, ServiceCall, SharedMessage, SmolStr, TopicDeclaration};
@@ -328,6 +328,10 @@ impl Host for Stage {
     }
 
     fn raise(&mut self, event: &str) -> Result<(), Failure> {
+        if event == STOP {
+            self.log_action(Action::Raised(event.to_owned()));
+            return Ok(());
+        }
         let refused = |fault: LineFault| Failure::new(format!("event `{event}`: {fault}"));
         let call = EventCall::read(event).map_err(refused)?;
         // One that no known class takes is no failure: in a fleet, a component of another class may take it.

@@ -73,7 +73,7 @@ impl Loop for Loner {
 
     fn monitor(&mut self, robot: &mut dyn Knowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         let number = self.number.get(robot)?;
-        let mut mine = context.receive(&self.faults).with_headers().filter(|(_, fault)| fault.robot == number);
+        let mut mine = context.receive(&self.faults).with_headers().filter(|(_, fault)| fault.breaks(number));
         if let Some((header, _)) = mine.next_back()
             && self.trouble.get(robot)?.is_none()
         {

@@ -26,8 +26,11 @@ pub struct Events {
     all: Vec<Event>,
 }
 
+/// The order that a component gives itself by [`Context::unschedule`](crate::Context::unschedule).
+pub const STOP: &str = "stop";
+
 /// The words of orders to a running fleet, such as `start` in `saoms start`: no event has one of them as its name.
-pub const ORDERS: [&str; 7] = ["start", "stop", "set", "call", "publish", "estop", "release"];
+pub const ORDERS: [&str; 7] = ["start", STOP, "set", "call", "publish", "estop", "release"];
 
 /// True if an event can have this name: a letter, then letters, digits, `_` and `-`.
 pub const fn is_event_name(name: &str) -> bool {

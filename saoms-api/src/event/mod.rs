@@ -46,5 +46,5 @@ mod receiver;
 
 pub use call::{Argument, EventCall, Word};
 pub use field::{EventField, FieldType, FieldValue};
-pub use known::{Event, Events, ORDERS, is_event_name};
+pub use known::{Event, Events, ORDERS, STOP, is_event_name};
 pub use receiver::receiver;

@@ -20,8 +20,8 @@ use crate::console::Timestamp;
 use crate::grid::Map;
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage, ROBOT_LIST,
-    RobotList,
+    AREA, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, ExceptionalKind, Fault, LuggageStage, REMOVAL,
+    ROBOT_LIST, Removal, RobotList,
 };
 use crate::report::pieces;
 use crate::validation::MessageValidator;
@@ -36,12 +36,12 @@ pub use scenario::{Continuation, EventSpec, Line, RandomRange, Scenario, Spanned
 pub struct EnvironmentProperties {
     /// Events and their times since the environment's first execution, one event a line: `at 6s luggage (3,1) to
     /// (3,10)`, `then 500ms luggage (10,8) to (1,8)` (after the line before), `at 3s landing 4`, `at 3s takeoff 4`, `at
-    /// 9s breakdown Robot002`; repeated events: `from 10s every 5s 100 times luggage random to random`. Two values with
-    /// `..` between them are a range from which a value is drawn: `every 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`.
-    /// Events that components of other classes take have the fields of their messages: `at 5s fire at=(3,4) size=1..3`.
-    /// `;` ends a line, too, and `#` starts a comment. Without a scenario nothing happens. A long scenario can be in a
-    /// file: `file="scenario.txt"`.
-    #[property(language = "scenario", plays("luggage", "landing", "takeoff", "breakdown", "end"))]
+    /// 9s breakdown Robot002`, `at 30s gone Robot002` (off the floor); repeated events: `from 10s every 5s 100 times
+    /// luggage random to random`. Two values with `..` between them are a range from which a value is drawn: `every
+    /// 2s..8s`, `luggage (1,0)..(10,10) to (3,1)`. Events that components of other classes take have the fields of
+    /// their messages: `at 5s fire at=(3,4) size=1..3`. `;` ends a line, too, and `#` starts a comment. Without a
+    /// scenario nothing happens. A long scenario can be in a file: `file="scenario.txt"`.
+    #[property(language = "scenario", plays("luggage", "landing", "takeoff", "breakdown", "gone", "end"))]
     pub(crate) scenario: Vec<String>,
 }
 
@@ -69,6 +69,8 @@ pub struct Environment {
     responses: Subscription<EventLuggage>,
     #[subscribes(AREA)]
     area: Subscription<Area>,
+    #[subscribes(REMOVAL)]
+    removals: Subscription<Removal>,
     done: bool,
 }
 
@@ -89,6 +91,7 @@ impl Component for Environment {
             robots: Subscription::default(),
             responses: Subscription::default(),
             area: Subscription::default(),
+            removals: Subscription::default(),
             done: false,
         })
     }
@@ -167,6 +170,11 @@ impl Environment {
         // The components that speak for each robot.
         for (header, robot) in context.receive(&self.robots).with_headers() {
             self.validator.accepts(robot, header, self.map.as_ref(), context);
+        }
+        for (header, removal) in context.receive(&self.removals).with_headers() {
+            if self.validator.accepts(removal, header, self.map.as_ref(), context) {
+                self.open.retain(|luggage, _| !removal.delivered.contains(luggage));
+            }
         }
         for (header, response) in context.receive(&self.responses).with_headers() {
             if !self.validator.accepts(response, header, self.map.as_ref(), context) {
@@ -255,6 +263,12 @@ impl Environment {
                 let fault = Fault::breakdown(robot);
                 context.console(format_args!("Environment: Test{test}: New event: {fault}."));
                 tell(context, record!(robot_breaks_down: "robot {robot} breaks down", robot));
+                context.send(&self.events, fault.into())
+            }
+            Some(ScenarioEvent::Gone(robot)) => {
+                let fault = Fault::gone(robot);
+                context.console(format_args!("Environment: Test{test}: New event: {fault}."));
+                tell(context, record!(robot_is_gone: "robot {robot} is gone", robot));
                 context.send(&self.events, fault.into())
             }
         }

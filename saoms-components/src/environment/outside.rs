@@ -102,6 +102,7 @@ impl Reader {
                 (event.into(), text)
             }
             ScenarioEvent::Breakdown(robot) => (Fault::breakdown(robot).into(), format!("breakdown {robot}")),
+            ScenarioEvent::Gone(robot) => (Fault::gone(robot).into(), format!("gone {robot}")),
             ScenarioEvent::End => (EnvironmentEvent::default(), "end".to_owned()),
             ScenarioEvent::Raised(event) => return (EventContent::Raised, event),
         };
@@ -199,6 +200,7 @@ mod tests {
                 "",
                 "then 1s every 2s 2 times breakdown Robot002",
                 "from 1s every 1s until 3s luggage (1,5) to (10,5)",
+                "at 20s gone Robot002; gone 3",
                 "end",
             ]),
             [
@@ -210,6 +212,8 @@ mod tests {
                 "1.000 s luggage (1,5) to (10,5) number 1000002",
                 "2.000 s luggage (1,5) to (10,5) number 1000003",
                 "3.000 s luggage (1,5) to (10,5) number 1000004",
+                "20.000 s gone 2",
+                "now gone 3",
                 "now end",
             ]
         );
@@ -263,9 +267,11 @@ mod tests {
                 "luggage (3,1) to (3,1)..(3,1)",
                 "luggage (3,1) to (3,10) quickly",
                 "ü",
+                "gone robot 2",
+                "gon 2",
             ]),
             [
-                "`lugage`: found `lugage`, expected `luggage`, `landing`, `takeoff`, `breakdown` or `end`, Some(\"luggage\")",
+                "`lugage`: found `lugage`, expected `luggage`, `landing`, `takeoff`, `breakdown`, `gone` or `end`, Some(\"luggage\")",
                 "`landin`: found `landin`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"landing\")",
                 "`att`: found `att`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"at\")",
                 "`hello`: found `hello`, expected an event, `at`, `from` or `then` at the start of a line, None",
@@ -275,6 +281,8 @@ mod tests {
                 "`(3,1)..(3,1)`: found (3,1), where the luggage starts: expected another block, None",
                 "`quickly`: found `quickly`, expected the end of the line, or `;` before the next event, None",
                 "`ü`: found `ü`, expected an event, `at`, `from` or `then` at the start of a line, None",
+                "`robot 2`: found `robot 2`, expected a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of, Some(\"2\")",
+                "`gon`: found `gon`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"gone\")",
             ]
         );
     }

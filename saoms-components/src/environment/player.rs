@@ -23,6 +23,8 @@ pub enum ScenarioEvent {
     Exceptional(ExceptionalEvent),
     /// The robot with this number breaks down.
     Breakdown(u32),
+    /// Somebody takes the robot with this number off the floor.
+    Gone(u32),
     /// An event that other classes take, as a line with single values.
     Raised(String),
     /// No event: the scenario lasts until this time.
@@ -157,6 +159,7 @@ pub(super) fn draw(event: &EventSpec, chance: &mut Chance, area: Option<&Map>) -
         EventSpec::Landing(pieces) => exceptional(ExceptionalKind::Landing, pieces.draw(chance)),
         EventSpec::Takeoff(pieces) => exceptional(ExceptionalKind::Takeoff, pieces.draw(chance)),
         EventSpec::Breakdown(robot) => Some(ScenarioEvent::Breakdown(robot.value.draw(chance))),
+        EventSpec::Gone(robot) => Some(ScenarioEvent::Gone(robot.value.draw(chance))),
         EventSpec::Raised(event) => {
             let call = EventCall::read(event).ok()?;
             Some(ScenarioEvent::Raised(call.drawn(chance)))

@@ -1,5 +1,6 @@
 use saoms_api::{
     Cause, Class, Component, Context, Failure, Header, Message, Publisher, ReportValue, Saved, Subscription, Work,
+    info, record,
 };
 
 use super::event_filter::EventFilter;
@@ -8,7 +9,7 @@ use crate::console::Timestamp;
 use crate::hardware::Area;
 use crate::messages::{
     AREA, CRITICAL_SITUATION, CriticalSituation, ENVIRONMENT, EVENT_LUGGAGE, EXCEPTIONAL_EVENT, EnvironmentEvent,
-    EventLuggage, ExceptionalEvent, FAULT, Fault, LuggageStage, ROBOT_LIST, RobotList,
+    EventLuggage, ExceptionalEvent, FAULT, Fault, FaultKind, LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList,
 };
 use crate::report::pieces;
 use crate::state::Numbers;
@@ -22,7 +23,8 @@ const GIVEN_UP: &str = "given_up";
 ///
 /// Any component may publish on the environment's topic. Impossible events, such as luggage outside the area of the
 /// world, are reported with their sender, counted, and dropped. Luggage that all robots refuse, or for which no robot
-/// is left, is reported as given up. A robot that starts later gets the requests that still wait.
+/// is left, is reported as given up. A robot that starts later gets the requests that still wait. The luggage of a
+/// robot that somebody took off the floor waits again.
 #[derive(Debug, Class)]
 #[class(name = "saoms.MasterEnvironment", periodic, saves, also("unibg.saoms.MasterEnvironmentManagingSystem"))]
 pub struct MasterEnvironment {
@@ -39,6 +41,8 @@ pub struct MasterEnvironment {
     robots: Subscription<RobotList>,
     #[subscribes(CRITICAL_SITUATION)]
     situations_heard: Subscription<CriticalSituation>,
+    #[subscribes(REMOVAL)]
+    removals: Subscription<Removal>,
     #[publishes(EVENT_LUGGAGE)]
     luggage: Publisher<EventLuggage>,
     #[publishes(CRITICAL_SITUATION)]
@@ -76,7 +80,8 @@ impl Component for MasterEnvironment {
         }
         let mut started = Vec::new();
         for (header, robot) in context.receive(&self.robots).with_headers() {
-            if self.validator.accepts(robot, header, self.filter.area(), context) && self.open.hear_robot(robot) {
+            if self.validator.accepts(robot, header, self.filter.area(), context) && self.open.hear_robot(robot, header)
+            {
                 started.push((header.cause, robot.robot));
             }
         }
@@ -95,6 +100,22 @@ impl Component for MasterEnvironment {
             if !is_own && self.validator.accepts(situation, header, self.filter.area(), context) {
                 self.open.hear_situation(situation);
             }
+        }
+        for (header, removal) in context.receive(&self.removals).with_headers() {
+            if self.validator.accepts(removal, header, self.filter.area(), context) {
+                self.open.hear_removal(removal);
+            }
+        }
+        for (robot, request) in self.open.open_again(self.filter.area().is_some()) {
+            let (luggage, from) = (request.luggage, request.from);
+            context.effect(record!(
+                opens_luggage_again: "luggage {luggage} waits again at {from}: robot {robot} is gone",
+                luggage,
+                from,
+                robot
+            ));
+            info!(context, "luggage {luggage} waits again at {from}: robot {robot} is gone");
+            context.send(&self.luggage, request)?;
         }
         for (cause, robot) in started {
             context.because(cause);
@@ -169,7 +190,13 @@ impl MasterEnvironment {
                 context.count("faults.ignored", 1);
                 self.validator.log_rejection(context, header, fault, problem);
             } else {
-                self.open.break_down(fault.robot, context.now());
+                match fault.kind {
+                    FaultKind::Breakdown => self.open.break_down(fault.robot, context.now()),
+                    FaultKind::Gone => {
+                        let header = Header { sent: context.due(), ..header };
+                        self.open.take_away(fault.robot, header);
+                    }
+                }
                 context.send(&self.faults, fault.clone())?;
             }
         }
@@ -184,6 +211,11 @@ impl MasterEnvironment {
         }
         for situation in helps {
             context.send(&self.situations, situation.again_for(robot))?;
+        }
+        // Topics keep what robots that are gone said before.
+        let gone: Vec<u32> = self.open.gone().filter(|gone| *gone != robot).collect();
+        for gone in gone {
+            context.send(&self.faults, Fault::gone(gone))?;
         }
         Ok(())
     }

@@ -1,10 +1,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-use saoms_api::{Field, ReportValue, Time};
+use saoms_api::{Field, Header, ReportValue, Time};
 
+use crate::gone::Gone;
 use crate::grid::Block;
-use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, RobotList};
+use crate::messages::{CriticalSituation, CriticalStage, EventLuggage, LuggageStage, Removal, RobotList};
 use crate::robot::Job;
 
 /// Open luggage, and the robots that could bring it.
@@ -19,6 +20,10 @@ pub(super) struct OpenLuggage {
     breaking: BTreeMap<u32, Time>,
     /// Active robots that are broken.
     broken: BTreeSet<u32>,
+    /// Robots that are off the floor.
+    gone: Gone,
+    /// What the world says that robots left when they were taken off the floor, by robot.
+    left: BTreeMap<u32, Removal>,
     /// True once there was a robot.
     seen: bool,
     /// True if something changed since the last check.
@@ -33,6 +38,8 @@ struct Piece {
     refused: BTreeSet<u32>,
     /// True while no robot has taken it.
     waits: bool,
+    /// The robot that has taken it, unless that one asked for help with it.
+    taken: Option<u32>,
 }
 
 /// Open luggage, for a master that goes on.
@@ -43,6 +50,8 @@ pub(super) struct OpenMemory {
     active: Vec<ActiveMemory>,
     breaking: Vec<BreakingMemory>,
     broken: Vec<u32>,
+    gone: Gone,
+    left: Vec<Removal>,
     seen: bool,
     changed: bool,
 }
@@ -54,6 +63,7 @@ struct PieceMemory {
     to: Block,
     refused: Vec<u32>,
     waits: bool,
+    taken: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, Field)]
@@ -88,6 +98,7 @@ impl OpenLuggage {
         ReportValue::named([
             ("open", number(self.pieces.len())),
             ("waiting", number(waiting)),
+            ("gone", ReportValue::List(self.gone().map(ReportValue::from).collect())),
             ("luggage", ReportValue::List(self.pieces.iter().take(LISTED).map(piece).collect())),
         ])
     }
@@ -95,9 +106,9 @@ impl OpenLuggage {
     /// The state for a master that goes on.
     pub(super) fn memory(&self) -> OpenMemory {
         let piece = |(luggage, piece): (&u32, &Piece)| {
-            let Piece { from, to, refused, waits } = piece;
+            let Piece { from, to, refused, waits, taken } = piece;
             let refused = refused.iter().copied().collect();
-            PieceMemory { luggage: *luggage, from: *from, to: *to, refused, waits: *waits }
+            PieceMemory { luggage: *luggage, from: *from, to: *to, refused, waits: *waits, taken: *taken }
         };
         // Periods came as whole microseconds.
         let active = |(robot, period): (&u32, &Duration)| ActiveMemory {
@@ -111,6 +122,8 @@ impl OpenLuggage {
             active: self.active.iter().map(active).collect(),
             breaking: breaking.collect(),
             broken: self.broken.iter().copied().collect(),
+            gone: self.gone.clone(),
+            left: self.left.values().cloned().collect(),
             seen: self.seen,
             changed: self.changed,
         }
@@ -119,8 +132,8 @@ impl OpenLuggage {
     /// The state of a master that goes on.
     pub(super) fn of(memory: OpenMemory) -> OpenLuggage {
         let piece = |piece: PieceMemory| {
-            let PieceMemory { luggage, from, to, refused, waits } = piece;
-            (luggage, Piece { from, to, refused: refused.into_iter().collect(), waits })
+            let PieceMemory { luggage, from, to, refused, waits, taken } = piece;
+            (luggage, Piece { from, to, refused: refused.into_iter().collect(), waits, taken })
         };
         let active = memory.active.iter().map(|active| (active.robot, Duration::from_micros(active.period_us)));
         OpenLuggage {
@@ -129,13 +142,15 @@ impl OpenLuggage {
             active: active.collect(),
             breaking: memory.breaking.iter().map(|breaking| (breaking.robot, breaking.until)).collect(),
             broken: memory.broken.into_iter().collect(),
+            gone: memory.gone,
+            left: memory.left.into_iter().map(|left| (left.robot, left)).collect(),
             seen: memory.seen,
             changed: memory.changed,
         }
     }
 
     pub(super) fn add(&mut self, luggage: u32, from: Block, to: Block) {
-        self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new(), waits: true });
+        self.pieces.insert(luggage, Piece { from, to, refused: BTreeSet::new(), waits: true, taken: None });
         self.changed = true;
     }
 
@@ -150,9 +165,57 @@ impl OpenLuggage {
         self.breaking.entry(robot).or_insert(now + period.saturating_mul(2));
     }
 
+    /// A robot is off the floor.
+    pub(super) fn take_away(&mut self, robot: u32, header: Header) {
+        self.gone.note(robot, header);
+        self.breaking.remove(&robot);
+        self.broken.remove(&robot);
+        self.changed |= self.active.remove(&robot).is_some();
+    }
+
+    /// The world says what a robot left.
+    pub(super) fn hear_removal(&mut self, removal: &Removal) {
+        self.left.insert(removal.robot, removal.clone());
+        for luggage in &removal.delivered {
+            self.pieces.remove(luggage);
+            self.helps.remove(luggage);
+        }
+    }
+
+    /// Robots that are off the floor.
+    pub(super) fn gone(&self) -> impl Iterator<Item = u32> {
+        self.gone.robots()
+    }
+
+    /// Opens the luggage of robots that are off the floor again: what they carried lies where the world says, and all
+    /// else, or without a world all, where it was to be collected. Returns the robots with their requests.
+    pub(super) fn open_again(&mut self, has_world: bool) -> Vec<(u32, EventLuggage)> {
+        let mut again = Vec::new();
+        for robot in self.gone.robots() {
+            let left = self.left.get(&robot);
+            if has_world && left.is_none() {
+                continue;
+            }
+            for (luggage, piece) in self.pieces.iter_mut().filter(|(_, piece)| piece.taken == Some(robot)) {
+                if let Some(left) = left.filter(|left| left.luggage.contains(luggage)) {
+                    piece.from = left.block;
+                }
+                (piece.waits, piece.taken) = (true, None);
+                again.push((robot, EventLuggage::request(*luggage, piece.from, piece.to)));
+            }
+        }
+        again
+    }
+
     /// Handles the state of a robot; true if it was not active before.
-    pub(super) fn hear_robot(&mut self, robot: &RobotList) -> bool {
+    pub(super) fn hear_robot(&mut self, robot: &RobotList, header: Header) -> bool {
         self.seen = true;
+        if !self.gone.hears(robot, header) {
+            return false;
+        }
+        if robot.active && !self.active.contains_key(&robot.robot) {
+            self.left.remove(&robot.robot);
+        }
         let is_new = robot.active && { self.active.insert(robot.robot, Duration::from_micros(robot.period)).is_none() };
         self.changed |= is_new;
         if !robot.active {
@@ -166,13 +229,22 @@ impl OpenLuggage {
 
     /// Handles a request for help, or the response of a healer.
     pub(super) fn hear_situation(&mut self, situation: &CriticalSituation) {
-        let Some(Job { luggage, .. }) = situation.job() else { return };
+        let Some(Job { luggage, from, .. }) = situation.job() else { return };
         match situation.stage {
-            CriticalStage::Request if self.pieces.contains_key(&luggage) => {
-                self.helps.insert(luggage, situation.clone());
+            CriticalStage::Request => {
+                if let Some(piece) = self.pieces.get_mut(&luggage) {
+                    piece.taken = None;
+                    self.helps.insert(luggage, situation.clone());
+                }
             }
-            CriticalStage::Taken => _ = self.helps.remove(&luggage),
-            CriticalStage::Request | CriticalStage::Intention | CriticalStage::Release | CriticalStage::StandsIn => {}
+            CriticalStage::Taken => {
+                self.helps.remove(&luggage);
+                if let Some(piece) = self.pieces.get_mut(&luggage) {
+                    // For who takes it away from the healer, it lies where the broken robot left it.
+                    (piece.from, piece.taken) = (from, Some(situation.healer));
+                }
+            }
+            CriticalStage::Intention | CriticalStage::Release | CriticalStage::StandsIn => {}
         }
     }
 
@@ -194,6 +266,7 @@ impl OpenLuggage {
             LuggageStage::Request | LuggageStage::Taken => {
                 if let Some(piece) = self.pieces.get_mut(&response.luggage) {
                     piece.waits = response.stage == LuggageStage::Request;
+                    piece.taken = (!piece.waits).then_some(response.robot);
                 }
             }
             LuggageStage::Refused => {
@@ -227,10 +300,16 @@ impl OpenLuggage {
 
 #[cfg(test)]
 mod tests {
+    use saoms_api::Cause;
+
     use super::*;
 
     fn robot(robot: u32, active: bool) -> RobotList {
         RobotList { robot, active, ..RobotList::default() }
+    }
+
+    fn heard(millis: u64) -> Header {
+        Header { sender: 0, sent: at(millis), cause: Cause::default() }
     }
 
     fn at(millis: u64) -> Time {
@@ -256,8 +335,8 @@ mod tests {
             open.add(luggage, Block::new(0, 0), Block::new(1, 0));
         }
         assert_eq!(hopeless(&mut open), [0; 0], "no robot was there yet");
-        open.hear_robot(&robot(1, true));
-        open.hear_robot(&robot(2, true));
+        open.hear_robot(&robot(1, true), heard(0));
+        open.hear_robot(&robot(2, true), heard(0));
         open.hear_response(&refusal(2, 1));
         assert_eq!(hopeless(&mut open), [0; 0]);
         open.hear_response(&refusal(2, 2));
@@ -272,12 +351,12 @@ mod tests {
     fn who_is_told_to_break_can_say_so_first() {
         let mut open = OpenLuggage::default();
         for number in [1, 2] {
-            open.hear_robot(&RobotList { period: 500_000, ..robot(number, true) });
+            open.hear_robot(&RobotList { period: 500_000, ..robot(number, true) }, heard(0));
             open.add(number, Block::new(0, 0), Block::new(1, 0));
             open.break_down(number, at(1000));
         }
         assert_eq!(hopeless_at(&mut open, 1900), [0; 0]);
-        open.hear_robot(&robot(2, false));
+        open.hear_robot(&robot(2, false), heard(0));
         assert_eq!(hopeless_at(&mut open, 1950), [0; 0], "the other one may still bring it");
         assert_eq!(hopeless_at(&mut open, 2000), [1, 2], "it says nothing");
     }
@@ -295,14 +374,14 @@ mod tests {
         for luggage in 1..=3 {
             open.add(luggage, block(0), block(1));
         }
-        assert!(open.hear_robot(&robot(1, true)));
-        assert!(!open.hear_robot(&robot(1, true)), "it was active before");
+        assert!(open.hear_robot(&robot(1, true), heard(0)));
+        assert!(!open.hear_robot(&robot(1, true), heard(0)), "it was active before");
         open.hear_response(&EventLuggage { stage: LuggageStage::Taken, ..refusal(2, 1) });
         open.hear_response(&refusal(3, 2));
         assert_eq!(waiting(&open, 2), (vec![1], vec![]));
         open.hear_situation(&help(CriticalStage::Request));
-        open.hear_robot(&robot(1, false));
-        assert!(open.hear_robot(&robot(1, true)));
+        open.hear_robot(&robot(1, false), heard(0));
+        assert!(open.hear_robot(&robot(1, true), heard(0)));
         assert_eq!(waiting(&open, 1), (vec![1, 3], vec![2]), "a robot that starts again knows nothing");
         open.hear_situation(&help(CriticalStage::Taken));
         assert_eq!(waiting(&open, 1), (vec![1, 3], vec![]));
@@ -313,13 +392,49 @@ mod tests {
     #[test]
     fn luggage_is_given_up_once_no_robot_is_left() {
         let mut open = OpenLuggage::default();
-        open.hear_robot(&robot(1, true));
+        open.hear_robot(&robot(1, true), heard(0));
         open.add(1, Block::new(0, 0), Block::new(1, 0));
         assert_eq!(hopeless(&mut open), [0; 0]);
-        open.hear_robot(&robot(1, false));
+        open.hear_robot(&robot(1, false), heard(0));
         assert_eq!(hopeless(&mut open), [1]);
-        open.hear_robot(&robot(1, true));
+        open.hear_robot(&robot(1, true), heard(0));
         open.add(2, Block::new(0, 0), Block::new(1, 0));
         assert_eq!(hopeless(&mut open), [0; 0], "it is back");
+    }
+
+    #[test]
+    fn luggage_of_a_robot_that_is_gone_waits_again_where_it_lies() {
+        let block = |x| Block::new(x, 0);
+        let taken = |luggage| EventLuggage { stage: LuggageStage::Taken, ..refusal(luggage, 1) };
+        let again = |open: &mut OpenLuggage, has_world| {
+            let all = open.open_again(has_world);
+            all.iter().map(|(robot, request)| (*robot, request.luggage, request.from.x)).collect::<Vec<_>>()
+        };
+        let mut open = OpenLuggage::default();
+        open.hear_robot(&robot(1, true), heard(0));
+        open.hear_robot(&robot(2, true), heard(0));
+        for luggage in 1..=4 {
+            open.add(luggage, block(0), block(9));
+        }
+        open.hear_response(&taken(1));
+        open.hear_response(&taken(2));
+        open.hear_response(&EventLuggage { robot: 2, ..taken(3) });
+        let help = CriticalSituation { critical: 1, luggage: 2, ..CriticalSituation::default() };
+        open.hear_situation(&help);
+        open.take_away(1, heard(5));
+        assert_eq!(again(&mut open, true), [], "the world says where it lies");
+        open.hear_removal(&Removal { robot: 1, block: block(4), luggage: vec![1], delivered: Vec::new() });
+        assert_eq!(again(&mut open, true), [(1, 1, 4)], "the broken robot asked for help with the other piece");
+        assert_eq!(again(&mut open, true), []);
+        open.hear_response(&taken(4));
+        assert_eq!(again(&mut open, true), [(1, 4, 0)], "it was on its way to say so");
+        assert_eq!(open.waiting_for(3).0.iter().map(|request| request.from.x).collect::<Vec<_>>(), [4, 0]);
+
+        assert!(!open.hear_robot(&robot(1, true), heard(5)), "it said so before");
+        assert!(open.hear_robot(&robot(1, true), heard(6)), "it is back");
+        open.hear_response(&taken(1));
+        assert_eq!(again(&mut open, true), []);
+        open.take_away(1, heard(9));
+        assert_eq!(again(&mut open, false), [(1, 1, 4)], "nobody else can say where it lies");
     }
 }

@@ -72,7 +72,7 @@ pub enum LuggageStage {
 #[message(speaker(
     "robot",
     unless(stage = "REQUEST"),
-    instead = "for new luggage publish a request, and send `breakdown` to free what the robot has taken"
+    instead = "for new luggage publish a request, and send `breakdown` or `gone` to free what the robot has taken"
 ))]
 pub struct EventLuggage {
     /// Number of the robot that responds; in a request 0, or the number of the only robot that it is for.
@@ -198,6 +198,8 @@ pub enum FaultKind {
     /// The robot can neither move nor handle luggage any more.
     #[default]
     Breakdown,
+    /// Somebody took the robot off the floor. It holds no block any more, and says nothing until it is started again.
+    Gone,
 }
 
 /// A fault of a robot.
@@ -214,12 +216,23 @@ impl Fault {
     pub const fn breakdown(robot: u32) -> Fault {
         Fault { robot, kind: FaultKind::Breakdown }
     }
+
+    /// True if this is the breakdown of that robot.
+    pub fn breaks(&self, robot: u32) -> bool {
+        self.kind == FaultKind::Breakdown && self.robot == robot
+    }
+
+    /// The robot is off the floor.
+    pub const fn gone(robot: u32) -> Fault {
+        Fault { robot, kind: FaultKind::Gone }
+    }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.kind {
             FaultKind::Breakdown => write!(formatter, "robot {} breaks down", self.robot),
+            FaultKind::Gone => write!(formatter, "robot {} is gone", self.robot),
         }
     }
 }
@@ -232,6 +245,37 @@ impl Validate for Fault {
     }
 
     fn validate(&self, _sender: u32, validator: &mut MessageValidator, _area: Option<&Map>) -> Result<(), Problem> {
+        validator.check_known(self.robot)
+    }
+}
+
+/// What robots that are gone left behind.
+///
+/// Published by the world; read by the master of the environment and the environment.
+pub const REMOVAL: Topic<Removal> = Topic::event("REMOVALTOPIC").optional();
+
+/// A robot that is off the floor, and where its luggage lies now.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
+pub struct Removal {
+    /// Number of the robot.
+    pub robot: u32,
+    /// Block where it was.
+    pub block: Block,
+    /// Numbers of the pieces that it carried, which lie on that block.
+    pub luggage: Vec<u32>,
+    /// Numbers of those that it carried and for which that block is the destination.
+    pub delivered: Vec<u32>,
+}
+
+impl Validate for Removal {
+    const WHAT: &'static str = "the removal";
+
+    fn about(&self) -> String {
+        of_robot(self.robot)
+    }
+
+    fn validate(&self, _sender: u32, validator: &mut MessageValidator, area: Option<&Map>) -> Result<(), Problem> {
+        Problem::of_block(self.block, area)?;
         validator.check_known(self.robot)
     }
 }

@@ -42,7 +42,10 @@ impl PartialOrd for Priority {
 /// A robot holds its block, and its next block from the announcement until it has left that block again. It does not
 /// hold the block that it wants: it goes there once no other robot holds it or wants it with a higher priority.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
-#[message(key = "robot", speaker("robot", instead = "stop the robot with `estop` to keep it where it is"))]
+#[message(
+    key = "robot",
+    speaker("robot", instead = "stop the robot with `estop`, or send `gone` when it is off the floor")
+)]
 pub struct Position {
     /// Number of the robot.
     pub robot: u32,

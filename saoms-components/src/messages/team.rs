@@ -48,7 +48,10 @@ const LOW: f64 = 35.0;
 
 /// State of a robot.
 #[derive(Clone, Debug, Default, PartialEq, Message)]
-#[message(key = "robot", speaker("robot", instead = "`stop` the robot, and `start` it when it is to work again"))]
+#[message(
+    key = "robot",
+    speaker("robot", instead = "send `gone` when the robot is off the floor, and `start` it when it is back")
+)]
 pub struct RobotList {
     /// Number of the robot.
     pub robot: u32,
@@ -142,7 +145,7 @@ pub enum CriticalStage {
 /// A request for help by a robot that cannot go on, or the response of a healer.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(
-    speaker("critical", only(stage = "REQUEST"), instead = "send `breakdown`: the robot's job is open then"),
+    speaker("critical", only(stage = "REQUEST"), instead = "send `breakdown` or `gone`: the robot's job is open then"),
     speaker("healer", unless(stage = "REQUEST"), instead = "wake a robot that helps with a message on RMSTOPIC")
 )]
 pub struct CriticalSituation {

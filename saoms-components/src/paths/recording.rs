@@ -5,7 +5,7 @@ use super::path::{Path, Pieces, Robot};
 use crate::grid::{Block, Map};
 use crate::hardware::Area;
 use crate::messages::{
-    AREA, COLLISION, Collision, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, LuggageStage, POSITION, Position,
+    AREA, COLLISION, Collision, EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, LuggageStage, POSITION, Position,
     ROBOT_LIST, RobotList,
 };
 use saoms_api::Topic;
@@ -174,7 +174,7 @@ impl Recording {
     }
 
     fn record_fault(&mut self, message: &SharedMessage) {
-        let Some(fault) = message.get::<Fault>() else { return };
+        let Some(fault) = message.get::<Fault>().filter(|fault| fault.kind == FaultKind::Breakdown) else { return };
         if let Some(path) = self.robots.get(&fault.robot).and_then(|robot| robot.path.as_ref())
             && self.broken.insert((fault.robot, path.now))
         {

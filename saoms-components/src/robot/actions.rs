@@ -106,7 +106,9 @@ impl RobotKnowledge {
     /// Takes the hardware out of service at the end of the robot. Hardware that is busy is a failure, so that the
     /// shutdown is tried again.
     pub(crate) fn leave_hardware(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.block = self.hardware.leave(context, self.number)?.unwrap_or(self.block);
+        let block = self.hardware.leave(context, self.number)?.unwrap_or(self.block);
+        // Where it starts again it is in nobody's way, should somebody hear of it who does not know that it is gone.
+        self.block = if self.gone { self.charge_block } else { block };
         self.note_running();
         Ok(())
     }

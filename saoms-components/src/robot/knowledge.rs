@@ -98,6 +98,10 @@ pub struct RobotKnowledge {
     /// True if it was sent to charge, so that it needs no substitute.
     #[entry(quiet)]
     pub relieved: bool,
+    /// True if somebody took it off the floor.
+    pub(super) gone: bool,
+    /// Time of its first execution: a robot that was said to be gone before that is back.
+    pub(super) began: Option<Time>,
     /// Validator of messages from other robots.
     pub(super) validator: MessageValidator,
     /// State of other robots, as they reported it.
@@ -180,6 +184,8 @@ impl RobotKnowledge {
             shut_down: false,
             stands_in_for: None,
             relieved: false,
+            gone: false,
+            began: None,
             validator: MessageValidator::default(),
             lists: Lists::new(number),
             routes: Routes::default(),

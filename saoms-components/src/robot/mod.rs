@@ -28,11 +28,11 @@ mod sayings;
 mod tally;
 mod upkeep;
 
-use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved};
+use saoms_api::{Class, Component, Context, Failure, Loops, ReportValue, Saved, Time};
 
 use crate::console::Timestamp;
 use crate::hardware::Hardware;
-use crate::messages::{COLLISION, EVENT_LUGGAGE, POSITION, ROBOT_LIST};
+use crate::messages::{COLLISION, EVENT_LUGGAGE, FAULT, POSITION, ROBOT_LIST};
 
 pub use battery::{Battery, Consumption};
 pub use job::Job;
@@ -80,7 +80,7 @@ const ASSISTANCE: &str = "assistance";
         )
     ),
     publishes(COLLISION),
-    subscribes(ROBOT_LIST, EVENT_LUGGAGE, POSITION),
+    subscribes(ROBOT_LIST, EVENT_LUGGAGE, POSITION, FAULT),
     reference("world": Hardware, optional),
     also("unibg.saoms.RobotImpl"),
     also("robot.Robot001", number = 1),
@@ -125,13 +125,19 @@ impl Component for Robot {
         self.topics = Topics::subscribe(context)?;
         self.knowledge.period = u64::try_from(context.period().as_micros()).unwrap_or(u64::MAX);
         context.console(format_args!("Initialization of {}", self.knowledge.name));
-        if !context.goes_on() {
+        if context.goes_on() {
+            // It was there all the time.
+            self.knowledge.began = Some(Time::START);
+        } else {
             self.enter(context)?;
         }
         self.loops.initialize(&mut *self.knowledge, context)
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let Some(gone) = self.knowledge.hear_gone(&self.topics, context) else {
+            return self.knowledge.leave_floor(context);
+        };
         if self.knowledge.shut_down {
             return self.knowledge.stop_for_good(context);
         }
@@ -148,6 +154,7 @@ impl Component for Robot {
         self.knowledge.hear(&self.topics, context);
         self.knowledge.begin_execution(context)?;
         self.loops.monitor(&mut *self.knowledge, context)?;
+        self.knowledge.forget_gone(&gone);
         if entered {
             self.knowledge.poll_unwatched(&self.loops, context)?;
             self.knowledge.measure();

@@ -1,9 +1,11 @@
 //! Messages that robots receive from other robots, after validation.
 
-use saoms_api::{Context, Failure, Header, Subscription};
+use saoms_api::{Context, Failure, Header, Subscription, record, warn};
 
-use super::{Policy, RobotKnowledge};
-use crate::messages::{EVENT_LUGGAGE, EventLuggage, IMMOVABLE, POSITION, Position, ROBOT_LIST, RobotList};
+use super::{ASSISTANCE, Lists, Policy, RobotKnowledge};
+use crate::messages::{
+    EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, POSITION, Position, ROBOT_LIST, RobotList,
+};
 use crate::validation::Validate;
 
 /// The topics that a robot hears by itself.
@@ -12,6 +14,7 @@ pub(super) struct Topics {
     robots: Subscription<RobotList>,
     luggage: Subscription<EventLuggage>,
     positions: Subscription<Position>,
+    faults: Subscription<Fault>,
 }
 
 impl Topics {
@@ -20,6 +23,7 @@ impl Topics {
             robots: context.subscribe(&ROBOT_LIST)?,
             luggage: context.subscribe(&EVENT_LUGGAGE)?,
             positions: context.subscribe(&POSITION)?,
+            faults: context.subscribe(&FAULT)?,
         })
     }
 }
@@ -41,18 +45,61 @@ impl RobotKnowledge {
         }
     }
 
+    /// Hears which robots somebody took off the floor. `None` if this one is, and has nothing to do any more; else the
+    /// others.
+    pub(super) fn hear_gone(&mut self, topics: &Topics, context: &mut Context<'_>) -> Option<Vec<u32>> {
+        let began = *self.began.get_or_insert(context.due());
+        let mut others = Vec::new();
+        for (header, fault) in context.receive(&topics.faults).with_headers() {
+            if fault.kind != FaultKind::Gone || !self.accepts(fault, header, context) {
+                continue;
+            }
+            if fault.robot != self.number {
+                self.lists.gone.note(fault.robot, header);
+                others.push(fault.robot);
+            } else if header.sent > began {
+                context.because(header.cause);
+                return None;
+            }
+        }
+        Some(others)
+    }
+
+    /// Forgets robots that are off the floor, after all that they said before has been heard.
+    pub(super) fn forget_gone(&mut self, robots: &[u32]) {
+        for robot in robots {
+            self.lists.forget(*robot);
+            self.routes.forget_obstacle(*robot);
+        }
+    }
+
+    /// Ends the robot, which is off the floor: others carry its luggage, and it starts again at its charger.
+    pub(super) fn leave_floor(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        let name = &self.name;
+        context.console(format_args!("{name} is gone"));
+        context.effect(record!(leaves_floor: "is gone from {block}, and stops", block = self.block));
+        warn!(context, "is gone from {}: it stops until it is started again", self.block);
+        context.alert_over(ASSISTANCE, "");
+        self.drop_job();
+        self.offers_help = false;
+        self.gone = true;
+        context.unschedule()
+    }
+
     /// Handles the positions of other robots.
     fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
         let RobotKnowledge { validator, lists, routes, .. } = self;
         let heard = context.receive(&positions).with_headers();
         let sound = heard.filter(|(header, position)| validator.accepts(*position, *header, routes.map(), context));
-        lists.peers.hear(sound.map(|(_, position)| position));
+        let Lists { peers, gone, .. } = lists;
+        let sound = sound.filter(|(_, position)| !gone.contains(position.robot));
+        peers.hear(sound.map(|(_, position)| position));
     }
 
     /// Handles the states of other robots.
     fn hear_robots(&mut self, robots: Subscription<RobotList>, context: &mut Context<'_>) {
         for (header, robot) in context.receive(&robots).with_headers() {
-            if self.accepts(robot, header, context) {
+            if self.accepts(robot, header, context) && self.lists.gone.hears(robot, header) {
                 self.lists.hear_robot(robot);
                 self.routes.learn_charger(robot.charger);
                 if self.policy == Policy::Safe && robot.robot != self.number {

@@ -64,6 +64,7 @@ impl RobotKnowledge {
     fn state(&self) -> &'static str {
         let Variables { has_luggage, reaching_charge, in_charge, asleep, busy, .. } = self.variables;
         match self.trouble {
+            _ if self.gone => "gone",
             Some(Trouble::Battery) => "stranded",
             Some(Trouble::Breakdown | Trouble::Hardware) => "broken",
             None if self.shut_down => "broken",

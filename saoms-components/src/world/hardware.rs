@@ -60,12 +60,7 @@ impl World {
                 return Ok(Progress::Running);
             }
             Ok(HandlingOutcome::Delivered { given_up }) => {
-                context.count("luggage.delivered", 1);
-                context.count("luggage.open", -1);
-                if given_up {
-                    context.count("luggage.given_up", -1);
-                }
-                self.vote(context);
+                self.count_delivery(context, given_up);
             }
             Ok(HandlingOutcome::Handled) => {}
             Err(reason) => {

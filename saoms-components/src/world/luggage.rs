@@ -184,11 +184,26 @@ impl Stock {
         Ok(HandlingOutcome::Delivered { given_up })
     }
 
-    /// Puts all pieces that a robot carries on a block.
-    pub(super) fn unload(&mut self, robot: u32, block: Block) {
-        for piece in self.pieces.values_mut().filter(|piece| piece.place == PiecePosition::On(robot)) {
-            piece.place = PiecePosition::At(block);
-        }
+    /// The pieces that a robot carries to this block, by number.
+    pub(super) fn carried_to(&self, robot: u32, block: Block) -> Vec<u32> {
+        let arrived = |piece: &Piece| piece.place == PiecePosition::On(robot) && piece.to == block;
+        let pieces = self.pieces.iter().filter(|(_, piece)| arrived(piece));
+        let mut pieces: Vec<u32> = pieces.map(|(luggage, _)| *luggage).collect();
+        pieces.sort_unstable();
+        pieces
+    }
+
+    /// Puts all pieces that a robot carries on a block. Returns their numbers.
+    pub(super) fn unload(&mut self, robot: u32, block: Block) -> Vec<u32> {
+        let carried = self.pieces.iter_mut().filter(|(_, piece)| piece.place == PiecePosition::On(robot));
+        let mut unloaded: Vec<u32> = carried
+            .map(|(luggage, piece)| {
+                piece.place = PiecePosition::At(block);
+                *luggage
+            })
+            .collect();
+        unloaded.sort_unstable();
+        unloaded
     }
 
     fn unknown(&mut self, luggage: u32) -> Result<HandlingOutcome, String> {

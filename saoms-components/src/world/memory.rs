@@ -41,6 +41,7 @@ struct BodyMemory {
     handling: Option<Handling>,
     handled: Option<Handled>,
     retired: bool,
+    gone: bool,
     entered_again: bool,
 }
 
@@ -81,6 +82,7 @@ impl BodyMemory {
             handling: body.handling.map(|(action, until)| Handling { action, until }),
             handled: body.handled.map(|(action, progress)| Handled { action, progress }),
             retired: body.retired,
+            gone: body.gone,
             entered_again: body.entered_again,
         }
     }
@@ -93,6 +95,7 @@ impl BodyMemory {
             handling: self.handling.map(|handling| (handling.action, handling.until)),
             handled: self.handled.map(|handled| (handled.action, handled.progress)),
             retired: self.retired,
+            gone: self.gone,
             entered_again: self.entered_again,
         };
         (self.robot, body)

@@ -11,19 +11,22 @@ mod tests;
 
 use std::collections::BTreeSet;
 
-use saoms_api::{Class, Component, Context, Failure, Publisher, ReportValue, Saved, Subscription, Work, warn};
+use saoms_api::{
+    Cause, Class, Component, Context, Failure, Publisher, ReportValue, Saved, Subscription, Work, record, warn,
+};
 
+use crate::grid::Block;
 use crate::hardware::Hardware;
 use crate::messages::{
-    AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, LuggageStage,
-    ROBOT_LIST, RobotList,
+    AREA, COLLISION, Collision, ENVIRONMENT, EVENT_LUGGAGE, EnvironmentEvent, EventLuggage, Fault, FaultKind,
+    LuggageStage, REMOVAL, ROBOT_LIST, Removal, RobotList,
 };
 use crate::report::pieces;
 use crate::validation::{MessageValidator, Problem};
 
 pub use properties::WorldProperties;
 
-use luggage::Stock;
+use luggage::{HandlingOutcome, Stock};
 use memory::Memory;
 use referee::Referee;
 
@@ -31,7 +34,8 @@ use referee::Referee;
 ///
 /// Robots whose reference `world` leads here drive simulated hardware: their actions take the time that the properties
 /// set, and succeed only where they are possible. The world counts deliveries and collisions. A robot that breaks down
-/// stays where it is, with its luggage, which another robot beside it can take over. The run ends when all luggage
+/// stays where it is, with its luggage, which another robot beside it can take over. One that somebody took off the
+/// floor leaves its luggage on its block, which is free then. The run ends when all luggage
 /// is delivered or given up; it is incomplete if any was given up.
 #[derive(Debug, Class)]
 #[class(
@@ -54,6 +58,8 @@ pub struct World {
     responses: Subscription<EventLuggage>,
     #[publishes(COLLISION)]
     collisions: Publisher<Collision>,
+    #[publishes(REMOVAL)]
+    removals: Publisher<Removal>,
     vote: Option<Work>,
     /// Number of collisions.
     collided: usize,
@@ -77,6 +83,7 @@ impl Component for World {
             robots: Subscription::default(),
             responses: Subscription::default(),
             collisions: Publisher::default(),
+            removals: Publisher::default(),
             vote: None,
             collided: 0,
             broken: BTreeSet::new(),
@@ -97,7 +104,7 @@ impl Component for World {
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
         self.memory.forget();
-        for event in context.receive(&self.events) {
+        for (header, event) in context.receive(&self.events).with_headers() {
             // Impossible luggage is reported by the master of the environment, which does not forward it.
             let map = self.referee.map();
             let can_be = |request: &&EventLuggage| Problem::of_request(request, Some(map)).is_ok();
@@ -107,7 +114,14 @@ impl Component for World {
                 }
             }
             for fault in &event.faults {
-                self.break_down(context, fault);
+                match fault.kind {
+                    FaultKind::Breakdown => self.break_down(context, fault),
+                    FaultKind::Gone => {
+                        context.because(header.cause);
+                        self.take_away(context, fault)?;
+                        context.because(Cause::default());
+                    }
+                }
             }
         }
         // The components that speak for each robot.
@@ -188,6 +202,38 @@ impl World {
             ("given_up", number(given_up)),
             ("collisions", number(self.collided)),
         ])
+    }
+
+    fn count_delivery(&mut self, context: &mut Context<'_>, was_given_up: bool) {
+        context.count("luggage.delivered", 1);
+        context.count("luggage.open", -1);
+        if was_given_up {
+            context.count("luggage.given_up", -1);
+        }
+        self.vote(context);
+    }
+
+    /// Somebody took a robot off the floor.
+    fn take_away(&mut self, context: &mut Context<'_>, fault: &Fault) -> Result<(), Failure> {
+        let robot = fault.robot;
+        // A robot of another world is off this floor anyway, and lay nothing down here.
+        let (block, delivered, luggage) = match self.referee.remove(robot) {
+            Ok(None) => return Ok(()),
+            Ok(Some(block)) => {
+                let delivered = self.stock.carried_to(robot, block);
+                for luggage in &delivered {
+                    if let Ok(HandlingOutcome::Delivered { given_up }) = self.stock.deposit(*luggage, robot, block) {
+                        self.count_delivery(context, given_up);
+                    }
+                }
+                context.count("robots.gone", 1);
+                context.effect(record!(frees_block: "robot {robot} is gone: {block} is free", robot, block));
+                warn!(context, "{fault}: {block} is free");
+                (block, delivered, self.stock.unload(robot, block))
+            }
+            Err(_) => (Block::default(), Vec::new(), Vec::new()),
+        };
+        context.send(&self.removals, Removal { robot, block, luggage, delivered })
     }
 
     fn break_down(&mut self, context: &mut Context<'_>, fault: &Fault) {

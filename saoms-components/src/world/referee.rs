@@ -33,6 +33,8 @@ pub(super) struct Body {
     pub(super) handling: Option<(Action, Time)>,
     /// True if it is out of service.
     pub(super) retired: bool,
+    /// True if somebody took it off the floor: it holds no block.
+    pub(super) gone: bool,
     /// The last action of its gripper that ended, and how.
     pub(super) handled: Option<(Action, Progress)>,
     /// True if it registered again, and has not shown yet whether it knows what it carries.
@@ -56,7 +58,8 @@ impl Referee {
     /// The same positions as those of an earlier referee.
     pub(super) fn with(map: Map, bodies: impl Iterator<Item = (u32, Body)>, meetings: Vec<Meeting>) -> Referee {
         let mut referee = Referee { bodies: bodies.collect(), meetings, ..Referee::new(map) };
-        let blocks = referee.bodies.values().flat_map(|body| [Some(body.block), body.moving.map(|(to, _)| to)]);
+        let on_floor = referee.bodies.values().filter(|body| !body.gone);
+        let blocks = on_floor.flat_map(|body| [Some(body.block), body.moving.map(|(to, _)| to)]);
         let held: Vec<Block> = blocks.flatten().collect();
         held.into_iter().for_each(|block| referee.hold(block));
         referee.moving = referee.bodies.values().filter(|body| body.moving.is_some()).count();
@@ -86,11 +89,13 @@ impl Referee {
                     body.name
                 )));
             }
-            self.cancel(robot)?;
-            if let Some(body) = self.bodies.get_mut(&robot) {
-                (body.retired, body.entered_again) = (false, true);
+            if !body.gone {
+                self.cancel(robot)?;
+                if let Some(body) = self.bodies.get_mut(&robot) {
+                    (body.retired, body.entered_again) = (false, true);
+                }
+                return self.block(robot);
             }
-            return self.block(robot);
         }
         let (x, y) = (self.map.width() - 1, self.map.height() - 1);
         if !self.map.contains(block) {
@@ -111,14 +116,23 @@ impl Referee {
         self.hold(block);
         self.bodies.insert(
             robot,
-            Body { name, block, moving: None, handling: None, retired: false, handled: None, entered_again: false },
+            Body {
+                name,
+                block,
+                moving: None,
+                handling: None,
+                retired: false,
+                gone: false,
+                handled: None,
+                entered_again: false,
+            },
         );
         Ok(block)
     }
 
     /// Number of robots in this world.
     pub(super) fn robots(&self) -> usize {
-        self.bodies.len()
+        self.bodies.values().filter(|body| !body.gone).count()
     }
 
     /// True if no robot is in this world.
@@ -249,13 +263,26 @@ impl Referee {
         Ok(body.block)
     }
 
+    /// Takes a robot off the floor until it starts again: it holds no block any more. Returns the block where it was;
+    /// `None` if it is off the floor already.
+    pub(super) fn remove(&mut self, robot: u32) -> Result<Option<Block>, Failure> {
+        let block = self.retire(robot)?;
+        let body = self.bodies.get_mut(&robot).ok_or_else(|| unknown(robot))?;
+        if std::mem::replace(&mut body.gone, true) {
+            return Ok(None);
+        }
+        (body.handled, body.entered_again) = (None, false);
+        self.leave(robot, block);
+        Ok(Some(block))
+    }
+
     pub(super) fn is_retired(&self, robot: u32) -> bool {
         self.bodies.get(&robot).is_some_and(|body| body.retired)
     }
 
     /// True if a robot that is out of service is on the block.
     pub(super) fn is_retired_at(&self, block: Block) -> bool {
-        self.bodies.values().any(|body| body.retired && body.block == block)
+        self.bodies.values().any(|body| body.retired && !body.gone && body.block == block)
     }
 
     fn collide(&mut self, robot: u32, from: Block, to: Block) -> Option<Collision> {
@@ -295,7 +322,7 @@ impl Referee {
             return None;
         }
         let holds = |body: &Body| body.block == block || body.moving.is_some_and(|(to, _)| to == block);
-        self.bodies.iter().find(|(other, body)| **other != robot && holds(body)).map(|(other, _)| *other)
+        self.bodies.iter().find(|(other, body)| **other != robot && !body.gone && holds(body)).map(|(other, _)| *other)
     }
 }
 

@@ -294,6 +294,13 @@ fn events_of_unknown_robots_are_found() {
         ]
     );
     assert_eq!(
+        scenario("at 1s gone Robt1; at 2s gone Robot7"),
+        [
+            "warning S5005 no robot has the ID `Robt1`: it means robot 1 here, whose ID is `Robot1`",
+            "error S5005 the fleet has no robot 7",
+        ]
+    );
+    assert_eq!(
         scenario("at 1s breakdown Robot7; at 2s breakdown 4..6; at 3s breakdown 1..3; at 4s breakdown Lift5"),
         [
             "error S5005 the fleet has no robot 7",

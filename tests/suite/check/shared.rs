@@ -123,6 +123,22 @@ fn a_breakdown_is_of_a_robot_that_hears_of_it() {
 }
 
 #[test]
+fn a_robot_that_is_gone_has_no_more_events() {
+    let with = |scenario| {
+        let environment = [("scenario", scenario)];
+        found(&[WORLD, ("Environment", "saoms.Environment", &environment, false), MASTER, ROBOT])
+    };
+    assert!(with("at 1s breakdown Robot1; at 2s gone 1; at 3s end").is_empty(), "a broken robot is carried away");
+    let twice = "warning S5015 robot 1 is gone twice: the second time has no effect";
+    assert_eq!(with("at 1s gone Robot1; at 2s gone 1"), [twice]);
+    let after = "warning S5015 robot 1 breaks down after it is gone: that has no effect";
+    assert_eq!(with("at 5s breakdown Robot1; at 2s gone 1"), [after]);
+    assert_eq!(with("at 2s gone Robot1; then 1s breakdown 1"), [after]);
+    let again = "warning S5015 robot 1 is gone repeatedly: only the first time has an effect";
+    assert_eq!(with("from 1s every 1s 3 times gone 1"), [again]);
+}
+
+#[test]
 fn a_broken_robot_is_not_broken_again() {
     let with = |scenario| {
         let environment = [("scenario", scenario)];

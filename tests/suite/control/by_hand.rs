@@ -92,10 +92,10 @@ fn nobody_speaks_in_the_name_of_a_robot() {
             "stage": stage, "healer": healer, "healer_block": block(0, 0)})
     };
     for (topic, message, field, component, instead) in [
-        ("RLMSTOPIC", robot, "`robot` is 1", "Robot1", "`stop` the robot, and `start` it"),
+        ("RLMSTOPIC", robot, "`robot` is 1", "Robot1", "send `gone` when the robot is off the floor"),
         ("POSTOPIC", position, "`robot` is 2", "Robot2", "stop the robot with `estop`"),
         ("ELMSTOPIC", taken, "`robot` is 1", "Robot1", "for new luggage publish a request"),
-        ("CSMSTOPIC", help("REQUEST", 0), "`critical` is 2", "Robot2", "send `breakdown`"),
+        ("CSMSTOPIC", help("REQUEST", 0), "`critical` is 2", "Robot2", "send `breakdown` or `gone`"),
         ("CSMSTOPIC", help("INTENTION", 1), "`healer` is 1", "Robot1", "with a message on RMSTOPIC"),
     ] {
         let refused = running.refused(&["topic", "pub", topic, &message.to_string()]);
@@ -114,6 +114,39 @@ fn nobody_speaks_in_the_name_of_a_robot() {
     let (code, text) = running.end();
     assert_eq!(code, Some(0), "{text}");
     assert!(!text.contains("ignores"), "{text}");
+}
+
+#[test]
+fn an_operator_says_that_a_robot_is_gone_and_back() {
+    let running = Running::start(&fleet(), &["--stay"]);
+    running.until("Robot1", state("free"));
+    running.told(&["send", "luggage (9,9) to (1,9)"]);
+    running.until("Robot1", |robot| robot["values"]["job"].is_string());
+    assert_eq!(running.told(&["send", "gone Robot1"]), "1 event taken\n");
+    running.until("Robot1", |robot| robot["state"] == "idle");
+    running.until("Master", |master| master["values"]["gone"] == json!([1]));
+    running.until("World", |world| world["values"]["robots"] == 1);
+    running.until("MasterRobot", |master| master["values"]["robots"] == 1);
+    let why = running.told(&["why", "Robot1"]);
+    assert!(why.contains("and stops") && why.contains("gone 1"), "{why}");
+    running.told(&["topic", "pub", "RMSTOPIC", &json!({"robot": 2, "awake": true, "emulate": 0}).to_string()]);
+    running.until("World", |world| world["values"]["delivered"] == 1);
+    assert!(running.told(&["logs"]).contains("waits again at (9,9): robot 1 is gone"));
+    running.told(&["start", "Robot1"]);
+    running.until("Robot1", |robot| robot["values"]["state"] == "free" && robot["values"]["block"] == json!([0, 1]));
+    running.until("MasterRobot", |master| master["values"]["robots"] == 2);
+    running.until("Master", |master| master["values"]["gone"] == json!([]));
+    for (line, part) in [
+        ("gone robot 1", "did you mean `1`?"),
+        ("gon Robot1", "did you mean `gone`?"),
+        ("gone Robt", "expected a robot such as"),
+    ] {
+        let refused = running.refused(&["send", line]);
+        assert!(refused.contains(part), "{refused}");
+    }
+    running.told(&["down"]);
+    let (code, text) = running.end();
+    assert_eq!(code, Some(0), "{text}");
 }
 
 #[test]

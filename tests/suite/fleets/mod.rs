@@ -6,6 +6,7 @@ mod endings;
 mod environment;
 mod expand;
 mod goes_on;
+mod gone;
 mod invariants;
 mod messages;
 mod pause;

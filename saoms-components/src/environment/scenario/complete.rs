@@ -8,7 +8,7 @@ use saoms_api::extension::{Completion, CompletionKind, DURATION_UNITS, PropertyT
 use super::event::KINDS;
 use super::{Continuation, continuations};
 
-/// Class of the components that can break down.
+/// Class of the components that can break down, and be gone.
 const ROBOT: &str = "saoms.Robot";
 
 /// Completions for the cursor in a scenario.
@@ -127,6 +127,7 @@ pub(super) fn meaning(word: &str) -> &'static str {
         "landing" => "an airplane lands, and so many pieces are expected",
         "takeoff" => "an airplane is about to take off, and so many pieces are expected",
         "breakdown" => "a robot breaks down where it is",
+        "gone" => "somebody takes a robot off the floor: its block is free, and its luggage waits again",
         "end" => "nothing; the run goes on until then",
         _ => "",
     }

@@ -70,7 +70,7 @@ fn follow(words: &mut Tokenizer<'_>) -> Result<(), Vec<Continuation>> {
             }
         }
         "landing" | "takeoff" => drawn(words, Continuation::Pieces)?,
-        "breakdown" => drawn(words, Continuation::Robot)?,
+        "breakdown" | "gone" => drawn(words, Continuation::Robot)?,
         _ => {}
     }
     Ok(())

@@ -10,7 +10,7 @@ use super::{EventSpec, Spanned};
 use crate::grid::Block;
 use crate::text::TextFault;
 
-pub(super) const KINDS: [&str; 5] = ["luggage", "landing", "takeoff", "breakdown", "end"];
+pub(super) const KINDS: [&str; 6] = ["luggage", "landing", "takeoff", "breakdown", "gone", "end"];
 const BLOCK: &str = "a block such as `(3,1)`, two corners such as `(1,0)..(10,10)`, or `random`";
 const ROBOT: &str = "a robot such as `Robot002` or `2`, or numbers such as `1..10` to draw one of";
 
@@ -77,12 +77,16 @@ fn own(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
         "landing" => EventSpec::Landing(drawn(words, pieces).and_then(|drawn| some(words, drawn))?),
         "takeoff" => EventSpec::Takeoff(drawn(words, pieces).and_then(|drawn| some(words, drawn))?),
         "end" => EventSpec::End,
-        _ => {
-            let first = words.peek().unwrap_or_default();
-            let value = drawn(words, robot)?;
-            EventSpec::Breakdown(Spanned { value, bytes: words.bytes(words.span(first, words.last())) })
-        }
+        "gone" => EventSpec::Gone(robots(words)?),
+        _ => EventSpec::Breakdown(robots(words)?),
     })
+}
+
+/// A robot, or numbers to draw one of.
+fn robots(words: &mut Tokenizer<'_>) -> Result<Spanned<RandomRange<u32>>, TextFault> {
+    let first = words.peek().unwrap_or_default();
+    let value = drawn(words, robot)?;
+    Ok(Spanned { value, bytes: words.bytes(words.span(first, words.last())) })
 }
 
 fn spot(words: &mut Tokenizer<'_>) -> Result<Spanned<Spot>, TextFault> {

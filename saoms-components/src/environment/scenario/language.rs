@@ -13,7 +13,7 @@ submit! { PropertyLanguage { name: "scenario", words: WORDS, check, complete, ex
 /// The words of the language.
 const WORDS: &[&str] = &[
     "at", "from", "then", "every", "times", "until", "random", "to", "luggage", "landing", "takeoff", "breakdown",
-    "end",
+    "gone", "end",
 ];
 
 /// Judges scenarios with the events that classes take.

@@ -9,7 +9,7 @@ use super::{Before, line};
 use crate::text::TextFault;
 
 /// Words of other ways to say it, each with the word of a scenario.
-const OTHER_WORDS: [(&str, &str); 14] = [
+const OTHER_WORDS: [(&str, &str); 17] = [
     ("->", "to"),
     ("=>", "to"),
     ("→", "to"),
@@ -18,6 +18,9 @@ const OTHER_WORDS: [(&str, &str); 14] = [
     ("break", "breakdown"),
     ("breaks", "breakdown"),
     ("fault", "breakdown"),
+    ("lost", "gone"),
+    ("remove", "gone"),
+    ("removed", "gone"),
     ("//", "#"),
     ("--", "#"),
     ("and", ";"),

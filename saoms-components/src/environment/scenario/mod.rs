@@ -74,6 +74,8 @@ pub enum EventSpec {
     Takeoff(RandomRange<u32>),
     /// A breakdown of the robot with this number, given as a number or as a name that ends with it.
     Breakdown(Spanned<RandomRange<u32>>),
+    /// The robot with this number is taken off the floor, given as for a breakdown.
+    Gone(Spanned<RandomRange<u32>>),
     /// An event that other classes take, as it is written.
     Raised(Box<str>),
     /// No event: the run lasts until this time.

@@ -5,7 +5,8 @@ use saoms_api::host::cdr::{DecodeError, Reader, Writer};
 use saoms_api::host::declaration::ConstText;
 use saoms_api::{Cause, Context, Extras, Field, Knowledge, Subscription};
 
-use crate::messages::RobotList;
+use crate::gone::Gone;
+use crate::messages::{Fault, FaultKind, RobotList};
 use crate::validation::MessageValidator;
 
 /// Knowledge of the master of the robots: the active robots, and the shifts for which more of them are needed.
@@ -36,6 +37,8 @@ pub struct MasterRobotKnowledge {
     pub shifts: Vec<Shift>,
     /// Checks what robots say.
     pub(super) validator: MessageValidator,
+    /// Robots that are off the floor.
+    pub(super) gone: Gone,
     #[extras]
     extras: Extras,
 }
@@ -83,14 +86,26 @@ impl MasterRobotKnowledge {
             called: BTreeMap::new(),
             shifts: Vec::new(),
             validator: MessageValidator::default(),
+            gone: Gone::default(),
             extras: Extras::default(),
         }
     }
 
     /// Handles what robots said about themselves. All loops rely on it, so that the master hears it by itself.
-    pub(super) fn hear_robots(&mut self, robots: Subscription<RobotList>, context: &mut Context<'_>) {
+    pub(super) fn hear_robots(
+        &mut self,
+        robots: Subscription<RobotList>,
+        faults: Subscription<Fault>,
+        context: &mut Context<'_>,
+    ) {
+        for (header, fault) in context.receive(&faults).with_headers() {
+            if fault.kind == FaultKind::Gone && self.validator.accepts(fault, header, None, context) {
+                self.gone.note(fault.robot, header);
+                self.hear(&RobotList { robot: fault.robot, active: false, ..RobotList::default() });
+            }
+        }
         for (header, robot) in context.receive(&robots).with_headers() {
-            if self.validator.accepts(robot, header, None, context) {
+            if self.validator.accepts(robot, header, None, context) && self.gone.hears(robot, header) {
                 self.hear(robot);
             }
         }

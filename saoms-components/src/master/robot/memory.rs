@@ -3,6 +3,7 @@
 use saoms_api::{Field, Message, SavedLoops};
 
 use super::knowledge::{MasterRobotKnowledge, Shift};
+use crate::gone::Gone;
 use crate::messages::RobotList;
 use crate::validation::SpeakerMemory;
 
@@ -16,6 +17,7 @@ pub(super) struct MasterRobotMemory {
     called: Vec<Called>,
     shifts: Vec<Shift>,
     speakers: SpeakerMemory,
+    gone: Gone,
     loops: SavedLoops,
 }
 
@@ -35,6 +37,7 @@ impl MasterRobotKnowledge {
             called: self.called.iter().map(|(&robot, &awake)| Called { robot, awake }).collect(),
             shifts: self.shifts.clone(),
             speakers: self.validator.memory(),
+            gone: self.gone.clone(),
             loops,
         }
     }
@@ -46,6 +49,7 @@ impl MasterRobotKnowledge {
         self.called = memory.called.iter().map(|called| (called.robot, called.awake)).collect();
         self.shifts = memory.shifts;
         self.validator.restore(memory.speakers);
+        self.gone = memory.gone;
         memory.loops
     }
 }

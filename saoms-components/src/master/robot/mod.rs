@@ -8,7 +8,7 @@ mod robot_list;
 use saoms_api::{Class, Component, Context, Failure, Loops, Properties, ReportValue, Saved, Subscription};
 
 use crate::console::Timestamp;
-use crate::messages::{ROBOT_LIST, RobotList};
+use crate::messages::{FAULT, Fault, ROBOT_LIST, RobotList};
 
 pub use awake_asleep::MasterAwakeAsleep;
 use memory::MasterRobotMemory;
@@ -45,6 +45,8 @@ pub struct MasterRobot {
     loops: Loops,
     #[subscribes(ROBOT_LIST)]
     robots: Subscription<RobotList>,
+    #[subscribes(FAULT)]
+    faults: Subscription<Fault>,
 }
 
 impl Component for MasterRobot {
@@ -52,7 +54,8 @@ impl Component for MasterRobot {
 
     fn new(properties: MasterRobotProperties) -> Result<Self, Failure> {
         let knowledge = MasterRobotKnowledge::new(properties.pieces_per_robot, properties.counter);
-        Ok(MasterRobot { knowledge, loops: Loops::default(), robots: Subscription::default() })
+        let (robots, faults) = (Subscription::default(), Subscription::default());
+        Ok(MasterRobot { knowledge, loops: Loops::default(), robots, faults })
     }
 
     fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
@@ -63,7 +66,7 @@ impl Component for MasterRobot {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
-        self.knowledge.hear_robots(self.robots, context);
+        self.knowledge.hear_robots(self.robots, self.faults, context);
         self.loops.monitor(&mut self.knowledge, context)?;
         self.loops.adapt(&mut self.knowledge, context)
     }

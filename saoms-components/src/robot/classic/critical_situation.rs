@@ -123,7 +123,7 @@ impl Loop for ClassicCriticalSituation {
         }
         knowledge.lists.helps.drop_contested();
         for (header, fault) in context.receive(&self.faults).with_headers() {
-            let is_mine = knowledge.accepts(fault, header, context) && fault.robot == knowledge.number;
+            let is_mine = knowledge.accepts(fault, header, context) && fault.breaks(knowledge.number);
             if is_mine && !knowledge.variables.critical {
                 knowledge.variables.critical = true;
                 self.cause = header.cause;

@@ -5,6 +5,7 @@ use saoms_api::Field;
 use super::Lists;
 use super::helps::HelpsMemory;
 use super::requests::RequestsMemory;
+use crate::gone::Gone;
 use crate::grid::Block;
 
 /// What comes as events. The states and positions of the other robots come again from their topics, so that a robot
@@ -14,6 +15,7 @@ pub(in crate::robot) struct ListsMemory {
     requests: RequestsMemory,
     helps: HelpsMemory,
     charging_places: Vec<Block>,
+    gone: Gone,
 }
 
 impl Lists {
@@ -22,6 +24,7 @@ impl Lists {
             requests: self.requests.memory(),
             helps: self.helps.memory(),
             charging_places: self.charging_places.clone(),
+            gone: self.gone.clone(),
         }
     }
 
@@ -29,5 +32,6 @@ impl Lists {
         self.requests.restore(memory.requests);
         self.helps.restore(memory.helps);
         self.charging_places = memory.charging_places;
+        self.gone = memory.gone;
     }
 }

@@ -10,6 +10,7 @@ mod tests;
 
 use saoms_api::Entries;
 
+use crate::gone::Gone;
 use crate::grid::Block;
 use crate::messages::RobotList;
 
@@ -42,6 +43,8 @@ pub struct Lists {
     pub charging_places: Vec<Block>,
     /// Robots that cannot move any more and whose position is not known yet.
     pub lost: Vec<u32>,
+    /// Robots that are off the floor.
+    pub(crate) gone: Gone,
 }
 
 impl Lists {
@@ -56,6 +59,7 @@ impl Lists {
             chargers: Vec::new(),
             charging_places: Vec::new(),
             lost: Vec::new(),
+            gone: Gone::default(),
         }
     }
 
@@ -84,6 +88,15 @@ impl Lists {
         if !self.charging_places.contains(&charger) {
             self.charging_places.push(charger);
         }
+    }
+
+    /// Forgets a robot that is off the floor, but for its charger, where it starts again.
+    pub(super) fn forget(&mut self, robot: u32) {
+        self.helps.hear_robot(&RobotList { robot, active: false, ..RobotList::default() });
+        self.requests.forget(robot);
+        self.peers.forget(robot);
+        self.active.retain(|known| known.robot != robot);
+        self.lost.retain(|lost| *lost != robot);
     }
 
     /// Handles the state of a robot.

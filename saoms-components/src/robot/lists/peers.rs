@@ -27,6 +27,11 @@ impl Peers {
         }
     }
 
+    /// Forgets the position of a robot.
+    pub(super) fn forget(&mut self, robot: u32) {
+        self.newest.retain(|(known, _)| known.robot != robot);
+    }
+
     /// Positions that arrived in this period.
     pub fn heard(&self) -> impl Iterator<Item = &Position> + Clone {
         let period = self.period;

@@ -1,4 +1,4 @@
-//! Rule: a breakdown names a robot that does not exist, or does not hear of it.
+//! Rule: a breakdown, or a robot that is gone, names one that does not exist, or does not hear of it.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -45,7 +45,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
         // Built on demand, since most scenarios have no breakdowns.
         let mut known: Option<Names<'_>> = None;
         for line in scenario.lines() {
-            let EventSpec::Breakdown(robot) = &line.event else { continue };
+            let (EventSpec::Breakdown(robot) | EventSpec::Gone(robot)) = &line.event else { continue };
             if known.is_none() && !budget.admit(NAME * robots.len()) {
                 return findings;
             }

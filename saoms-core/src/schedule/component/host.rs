@@ -2,7 +2,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_api::event::EventCall;
+use saoms_api::event::{EventCall, STOP};
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
@@ -17,6 +17,7 @@ use super::declared::TopicUse;
 use crate::bus::TopicId;
 use crate::journal::Stamp;
 use crate::observe::{Occurrence, RunEvent};
+use crate::schedule::engine::lifecycle::Request;
 use crate::schedule::inject::{OUTSIDE, OUTSIDE_NAME};
 use crate::schedule::shared::Shared;
 use crate::schedule::takers::EventMessage;
@@ -212,6 +213,12 @@ impl Host for ComponentHost<'_> {
         }
         if !self.part.spent.has_record() {
             return self.part.spent.is_within();
+        }
+        if event == STOP {
+            let mut engine = self.shared.lock();
+            engine.request(self.part.index, Request::Unschedule, self.part.now);
+            self.shared.release(engine);
+            return Ok(());
         }
         let refused = |fault: &dyn fmt::Display| Failure::new(format!("event `{event}`: {fault}"));
         let call = EventCall::read(event).map_err(|fault| refused(&fault))?;

@@ -83,7 +83,7 @@ impl Loop for SafeCriticalSituation {
 
     fn monitor(&mut self, knowledge: &mut RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
         for (header, fault) in context.receive(&self.faults).with_headers() {
-            let is_mine = knowledge.accepts(fault, header, context) && fault.robot == knowledge.number;
+            let is_mine = knowledge.accepts(fault, header, context) && fault.breaks(knowledge.number);
             if is_mine && knowledge.trouble.is_none() {
                 knowledge.trouble = Some(Trouble::Breakdown);
                 self.cause = header.cause;

@@ -66,12 +66,13 @@ fn scenarios_complete_word_by_word() {
     assert_eq!(both("at 0.5|")[0], "0.5ms");
     assert_eq!(both("at 2s..8|")[1], "8s");
     assert_eq!(both("from 1s |"), ["every"]);
-    assert_eq!(both("at 1s |")[..5], ["luggage", "landing", "takeoff", "breakdown", "end"]);
+    assert_eq!(both("at 1s |")[..6], ["luggage", "landing", "takeoff", "breakdown", "gone", "end"]);
     assert!(both("at 1s 10|").contains(&"10 times".to_owned()));
     assert_eq!(both("at 1s luggage |"), ["(0,0)", "random"]);
     assert_eq!(both("at 1s luggage (1, |"), ["(0,0)", "random"]);
     assert_eq!(both("at 1s luggage random |"), ["to"]);
     assert_eq!(both("at 1s breakdown |"), ["Robot01"]);
+    assert_eq!(both("at 1s gone |"), ["Robot01"]);
     assert_eq!(both("at 1s end # |"), [""; 0]);
     // The word at the cursor is replaced, and nothing else.
     let taken = |label: &str, marked: &str| {
@@ -92,8 +93,8 @@ fn a_scenario_completes_wherever_its_text_is_written() {
              <implementation.rust class=\"saoms.Environment\"/><property name=\"scenario\" {given}/></component>"
         )
     };
-    let words = ["luggage", "landing", "takeoff", "breakdown", "end"];
-    let begins = |found: Vec<String>| assert_eq!(found[..5], words);
+    let words = ["luggage", "landing", "takeoff", "breakdown", "gone", "end"];
+    let begins = |found: Vec<String>| assert_eq!(found[..6], words);
     let robots = |found: Vec<String>| assert_eq!(found, ["Robot1"]);
     // In the property that the environment takes it from, in each way of writing a value.
     let own = |property: &str| proposed(&composite(&format!("{property}{}", environment("source=\"$x\""))));
