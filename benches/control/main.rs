@@ -1,4 +1,4 @@
-//! A fleet in real time with and without clients of its control. See `benches/README.md`.
+//! A fleet in real time without a control, with one that nobody asks, with `saoms top`, and with many clients. See `benches/README.md`.
 
 #![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 
@@ -10,8 +10,7 @@ mod common;
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -22,13 +21,13 @@ use serde_json::Value;
 
 use clients::{Asked, Clients};
 use common::composite::{Phases, airport};
-use common::{Outcome, cpu_time, memory, verdict};
+use common::{Outcome, cpu_time, median, memory, verdict};
 
-/// Measures a fleet of 100 robots of 100 ms with and without clients.
+/// Measures a fleet of 100 robots of 100 ms with and without a control and its clients.
 #[derive(Parser)]
 #[command(name = "cargo bench --bench control --")]
 struct Arguments {
-    /// Number of measurements, each with and without clients.
+    /// Number of measurements of each load.
     #[arg(long, default_value_t = 3)]
     rounds: u32,
     /// Duration of a measurement in seconds.
@@ -56,13 +55,40 @@ const WARM_UP: Duration = Duration::from_secs(2);
 /// Time after which a client that reads nothing is dropped, and more.
 const DROPPED: Duration = Duration::from_secs(13);
 
+/// What runs beside the fleet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+enum Load {
+    /// The fleet has no control (`--control none`).
+    NoControl,
+    /// Nobody asks.
+    Unasked,
+    /// `saoms top`, ten times as often as usual.
+    Top,
+    /// Clients that follow, read nothing, and ask.
+    Clients,
+}
+
+const LOADS: [Load; 4] = [Load::NoControl, Load::Unasked, Load::Top, Load::Clients];
+
+impl Load {
+    fn name(self) -> &'static str {
+        match self {
+            Load::NoControl => "no control",
+            Load::Unasked => "not asked",
+            Load::Top => "`top`",
+            Load::Clients => "clients",
+        }
+    }
+}
+
 /// A measurement.
 #[derive(Serialize)]
 struct Measured {
-    has_clients: bool,
+    load: Load,
     executions: u64,
     missed: u64,
-    /// The greatest of all components, in microseconds.
+    /// The median and the greatest of all components, in microseconds.
+    late_p50_us: u64,
     late_p99_us: u64,
     cpu_s: f64,
     resident_mb: f64,
@@ -87,101 +113,113 @@ fn main() -> Outcome<()> {
     )?;
     writeln!(
         page,
-        "| clients | executions | missed | latest p99 us | CPU s | MB | peak MB | answers | slowest ms | events | dropped | lost |"
+        "| load | executions | missed | late p50 us | late p99 us | CPU s | MB | peak MB | answers | slowest ms | events | dropped | lost |"
     )?;
-    writeln!(page, "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")?;
+    writeln!(page, "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")?;
     let mut all = Vec::new();
     for round in 0..arguments.rounds {
         // Forwards in one round and backwards in the next.
-        let without_first = round % 2 == 0;
-        for has_clients in [!without_first, without_first] {
-            eprintln!("round {}: {} clients", round + 1, if has_clients { "with" } else { "without" });
-            let measured = measure(&arguments, has_clients)?;
+        let order: Vec<Load> = if round % 2 == 0 { LOADS.to_vec() } else { LOADS.into_iter().rev().collect() };
+        for load in order {
+            eprintln!("round {}: {}", round + 1, load.name());
+            let measured = measure(&arguments, load)?;
+            let Measured { executions, missed, late_p50_us, late_p99_us, cpu_s, resident_mb, peak_mb, .. } = measured;
+            let (Asked { answers, slowest_ms, events }, dropped, lost) =
+                (measured.asked, measured.dropped, measured.lost);
             writeln!(
                 page,
-                "| {} | {} | {} | {} | {:.2} | {:.1} | {:.1} | {} | {:.0} | {} | {} | {} |",
-                if has_clients { "yes" } else { "no" },
-                measured.executions,
-                measured.missed,
-                measured.late_p99_us,
-                measured.cpu_s,
-                measured.resident_mb,
-                measured.peak_mb,
-                measured.asked.answers,
-                measured.asked.slowest_ms,
-                measured.asked.events,
-                measured.dropped,
-                measured.lost,
+                "| {} | {executions} | {missed} | {late_p50_us} | {late_p99_us} | {cpu_s:.2} | {resident_mb:.1} | {peak_mb:.1} | {answers} | {slowest_ms:.0} | {events} | {dropped} | {lost} |",
+                load.name(),
             )?;
             all.push(measured);
         }
     }
-    let missed =
-        |has_clients| -> u64 { all.iter().filter(|one| one.has_clients == has_clients).map(|one| one.missed).sum() };
-    let (with, without) = (missed(true), missed(false));
+    let missed = |load| -> u64 { all.iter().filter(|one| one.load == load).map(|one| one.missed).sum() };
+    let (with, without) = (missed(Load::Clients), missed(Load::Unasked));
     writeln!(page, "\nMissed with clients {with}, without {without}: {}.", verdict(with <= without))?;
+    let resident =
+        |load| median(all.iter().filter(|one| one.load == load).map(|one| one.resident_mb)).unwrap_or(f64::NAN);
+    let more = resident(Load::Unasked) - resident(Load::NoControl);
+    writeln!(
+        page,
+        "Memory of a control that nobody asks: {more:.1} MB (median), at most 3: {}.",
+        verdict(more <= 3.0)
+    )?;
     common::write("control", &page, &all)
 }
 
 /// Runs the fleet once, as the command does.
-fn measure(arguments: &Arguments, has_clients: bool) -> Outcome<Measured> {
+fn measure(arguments: &Arguments, load: Load) -> Outcome<Measured> {
     let folder = tempfile::tempdir()?;
     let lasting = Duration::from_secs(arguments.seconds) + WARM_UP + DROPPED;
     let composite = airport(arguments.robots, Duration::from_millis(100), Phases::Spread, lasting);
     fs::write(folder.path().join("load.composite"), composite)?;
     let (socket, report) = (folder.path().join("fleet.sock"), folder.path().join("report.json"));
-    let mut run = Command::new(env!("CARGO_BIN_EXE_saoms"));
-    run.current_dir(folder.path()).args(["run", "load.composite", "--stay", "--quiet", "--short-report"]);
-    run.args(["--control", "fleet.sock", "--report", "report.json"]).stdout(Stdio::null());
-    let mut child = run.spawn()?;
-    let client = Client::new(&socket);
-    while client.description().is_err() {
-        sleep(Duration::from_millis(10));
-    }
-    sleep(WARM_UP);
-    let (before, start) = (counts(&client)?, cpu_time(child.id())?);
-    let clients =
-        has_clients.then(|| Clients::start(&socket, arguments.followers, arguments.stuck, arguments.requests));
-    let begun = Instant::now();
-    sleep(Duration::from_secs(arguments.seconds).saturating_sub(begun.elapsed()));
-    let (after, cpu) = (counts(&client)?, cpu_time(child.id())?);
-    let resident = memory(child.id())?;
-    let asked = match clients {
-        Some(clients) => {
-            sleep(DROPPED);
-            clients.end()
-        }
-        None => Asked::default(),
+    let command = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_saoms"));
+        command.current_dir(folder.path()).stdout(Stdio::null());
+        command
     };
-    let metrics = client.request("GET", "/metrics", "")?.text()?;
-    let metric = |name: &str| metrics.lines().find_map(|line| line.strip_prefix(name)?.trim().parse().ok());
-    client.request("POST", "/v1/down", "")?;
+    let mut run = command();
+    run.args(["run", "load.composite", "--stay", "--quiet", "--short-report", "--report", "report.json", "--control"]);
+    let mut child = run.arg(if load == Load::NoControl { "none" } else { "fleet.sock" }).spawn()?;
+    sleep(WARM_UP);
+    let start = cpu_time(child.id())?;
+    let begun = Instant::now();
+    let (mut clients, mut top) = (None, None);
+    match load {
+        Load::NoControl | Load::Unasked => {}
+        Load::Top => {
+            top = Some(command().args(["top", "--every", "100ms", "--fleet", "./fleet.sock"]).spawn()?);
+        }
+        Load::Clients => {
+            clients = Some(Clients::start(&socket, arguments.followers, arguments.stuck, arguments.requests));
+        }
+    }
+    sleep(Duration::from_secs(arguments.seconds).saturating_sub(begun.elapsed()));
+    let cpu = cpu_time(child.id())?;
+    let resident = memory(child.id())?;
+    let (mut asked, mut dropped, mut lost) = (Asked::default(), 0.0, 0.0);
+    if let Some(clients) = clients {
+        sleep(DROPPED);
+        asked = clients.end();
+        let metrics = Client::new(&socket).request("GET", "/metrics", "")?.text()?;
+        let metric = |name: &str| metrics.lines().find_map(|line| line.strip_prefix(name)?.trim().parse().ok());
+        dropped = metric("saoms_control_dropped_total").unwrap_or(f64::NAN);
+        lost = metric("saoms_control_lost_total").unwrap_or(f64::NAN);
+    }
+    terminate(&child);
     child.wait()?;
+    if let Some(mut top) = top {
+        // It ends with the fleet.
+        top.wait()?;
+    }
+    let report: Value = serde_json::from_slice(&fs::read(report)?)?;
+    let of_components = |field: fn(&Value) -> Option<u64>| -> Vec<u64> {
+        report["components"].as_array().into_iter().flatten().filter_map(field).collect()
+    };
+    let mut p50 = of_components(|one| one["late_us"]["p50"].as_u64());
+    p50.sort_unstable();
     Ok(Measured {
-        has_clients,
-        executions: after.0 - before.0,
-        missed: after.1 - before.1,
-        late_p99_us: latest(&report)?,
+        load,
+        executions: of_components(|one| one["executions"].as_u64()).iter().sum(),
+        missed: of_components(|one| one["missed"].as_u64()).iter().sum(),
+        late_p50_us: p50.get(p50.len() / 2).copied().unwrap_or(0),
+        late_p99_us: of_components(|one| one["late_us"]["p99"].as_u64()).into_iter().max().unwrap_or(0),
         cpu_s: (cpu - start).as_secs_f64(),
         resident_mb: resident.resident_kb as f64 / 1e3,
         peak_mb: resident.peak_kb as f64 / 1e3,
         asked,
-        dropped: metric("saoms_control_dropped_total").unwrap_or(f64::NAN),
-        lost: metric("saoms_control_lost_total").unwrap_or(f64::NAN),
+        dropped,
+        lost,
     })
 }
 
-/// Executions of all components, and those that were missed.
-fn counts(client: &Client) -> Outcome<(u64, u64)> {
-    let answer = client.request("GET", "/v1/status", "")?.json()?;
-    let components = answer["status"]["components"].as_array().cloned().unwrap_or_default();
-    let sum = |field: &str| components.iter().filter_map(|one| one[field].as_u64()).sum();
-    Ok((sum("executions"), sum("missed")))
-}
-
-/// The greatest lateness of a component that 99 of 100 of its executions do not exceed.
-fn latest(report: &Path) -> Outcome<u64> {
-    let report: Value = serde_json::from_slice(&fs::read(report)?)?;
-    let components = report["components"].as_array().cloned().unwrap_or_default();
-    Ok(components.iter().filter_map(|one| one["late_us"]["p99"].as_u64()).max().unwrap_or(0))
+/// Ends a fleet as the system does.
+fn terminate(child: &Child) {
+    if let Ok(pid) = libc::pid_t::try_from(child.id()) {
+        // SAFETY: a signal to another process touches no memory of this one. The child was not waited for, so that its
+        // number belongs to nobody else.
+        unsafe { libc::kill(pid, libc::SIGTERM) };
+    }
 }

@@ -63,7 +63,10 @@ fn what_a_state_topic_retains_is_shown_and_not_counted() {
         assert!(retained["component"].as_str().unwrap().starts_with("Robot"), "{line}");
         assert!(retained["time_s"].is_f64() && retained["message"]["block"].is_object(), "{line}");
     }
-    let counted = running.told(&["topic", "hz", "POSTOPIC", "--for", "300ms", "--format", "json"]);
-    let counted: Value = serde_json::from_str(&counted).unwrap();
-    assert_eq!(counted["messages"], 0, "{counted}");
+    // What was on its way at the stop may come still.
+    let counts = (0..20).map(|_| {
+        let counted = running.told(&["topic", "hz", "POSTOPIC", "--for", "300ms", "--format", "json"]);
+        serde_json::from_str::<Value>(&counted).unwrap()["messages"].as_u64().unwrap()
+    });
+    assert!(counts.into_iter().any(|count| count == 0), "what is retained is counted");
 }
