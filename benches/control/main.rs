@@ -1,4 +1,5 @@
-//! A fleet in real time without a control, with one that nobody asks, with `saoms top`, and with many clients. See `benches/README.md`.
+//! A fleet in real time without a control, with one that nobody asks, with `saoms top`, and with many clients. See
+//! `benches/README.md`.
 
 #![expect(clippy::print_stderr, reason = "the progress of a long measurement is for the person who waits for it")]
 

@@ -80,6 +80,11 @@ impl Place {
         Err(io::Error::from_raw_os_error(libc::ELOOP))
     }
 
+    /// True if it is standard output.
+    pub(crate) fn is_standard_output(&self) -> bool {
+        *self == Place::Descriptor(libc::STDOUT_FILENO)
+    }
+
     /// The place at a path that is no link.
     fn at(path: PathBuf) -> io::Result<Place> {
         match fs::metadata(&path) {

@@ -1,5 +1,6 @@
 //! The observer that shows what happens in a fleet, and a summary at the end.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use saoms_api::Level;
@@ -11,7 +12,7 @@ use super::log_lines::{LogFormat, LogStyle};
 use super::status_line::StatusLine;
 use super::summary::summary;
 use super::{ConsoleStyle, RunArguments};
-use crate::output::{eprint, print};
+use crate::output::{Place, eprint, print};
 
 /// The console of a run.
 pub(crate) struct Console {
@@ -21,6 +22,9 @@ pub(crate) struct Console {
     keeps_all: bool,
     /// The line below the others, on a terminal.
     status: Option<StatusLine>,
+    /// Writes the log and the summary: to standard output, or to standard error where an output of its own, such as
+    /// the report, has standard output.
+    write: fn(&str),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -41,19 +45,22 @@ impl Console {
             ConsoleStyle::Plain => Verbosity::Plain,
             ConsoleStyle::Classic => Verbosity::Classic,
         };
+        let outputs = [&arguments.report, &arguments.paths, &arguments.journal, &arguments.log.log];
+        let is_standard = |path: &PathBuf| Place::of(path).is_ok_and(|place| place.is_standard_output());
+        let write = if outputs.into_iter().flatten().any(is_standard) { eprint } else { print };
         if verbosity == Verbosity::Classic {
-            print("Starting...\n");
+            write("Starting...\n");
         }
         let style = if verbosity == Verbosity::Classic { style.plain() } else { style };
         let has_status = verbosity == Verbosity::Plain && style.format == LogFormat::Plain;
         let status = if has_status { StatusLine::on_terminal() } else { None };
-        Console { verbosity, style, keeps_all: arguments.journal.is_some(), status }
+        Console { verbosity, style, keeps_all: arguments.journal.is_some(), status, write }
     }
 
     fn line(&self, text: &str) {
         match &self.status {
-            Some(status) => status.above(|| print(text)),
-            None => print(text),
+            Some(status) => status.above(|| (self.write)(text)),
+            None => (self.write)(text),
         }
     }
 }
@@ -62,7 +69,7 @@ impl Observer for Console {
     fn event(&self, event: &RunEvent) {
         let level = event.what.level();
         match (self.verbosity, &event.what) {
-            (Verbosity::Classic, Occurrence::Console { text }) => print(&format!("{}\n", one_line(text))),
+            (Verbosity::Classic, Occurrence::Console { text }) => (self.write)(&format!("{}\n", one_line(text))),
             (_, Occurrence::Console { .. }) => {}
             (Verbosity::Quiet, _) if level == Level::Error => eprint(&self.style.line(event)),
             (Verbosity::Classic, _) if level <= Level::Warning => eprint(&self.style.line(event)),
@@ -99,8 +106,8 @@ impl Observer for Console {
         }
         match (self.verbosity, self.style.format) {
             (Verbosity::Quiet, _) => {}
-            (_, LogFormat::Plain) => print(&summary(report, self.keeps_all)),
-            (_, LogFormat::Json) => print(&self.style.end(report)),
+            (_, LogFormat::Plain) => (self.write)(&summary(report, self.keeps_all)),
+            (_, LogFormat::Json) => (self.write)(&self.style.end(report)),
         }
     }
 }

@@ -294,11 +294,24 @@ fn a_report_that_cannot_be_written_is_told_before_the_run_and_fails_it_after() {
     assert!(stderr(&output).contains("no/such/folder/report.json"));
     assert_eq!(stdout(&output), "", "nothing was started");
     let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let output =
-        command(&["run", "composites/airport.composite", "--virtual", "--report", "-"]).stdout(full).output().unwrap();
+    let run = ["run", "composites/hall.composite", "--virtual", "--quiet", "--report", "-"];
+    let output = command(&run).stdout(full).output().unwrap();
     assert_eq!(code(&output), 1);
     let told = "error: standard output cannot be written: No space left on device (os error 28)\n";
     assert!(stderr(&output).starts_with(told), "{}", stderr(&output));
+}
+
+#[test]
+fn an_output_that_has_standard_output_is_alone_there() {
+    for place in ["-", "/dev/stdout"] {
+        for console in [&[][..], &["--console", "classic"], &["--log-format", "json"]] {
+            let run = ["run", "composites/hall.composite", "--virtual", "--report", place];
+            let output = saoms(&[&run[..], console].concat());
+            let report: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+            assert_eq!(report["luggage"]["delivered"], 1);
+            assert!(stderr(&output).contains("Environment"), "{}", stderr(&output));
+        }
+    }
 }
 
 #[test]
