@@ -80,7 +80,9 @@ impl RobotKnowledge {
         context.effect(record!(leaves_floor: "is gone from {block}, and stops", block = self.block));
         warn!(context, "is gone from {}: it stops until it is started again", self.block);
         context.alert_over(ASSISTANCE, "");
+        let before = self.noted();
         self.drop_job();
+        self.note_changes(context, before);
         self.offers_help = false;
         self.gone = true;
         context.unschedule()

@@ -216,6 +216,10 @@ impl World {
     /// Somebody took a robot off the floor.
     fn take_away(&mut self, context: &mut Context<'_>, fault: &Fault) -> Result<(), Failure> {
         let robot = fault.robot;
+        if self.validator.check_known(robot).is_err() {
+            // The master reports it.
+            return Ok(());
+        }
         // A robot of another world is off this floor anyway, and lay nothing down here.
         let (block, delivered, luggage) = match self.referee.remove(robot) {
             Ok(None) => return Ok(()),

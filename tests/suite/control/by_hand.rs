@@ -129,6 +129,7 @@ fn an_operator_says_that_a_robot_is_gone_and_back() {
     running.until("MasterRobot", |master| master["values"]["robots"] == 1);
     let why = running.told(&["why", "Robot1"]);
     assert!(why.contains("and stops") && why.contains("gone 1"), "{why}");
+    assert!(why.contains("busy: yes -> no"), "it has no job any more: {why}");
     running.told(&["topic", "pub", "RMSTOPIC", &json!({"robot": 2, "awake": true, "emulate": 0}).to_string()]);
     running.until("World", |world| world["values"]["delivered"] == 1);
     assert!(running.told(&["logs"]).contains("waits again at (9,9): robot 1 is gone"));

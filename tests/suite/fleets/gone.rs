@@ -132,6 +132,15 @@ fn a_broken_robot_leaves_its_job_and_then_the_floor() {
 }
 
 #[test]
+fn a_robot_that_nobody_knows_is_told_once() {
+    let fleet = fleet("at 0.5s luggage (2,2) to (8,2); at 3s gone 99; at 9s end", "safe", true, &[]);
+    let run = fleet.with_severity("S5005", "warning").run(1, LIMIT);
+    assert_delivered(&run, 1, "unknown");
+    assert_eq!(run.sections["faults"]["ignored"], 1);
+    assert_eq!(run.sections.get("messages"), None, "the world says nothing of it");
+}
+
+#[test]
 fn a_robot_that_has_failed_is_gone_for_the_others() {
     let scenario = "at 0.5s luggage (2,2) to (8,2); at 8s gone 2; at 9s luggage (2,3) to (8,3); at 20s end";
     let run = fleet(scenario, "safe", true, &[]).fail("Robot2", Duration::from_millis(1500)).run(1, LIMIT);
