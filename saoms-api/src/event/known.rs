@@ -129,6 +129,16 @@ fn check_value(field: &EventField, one: &Argument) -> Result<(), LineFault> {
         );
         return Err(LineFault::new(one.value.bytes.clone(), message));
     }
+    if let [first, last] = &ends[..]
+        && last.bytes.start == first.bytes.end + 2
+        && last.text.starts_with('.')
+    {
+        // `.4` behind them is a number, too, but not the one that is meant.
+        let meant = last.text.trim_start_matches('.');
+        let found = &one.value.text;
+        let message = format!("field `{}`: found `{found}`, expected `..` between the two ends of a range", field.name);
+        return Err(LineFault::new(one.value.bytes.clone(), message).instead(format!("{}..{meant}", first.text)));
+    }
     let mut values = Vec::new();
     for end in &ends {
         match field.of.read(&end.text) {

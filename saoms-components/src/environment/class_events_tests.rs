@@ -104,6 +104,8 @@ fn mistakes_are_told_at_their_words_with_what_is_meant() {
         "at 1s fire at=(1,1,1) size=1",
         "at 1s fire at=(9,9)..(0,0) size=1",
         "at 1s fire at=(1,1) size=3..1",
+        "at 1s fire at=(1,1) size=1 heat=2.5...4.5",
+        "at 1s fire at=(1,1)...(2,2) size=1",
         "at 1s fire at=(1,1) size=1 fuel=OIL..WOOD",
         "at 1s fire at=(1,1) size=1 heat=1..3",
         "at 1s fire at=(1,1) size = 1",
@@ -126,6 +128,8 @@ fn mistakes_are_told_at_their_words_with_what_is_meant() {
         `(1,1,1)`: field `at`: found `(1,1,1)`, expected `(x,y)`, such as `(1,1)`
         raises `fire at=(9,9)..(0,0) size=1`
         `3..1`: field `size`: found `3..1`, expected the smaller value first, meant `1..3`
+        `2.5...4.5`: field `heat`: found `2.5...4.5`, expected `..` between the two ends of a range, meant `2.5..4.5`
+        `(1,1)...(2,2)`: field `at`: found `(1,1)...(2,2)`, expected `..` between the two ends of a range, meant `(1,1)..(2,2)`
         `OIL..WOOD`: field `fuel`: found the range `OIL..WOOD`, expected one value: `OIL` or `WOOD`
         `1..3`: field `heat`: found a range of whole numbers, expected real numbers, meant `1.0..3.0`
         `size`: found `size`, expected a field such as `size=2`, or `to` and a component

@@ -203,6 +203,14 @@ fn a_slip_is_told_with_what_is_meant() {
         ("from 1s every 2s-8s 3 times landing 4", "from 1s every 2s..8s 3 times landing 4"),
         ("from 1s every 2s.8s 3 times landing 4", "from 1s every 2s..8s 3 times landing 4"),
         ("at 1s luggage (1,1)...(5,5) to (3,10)", "at 1s luggage (1,1)..(5,5) to (3,10)"),
+        ("at 1s luggage (1,1) ... (5,5) to (3,10)", "at 1s luggage (1,1) .. (5,5) to (3,10)"),
+        ("at 1s luggage (1,1) to (3,10)...(5,5)", "at 1s luggage (1,1) to (3,10)..(5,5)"),
+        ("from 1s every 2s...4s 3 times landing 4", "from 1s every 2s..4s 3 times landing 4"),
+        ("from 1s every 2 s...4 s 3 times landing 4", "from 1s every 2 s..4 s 3 times landing 4"),
+        ("at 0.2s...4s landing 4", "at 0.2s..4s landing 4"),
+        ("at 1s landing 2...4", "at 1s landing 2..4"),
+        ("at 1s takeoff 2....4", "at 1s takeoff 2..4"),
+        ("at 1s breakdown 1...2", "at 1s breakdown 1..2"),
     ] {
         let findings = Scenario::read(&[line]).unwrap_err();
         let (_, part) = findings[0].place().value_part().unwrap();

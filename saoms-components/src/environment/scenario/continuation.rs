@@ -2,7 +2,7 @@
 
 use super::event::KINDS;
 use super::line::{STARTS, UNITS};
-use super::tokenizer::{DOTS, Tokenizer};
+use super::tokenizer::Tokenizer;
 
 /// A possible continuation of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +91,8 @@ fn drawn(words: &mut Tokenizer<'_>, what: Continuation) -> Result<(), Vec<Contin
         if what == Continuation::Time && words.peek().is_some_and(|unit| UNITS.contains(&unit)) {
             let _ = words.next("");
         }
-        if !words.take(DOTS) {
+        // Nothing continues a line with a fault.
+        if !words.take_dots().map_err(|_| Vec::new())? {
             return Ok(());
         }
     }

@@ -4,7 +4,7 @@ use saoms_api::rule::nearest;
 
 use super::line::drawn;
 use super::random::{RandomRange, Spot};
-use super::tokenizer::{DOTS, Tokenizer};
+use super::tokenizer::Tokenizer;
 use super::vocabulary::Vocabulary;
 use super::{EventSpec, Spanned};
 use crate::grid::Block;
@@ -95,7 +95,7 @@ fn spot(words: &mut Tokenizer<'_>) -> Result<Spanned<Spot>, TextFault> {
         RANDOM => Spot::Anywhere,
         _ => {
             let corner = block(words, first)?;
-            if words.take(DOTS) {
+            if words.take_dots()? {
                 let second = words.next("the opposite corner, such as `(10,10)`")?;
                 Spot::between(corner, block(words, second)?)
             } else {

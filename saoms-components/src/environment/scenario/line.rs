@@ -231,7 +231,7 @@ pub(super) fn drawn<'a, T: Copy + PartialOrd>(
     let start = words.peek().unwrap_or_default();
     let least = one(words)?;
     let first = words.span(start, words.last());
-    if !words.take(super::tokenizer::DOTS) {
+    if !words.take_dots()? {
         return Ok(RandomRange::fixed(least));
     }
     let start = words.peek().unwrap_or_default();

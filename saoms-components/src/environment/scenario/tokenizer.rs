@@ -13,15 +13,16 @@ pub(super) struct Tokenizer<'a> {
 }
 
 /// Separator of the two ends of a range.
-pub(super) const DOTS: &str = "..";
+const DOTS: &str = "..";
 
 impl<'a> Tokenizer<'a> {
-    /// The words of a line of the text. A block such as `(3, 1)` is one word, and so is `..`.
+    /// The words of a line of the text. A block such as `(3, 1)` is one word, and so are dots
+    /// in a row: in `2s...4s` the third one is no start of `.4s`.
     pub(super) fn of(text: &'a str, line: &'a str) -> Tokenizer<'a> {
         let (mut words, mut rest) = (Vec::new(), line.trim_start());
         while !rest.is_empty() {
             let length = if rest.starts_with(DOTS) {
-                DOTS.len()
+                rest.len() - rest.trim_start_matches('.').len()
             } else if rest.starts_with('(') {
                 rest.find(')').map_or(rest.len(), |end| end + 1)
             } else {
@@ -48,6 +49,16 @@ impl<'a> Tokenizer<'a> {
         let is_next = self.peek() == Some(word);
         self.at += usize::from(is_next);
         is_next
+    }
+
+    /// Takes the separator of a range if it is next. More than two dots are a fault.
+    pub(super) fn take_dots(&mut self) -> Result<bool, TextFault> {
+        match self.peek() {
+            Some(word) if word.len() > DOTS.len() && word.starts_with(DOTS) => {
+                Err(self.wrong(word, "`..` between the two ends of a range").instead(Some(DOTS)))
+            }
+            _ => Ok(self.take(DOTS)),
+        }
     }
 
     /// Takes the next word, or reports what was expected there.
