@@ -3,8 +3,8 @@
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::source::{FileId, Span};
 
-/// An encoding that bytes show by themselves, with its name for `iconv`.
-pub(super) fn by_its_bytes(bytes: &[u8]) -> Option<&'static str> {
+/// An encoding with two or four bytes a letter that the first bytes of a file show, with its name for `iconv`.
+pub fn by_its_bytes(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0xff, 0xfe, 0, 0, ..] | [b'<', 0, 0, 0, ..] => Some("UTF-32LE"),
         [0, 0, 0xfe, 0xff, ..] | [0, 0, 0, b'<', ..] => Some("UTF-32BE"),

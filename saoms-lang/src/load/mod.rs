@@ -27,8 +27,9 @@ use std::sync::Arc;
 
 pub(crate) use children::renaming;
 pub use component_type::load_component_type;
+pub use encoding::by_its_bytes as wide_encoding;
 pub(crate) use read::ReadContext;
-pub use read::{MAX_SIZE, STANDARD_INPUT, read, read_from};
+pub use read::{MAX_SIZE, STANDARD_INPUT, missing_file_help, read, read_from};
 pub(crate) use wrong_place::is_given_otherwise;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};

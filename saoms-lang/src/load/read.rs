@@ -297,6 +297,11 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
     })
 }
 
+/// Help for a path of a file that does not exist: what there is that may be meant.
+pub fn missing_file_help(path: &Path) -> Option<String> {
+    near(path, None)
+}
+
 /// Help for a path that does not exist; files with the ending are shown where no name is alike.
 fn near(path: &Path, ending: Option<&str>) -> Option<String> {
     let parent = path.parent()?;

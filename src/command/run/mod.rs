@@ -41,7 +41,7 @@ use alerts::AlertDelivery;
 use console::Console;
 use control::{Control, NetworkArguments};
 use ending::{Signalled, end_without_reader};
-use events::{Events, Numbers};
+use events::{Events, Numbers, Unreadable};
 use log_file::LogFile;
 use log_lines::{LogArguments, LogStyle};
 use notify::Notifier;
@@ -198,10 +198,11 @@ pub(crate) fn run(arguments: &RunArguments) -> Exit {
     let numbers = Numbers::new(arguments.seed);
     let events = arguments.events.as_deref().map(|path| (path, Events::open(path, &numbers)));
     let events = match events {
-        Some((path, Err(error))) => {
+        Some((path, Err(Unreadable { message, help }))) => {
             let path = displayed(path);
+            let help = help.map(|help| format!("  = help: {help}\n")).unwrap_or_default();
             eprint(&format!(
-                "error: the events cannot be read from `{path}`: {error}\n\n1 error: nothing was started\n"
+                "error: the events cannot be read from `{path}`: {message}\n{help}\n1 error: nothing was started\n"
             ));
             return Exit::WrongInput;
         }

@@ -115,6 +115,49 @@ fn a_composite_in_place_of_events_is_told_once() {
 }
 
 #[test]
+fn a_mark_at_the_start_of_events_is_no_part_of_their_first_line() {
+    let yard = Yard::new();
+    let lines = format!("\u{feff}{LINES}");
+    fs::write(yard.folder.path().join("events.txt"), &lines).unwrap();
+    for (file, input) in [("events.txt", ""), ("-", lines.as_str())] {
+        let (_, text) = yard.run(&["--virtual", "--events", file, "--for", "10min"], input);
+        assert!(text.contains("2 of 2 pieces of luggage delivered"), "{file}: {text}");
+        let report = yard.report();
+        assert_eq!((&report["events"]["taken"], &report["events"]["ignored"]), (&4.into(), &Value::Null), "{file}");
+    }
+    // One that stands elsewhere is a mistake.
+    yard.run(&["--virtual", "--events", "-", "--for", "10min"], &format!("{LINES}{lines}"));
+    assert_eq!(yard.report()["events"]["ignored"], 1);
+}
+
+#[test]
+fn events_that_cannot_be_read_are_told_with_what_helps() {
+    let yard = Yard::new();
+    let wide: Vec<u8> = format!("\u{feff}{LINES}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    fs::write(yard.folder.path().join("wide.txt"), &wide).unwrap();
+    fs::write(yard.folder.path().join("events.txt"), LINES).unwrap();
+    for (file, told) in [
+        (
+            "wide.txt",
+            "`wide.txt`: it is in UTF-16LE, expected UTF-8\n  = help: convert it: `iconv -f UTF-16LE -t UTF-8 wide.txt`",
+        ),
+        ("event.txt", "`event.txt`: there is no such file\n  = help: there is `events.txt`\n"),
+        ("nowhere/events.txt", "there is no such file\n  = help: there is no folder `nowhere`\n"),
+    ] {
+        let (output, text) = yard.run(&["--virtual", "--events", file], "");
+        let found = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!((output.status.code(), text.as_str()), (Some(2), ""), "{found}");
+        assert!(found.contains(told) && !found.contains("os error"), "{file}: {found}");
+    }
+    // Of what comes from a pipe the start is not known when the fleet starts.
+    let mut child = yard.spawn(&["--virtual", "--events", "-", "--for", "1s"]);
+    child.stdin.take().unwrap().write_all(&wide).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let found = String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
+    assert!(found.contains("they are in UTF-16LE, expected UTF-8"), "{found}");
+}
+
+#[test]
 fn an_event_says_its_site() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("inner.composite"), FLEET).unwrap();
@@ -196,7 +239,10 @@ fn events_are_taken_as_they_come_and_the_end_of_input_is_no_end_of_the_run() {
 fn events_that_cannot_be_read_start_nothing() {
     let yard = Yard::new();
     for (arguments, expected) in [
-        (&["--events", "nowhere.txt"][..], "error: the events cannot be read from `nowhere.txt`: No such file"),
+        (
+            &["--events", "nowhere.txt"][..],
+            "error: the events cannot be read from `nowhere.txt`: there is no such file",
+        ),
         (&["--events", "."], "error: the events cannot be read from `.`: is a directory"),
         (&["--events", "-", "-"], "error: composite and events cannot both be read from standard input"),
     ] {

@@ -1,11 +1,10 @@
 //! `saoms run --events`: events from outside, a line each, while the fleet runs.
 
+mod input;
 mod journal;
 
 use std::convert::Infallible;
-use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, ErrorKind, Read};
-use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+use std::io::{self, BufRead, Read};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU32;
@@ -21,28 +20,12 @@ use saoms_api::{Level, Time};
 use saoms_core::schedule::{
     Handle, Hold, InjectError, InjectedContent, Injection, Order, OrderTicket, RaiseError, TimedOrder,
 };
+use saoms_lang::load::wide_encoding;
 
-use crate::output::wait_for_input;
+pub(super) use input::Unreadable;
 
 /// Time between two looks for a signal while lines are read before the start.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
-
-/// A named pipe that is read without blocking. To read it blocking, it would have to be opened so, which waits for a
-/// writer.
-struct Pipe(File);
-
-impl Read for Pipe {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        loop {
-            // Nothing comes before there is a writer, and the end only after one.
-            wait_for_input(&self.0)?;
-            match self.0.read(buffer) {
-                Err(error) if error.kind() == ErrorKind::WouldBlock => {}
-                result => return result,
-            }
-        }
-    }
-}
 
 /// The most bytes of a line.
 const LONGEST: usize = 65_536;
@@ -56,31 +39,12 @@ pub(super) struct Events {
 }
 
 impl Events {
-    /// Opens a file, or standard input where the path is `-`. A named pipe may have no writer yet: it is waited for
-    /// when lines are read, so that the fleet runs and can be ended.
-    pub(super) fn open(path: &Path, numbers: &Numbers) -> io::Result<Events> {
-        let lines: Box<dyn BufRead + Send> = if path == Path::new("-") {
-            Box::new(BufReader::new(io::stdin()))
-        } else if fs::metadata(path)?.file_type().is_fifo() {
-            let pipe = File::options().read(true).custom_flags(libc::O_NONBLOCK).open(path)?;
-            Box::new(BufReader::new(Pipe(pipe)))
-        } else {
-            let file = File::open(path)?;
-            let is_regular = file.metadata()?.is_file();
-            if file.metadata()?.is_dir() {
-                return Err(io::Error::from(io::ErrorKind::IsADirectory));
-            }
-            let mut lines = BufReader::new(file);
-            // A device may have nothing to read yet.
-            let start = if is_regular { lines.fill_buf()?.trim_ascii_start() } else { &[] };
-            if start.starts_with(b"<") {
-                return Err(io::Error::other("it is XML, expected a line for each event"));
-            }
-            if start.starts_with(b"{") && !journal::is_head(start) {
-                return Err(io::Error::other("it is JSON, expected a line for each event, or a file of `--journal`"));
-            }
-            Box::new(lines)
-        };
+    /// Opens a file, or standard input where the path is `-`.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub(super) fn open(path: &Path, numbers: &Numbers) -> Result<Events, Unreadable> {
+        let lines = input::open(path)?;
         Ok(Events { lines, languages: Languages::of("(outside)", numbers), number: 0 })
     }
 
@@ -126,6 +90,15 @@ impl Events {
             line.pop();
         } else if count > LONGEST {
             self.lines.skip_until(b'\n')?;
+        }
+        if self.number == 1 {
+            // What comes as it is written is not looked at when it is opened.
+            if let Some(encoding) = wide_encoding(line) {
+                return Err(io::Error::other(format!("they are in {encoding}, expected UTF-8")));
+            }
+            if line.starts_with(input::MARK) {
+                line.drain(..input::MARK.len());
+            }
         }
         Ok(count > 0)
     }
