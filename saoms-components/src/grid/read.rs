@@ -7,12 +7,50 @@ use crate::text::{TextFault, bytes};
 /// Maximum number of wrong lines, after which reading stops.
 const MOST_WRONG: usize = 1000;
 
+/// The signs of blocks: four of free ones, and four of blocked ones.
+const SIGNS: &str = ".GES@OTW";
+
 /// The header of a map file as read so far: the sides and their places in the text.
 #[derive(Default)]
 struct Header<'a> {
     width: Option<(u32, &'a str)>,
     height: Option<(u32, &'a str)>,
     ended: bool,
+}
+
+/// Rows that somebody drew with blanks for their blocks: as many of them as the other rows are long.
+struct BlankRows {
+    /// Length of the first row with signs of a map, without and with the blanks behind it.
+    lengths: [usize; 2],
+}
+
+impl BlankRows {
+    fn of(text: &str) -> BlankRows {
+        let is_row = |line: &&str| line.trim().starts_with(|sign| SIGNS.contains(sign));
+        let first = text.lines().find(is_row).unwrap_or_default();
+        BlankRows { lengths: [first.trim_end(), first].map(|line| line.chars().count()) }
+    }
+
+    fn have(&self, line: &str) -> bool {
+        !line.is_empty() && line.trim().is_empty() && self.lengths.contains(&line.chars().count())
+    }
+
+    /// The fault of all of them. White space of another length is layout, and so is what follows the last line end: the
+    /// indentation of an end tag.
+    fn fault(&self, text: &str) -> Option<TextFault> {
+        let lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
+        let mut blank = lines.map(|line| line.trim_end_matches(['\n', '\r'])).filter(|line| self.have(line));
+        let first = blank.next()?;
+        let also = match blank.count() {
+            0 => String::new(),
+            more => format!(" (in this row and {more} more)"),
+        };
+        let message =
+            format!("found a row of blanks, expected `.` for each free block or `@` for each blocked one{also}");
+        Some(
+            TextFault::of(text, first, message).help("write `....` for four free blocks, `@@@@` for four blocked ones"),
+        )
+    }
 }
 
 /// The fault of a text that is no map, but a scenario or a table: all its lines have one cause.
@@ -63,12 +101,14 @@ impl Map {
         let mut rows: Vec<&str> = Vec::new();
         // The last empty line behind a row: only at the end of a map it means nothing.
         let mut empty: Option<&str> = None;
-        for line in text.lines().map(str::trim) {
+        let blank_rows = BlankRows::of(text);
+        for line in text.lines() {
+            let (whole, line) = (line, line.trim());
             if faults.len() >= MOST_WRONG {
                 break;
             }
             if line.is_empty() {
-                empty = Some(line).filter(|_| !rows.is_empty());
+                empty = Some(line).filter(|_| !rows.is_empty() && !blank_rows.have(whole));
                 continue;
             }
             if let Some(empty) = empty.take() {
@@ -82,6 +122,7 @@ impl Map {
                 Err((part, message)) => faults.push(TextFault::of(text, part, message)),
             }
         }
+        faults.extend(blank_rows.fault(text));
         let Some(first) = rows.first().copied() else {
             faults.push(TextFault::new(0..text.len(), "found no rows, expected one line of `.` and `@` a row"));
             return Err(faults);

@@ -49,6 +49,17 @@ fn maps_are_read_with_and_without_a_header() {
 }
 
 #[test]
+fn white_space_around_the_rows_is_layout_unless_it_is_as_long_as_they_are() {
+    for text in [
+        "..\n..\n", "\n\n..\n..\n\n", "\n    ..\n    ..\n    ", "..\n..\n  ", " \n  ..\n  ..\n  \n   \n",
+        "..\n..\n   \n",
+    ] {
+        let map = Map::read(text).unwrap_or_else(|faults| panic!("{text:?}: {faults:?}"));
+        assert_eq!((map.width(), map.height()), (2, 2), "{text:?}");
+    }
+}
+
+#[test]
 fn wrong_maps_say_where_and_why() {
     for (text, found) in [
         ("", &["`` found no rows, expected one line of `.` and `@` a row"][..]),
@@ -77,6 +88,23 @@ fn wrong_maps_say_where_and_why() {
                 "`x` found `x` after `height`, expected a number of blocks",
                 "`width` found nothing after `width`, expected a number of blocks",
             ],
+        ),
+        (
+            "    \n    \n....\n....\n    \n    ",
+            &[
+                "`    ` found a row of blanks, expected `.` for each free block or `@` for each blocked one (in this row and 2 more)",
+            ],
+        ),
+        (
+            "  ..\r\n    \r\n  ..\r\n \r\n  ..\r\n",
+            &[
+                "`` found an empty line after row 1, expected the next row",
+                "`    ` found a row of blanks, expected `.` for each free block or `@` for each blocked one",
+            ],
+        ),
+        (
+            "height 2\nwidth 2\nmap\n..\n..\n  \n",
+            &["`  ` found a row of blanks, expected `.` for each free block or `@` for each blocked one"],
         ),
         ("width 2\nmap\n...", &["`...` found 3 blocks in this row, expected 2 as in the header"]),
         ("width 9000\nmap\n.", &["`9000` found 9000 x 1 blocks, expected at most 8192 on a side"]),
