@@ -166,16 +166,29 @@ impl<'a> Plan<'a> {
                 report.line_without_replica(one.severity(severity));
                 continue;
             };
-            report.line(row.key.location);
             match self.rows.get(&index) {
-                None => _ = self.rows.insert(index, place),
+                None => {
+                    self.rows.insert(index, place);
+                    match self.component.condition.as_ref().filter(|condition| self.is_left_out(index, condition)) {
+                        None => report.line(row.key.location),
+                        Some(condition) => report.line_without_replica(left_out(row, condition)),
+                    }
+                }
                 Some(first) => {
+                    report.line(row.key.location);
                     let message = format!("two rows are about the replica {}", quoted(&row.key));
                     let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
                     report.push(one.label(table.rows[*first].key.location, "the first").help("merge them"));
                 }
             }
         }
+    }
+
+    /// True if a condition is false for a replica. Its faults are reported where the replica is made.
+    fn is_left_out(&self, index: i64, condition: &Text) -> bool {
+        let instance = self.instance(index);
+        let holds = parse(condition).and_then(|one| boolean(&one, &mut |name| instance.value(name)));
+        matches!(holds, Ok(false))
     }
 
     /// True if there can be a replica of this name, were there more of them.
@@ -204,6 +217,13 @@ impl<'a> Plan<'a> {
         });
         named.collect()
     }
+}
+
+/// The warning about a row whose replica is absent because of its condition, which may depend on values from outside.
+fn left_out(row: &Row, condition: &Text) -> Diagnostic {
+    let message = format!("the condition leaves out the replica {}", quoted(&row.key));
+    let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message).severity(Severity::Warning);
+    one.label(condition.location, "false for it").help("change the condition, or remove the row")
 }
 
 /// The names without a line in a table, in order.

@@ -123,6 +123,55 @@ fn lines_of_tables_are_about_a_replica_in_any_of_the_places_of_a_composite() {
     .assert_eq(&with("name,number\nR1,5\nR12,6\n"));
 }
 
+/// A line about a replica that the condition leaves out has no effect, as one about a replica that does not exist.
+#[test]
+fn lines_of_tables_about_replicas_that_a_condition_leaves_out_are_told() {
+    let hall = part(
+        "hall",
+        "xmlns:saoms=\"urn:saoms:1\"",
+        r#"<property name="gap">2</property>
+<component name="R${index}" saoms:count="3" saoms:if="index != gap" saoms:overrides="table.csv"><implementation.java class="example.Robot"/>
+<property name="ID">R${index}</property><property name="period">1</property><property name="number">${index}</property></component>"#,
+    );
+    let halls = |second: &str| {
+        fleet(&format!(
+            r#"<component name="A" saoms:site="A"><implementation.composite name="t:hall"/></component>
+<component name="B" saoms:site="B"><implementation.composite name="t:hall"/><property name="gap">{second}</property></component>"#
+        ))
+    };
+    let with = |second: &str, table: &str| {
+        let halls = halls(second);
+        found(&[("a.composite", &halls), ("hall.composite", &hall), ("table.csv", table)])
+    };
+    expect![[r#"
+        table.csv:3:1-2 warning S2047: the condition leaves out the replica `2`
+          hall.composite:3:55-67 false for it
+          help: change the condition, or remove the row
+        A/R1 Some(Integer(5))
+        A/R3 Some(Integer(3))
+        B/R1 Some(Integer(5))
+        B/R3 Some(Integer(3))
+    "#]]
+    .assert_eq(&with("2", "index,number\n1,5\n2,6\n"));
+    expect![[r#"
+        table.csv:2:1-3 warning S2047: the condition leaves out the replica `R2`
+          hall.composite:3:55-67 false for it
+          help: change the condition, or remove the row
+        table.csv:3:1-3 error S2047: two rows are about the replica `R2`
+          table.csv:2:1-3 the first
+          help: merge them
+    "#]]
+    .assert_eq(&with("2", "name,number\nR2,6\nR2,7\n"));
+    // It is about a replica of the other one.
+    expect![[r#"
+        A/R1 Some(Integer(5))
+        A/R3 Some(Integer(3))
+        B/R1 Some(Integer(5))
+        B/R2 Some(Integer(6))
+    "#]]
+    .assert_eq(&with("3", "index,number\n1,5\n2,6\n"));
+}
+
 /// A mistake outside of a composite is reported there, and not again for each replica inside that takes the value.
 #[test]
 fn what_replicas_have_from_outside_is_told_once() {
