@@ -3,8 +3,11 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use saoms_api::host::{parse_duration, shorten};
+
+use crate::command::is_option;
 
 /// Options that describe a fleet.
 #[derive(Clone, Debug, Args)]
@@ -12,7 +15,7 @@ pub(crate) struct FleetArguments {
     /// Composite files, `-` for standard input; several files form one fleet. A folder is a contribution: `check`
     /// checks all of it; the other commands use the composite that its `sca-contribution.xml` lists as deployable, or
     /// the only one that no other composite uses
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(file))]
     pub(crate) files: Vec<PathBuf>,
 
     /// Set the value of a composite property; may be repeated
@@ -70,6 +73,15 @@ pub(crate) fn duration(text: &str) -> Result<Duration, String> {
         shorten(&mut message);
         message
     })
+}
+
+/// A file; an option whose dashes are missing, or are those of a printed page, is refused.
+fn file(path: PathBuf) -> Result<PathBuf, String> {
+    let name = path.to_str().map(|text| text.trim_start_matches(['-', '–', '—', '−']).to_owned());
+    match name.filter(|name| is_option(name) && !path.exists()) {
+        Some(name) => Err(format!("there is no such file; write `--{name}` for the option")),
+        None => Ok(path),
+    }
 }
 
 /// A setting, which has to be one argument.

@@ -22,6 +22,7 @@ use std::path::Path;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 use saoms_api::host::is_invisible;
+use saoms_api::rule::nearest;
 
 use crate::output::{eprint, has_failed, printed};
 use crate::{Exit, guard};
@@ -114,6 +115,27 @@ pub(crate) fn execute() -> Exit {
         Command::Completions(arguments) => completions::completions(&arguments, Arguments::command()),
         Command::Man(arguments) => man::man(&arguments, Arguments::command()),
     }
+}
+
+/// True if the command of the command line has an option of this name.
+pub(crate) fn is_option(name: &str) -> bool {
+    let command = std::env::args().nth(1).unwrap_or_default();
+    let all = Arguments::command();
+    let own = all.find_subcommand(command);
+    own.is_some_and(|own| own.get_arguments().any(|one| one.get_long() == Some(name)))
+}
+
+/// Help for a command that is written as an option.
+fn as_command(option: &str) -> Option<String> {
+    let name = option.strip_prefix("--").filter(|_| std::env::args().nth(1).as_deref() == Some(option))?;
+    let all = Arguments::command();
+    all.find_subcommand(name).map(|_| format!("did you mean the command `saoms {name}`?"))
+}
+
+/// The command that is meant by a misspelt one of `saoms help`, for which the parser proposes none.
+fn meant_command(word: &str) -> Option<String> {
+    let all = Arguments::command();
+    nearest(word, all.get_subcommands().map(clap::Command::get_name)).map(str::to_owned)
 }
 
 /// Help for an option that only other commands have.
@@ -212,6 +234,19 @@ fn parsed() -> Arguments {
             && let Some(tip) = of_others(word)
         {
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        if error.kind() == ErrorKind::UnknownArgument
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
+            && let Some(tip) = as_command(word)
+        {
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+        }
+        if error.kind() == ErrorKind::InvalidSubcommand
+            && error.get(ContextKind::SuggestedSubcommand).is_none()
+            && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand)
+            && let Some(meant) = meant_command(word)
+        {
+            error.insert(ContextKind::SuggestedSubcommand, ContextValue::Strings(vec![meant]));
         }
         if error.kind() == ErrorKind::UnknownArgument
             && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)

@@ -6,7 +6,7 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
 
-use saoms_api::rule::{Fact, FleetView};
+use saoms_api::rule::{ComponentView, Fact, FleetView};
 
 use super::robots::publishers_beside_robots;
 use crate::master::MasterEnvironment;
@@ -32,12 +32,17 @@ const TOGETHER: &str = "use the same topic for both: put them into one site, or 
     new name with `topicRename` in both; a name that begins with `/` is outside of all sites";
 
 /// Help where a component and something else do not hear each other on a topic, each with its name on the bus.
-pub(super) fn together(topic: &str, (path, own): (&str, &str), (what, other): (&str, &str)) -> String {
+pub(super) fn together(topic: &str, component: &ComponentView<'_>, (what, other): (&str, &str)) -> String {
+    let (path, own) = (component.path, component.topic(topic));
     let in_site = |site: &str| match site {
         "" => "in no site".to_owned(),
         site => format!("in the site `{site}`"),
     };
     match (site_of(topic, own), site_of(topic, other)) {
+        (Some(site), _) if let Some(real) = site_of_others(topic, component).filter(|real| *real != site) => format!(
+            "`{path}` is {}, and its `topicRename` gives `{topic}` the name `{own}`: remove that pair",
+            in_site(real)
+        ),
         (Some(site), Some(others)) if site != others => {
             let help = match (site, others) {
                 ("", site) | (site, "") => {
@@ -55,6 +60,14 @@ pub(super) fn together(topic: &str, (path, own): (&str, &str), (what, other): (&
 pub(super) fn site_of<'n>(topic: &str, on_bus: &'n str) -> Option<&'n str> {
     let site = on_bus.strip_suffix(topic)?;
     if site.is_empty() { Some(site) } else { site.strip_suffix('/') }
+}
+
+/// The site in which a component has all its other topics that have a new name.
+fn site_of_others<'c>(topic: &str, component: &ComponentView<'c>) -> Option<&'c str> {
+    let others = component.renamed.iter().filter(|(name, _)| *name != topic);
+    let mut sites = others.map(|(name, on_bus)| site_of(name, on_bus));
+    let first = sites.next()??;
+    sites.all(|site| site == Some(first)).then_some(first)
 }
 
 /// What masters of the environment publish.

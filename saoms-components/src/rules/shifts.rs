@@ -103,10 +103,10 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             first.insert(task, (index, properties.clone()));
         }
     }
-    let waiting = never_scheduled(fleet);
+    let waiting = never_scheduled(fleet, &always);
     // A shift that schedules the wrong component is one mistake with that which it does not schedule.
     match (wrong_tasks, &waiting[..]) {
-        (Some(place), [(index, _)]) => {
+        (Some(place), [(index, _)]) if !always.contains(index) => {
             let help = format!("wire the reference `tasks` to `{}`, which waits to be scheduled", path(*index));
             findings[place] = findings[place].clone().help(help);
         }
@@ -132,8 +132,8 @@ fn too_short(fleet: &FleetView<'_>, shift: usize, properties: &ShiftProperties, 
     })
 }
 
-/// Findings about components of this crate that wait to be scheduled, and nothing does that.
-fn never_scheduled(fleet: &FleetView<'_>) -> Vec<(usize, Finding)> {
+/// Findings about components of this crate that wait to be scheduled, and nothing does that; some must run `always`.
+fn never_scheduled(fleet: &FleetView<'_>, always: &HashSet<usize>) -> Vec<(usize, Finding)> {
     // What is left out for a fault may schedule any of them.
     if !fleet.missing().is_empty() {
         return Vec::new();
@@ -151,7 +151,10 @@ fn never_scheduled(fleet: &FleetView<'_>) -> Vec<(usize, Finding)> {
     let finding = |(index, one): (usize, &ComponentView<'_>)| {
         let message = format!("`{}` never runs: it waits to be scheduled, and nothing schedules it", one.path);
         let finding = Finding::new(Place::property("runOnStartup").in_component(index), message);
-        let help = "remove `runOnStartup`, or wire the reference `tasks` of a `saoms.Shift` to this component";
+        let help = match always.contains(&index) {
+            true => "remove `runOnStartup`: the robots cannot work without it",
+            false => "remove `runOnStartup`, or wire the reference `tasks` of a `saoms.Shift` to this component",
+        };
         (index, finding.help(help))
     };
     waits.map(finding).collect()

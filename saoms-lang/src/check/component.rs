@@ -46,9 +46,18 @@ impl<'a> ComponentCheck<'a> {
     }
 
     /// The component as findings are about it.
-    pub(crate) fn subject<'s>(&'s self, member: &Member<'s>) -> Subject<'s> {
+    pub(crate) fn subject<'s>(&'s self, member: &'s Member<'_>) -> Subject<'s> {
         let (name, given) = (&member.component.name, &self.given);
         let (values, places, element) = (given.own(), given.places(), Some(member.component));
-        Subject { what: "component", name, at: name.location, element, renamed: &self.renamed, values, places }
+        Subject {
+            what: "component",
+            name,
+            at: name.location,
+            element,
+            renamed: &self.renamed,
+            values,
+            places,
+            site: &member.site,
+        }
     }
 }

@@ -9,7 +9,7 @@ use super::index::is_of_definitions;
 use crate::diagnostic::{Diagnostic, codes, nearest, quoted};
 use crate::limits::FOLDER_ENTRIES;
 use crate::load::ReadContext;
-use crate::load::description::{Description, Entry, Kind};
+use crate::load::description::{Description, Entry, Kind, path_in};
 
 /// The endings of files that hold no names to import, or only names that are known.
 const USUAL: &[&str] = &["composite", "componentType", "csv", "txt", "md", "properties"];
@@ -21,7 +21,7 @@ impl Finder {
         for entry in description.imports.iter().filter(|entry| entry.location.is_some()) {
             self.imports.refuse_outside(entry, root, context);
         }
-        let ReadContext { max_size, diagnostics, .. } = context;
+        let ReadContext { max_size, sources, diagnostics } = context;
         if description.exports.is_empty() && description.imports.is_empty() {
             return;
         }
@@ -52,6 +52,10 @@ impl Finder {
             let shown = quoted(namespace);
             let mut all = others.iter();
             let holder = all.find(|(other, _)| {
+                if path_in(other).is_some() {
+                    // What describes itself as a contribution is there for others to read.
+                    sources.open().permit(other);
+                }
                 self.candidates.admit(1) && self.index.heads(other).iter().any(|one| one.namespace == namespace)
             });
             if let Some((holder, _)) = holder {

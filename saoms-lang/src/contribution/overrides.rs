@@ -14,12 +14,13 @@ const KEYS: [&str; 2] = ["index", "name"];
 /// long.
 pub fn table(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> Option<Table> {
     let text = sources.get(file).text();
-    if let Some(fault) = conflict(file, text).or_else(|| separated(file, text)) {
+    if let Some(fault) = conflict(file, text).or_else(|| separator(file, text)).or_else(|| separated(file, text)) {
         diagnostics.push(fault);
         return None;
     }
     let mut lines = lines(file, text, diagnostics);
     without_comments(&mut lines, diagnostics);
+    surplus(&mut lines, diagnostics);
     let mut lines = lines.into_iter();
     let Some(mut head) = lines.next().map(Vec::into_iter) else {
         let one = Diagnostic::new(&codes::OVERRIDES, Span::empty(0).in_file(file), "the table is empty");
@@ -114,6 +115,33 @@ fn without_comments(lines: &mut Vec<Vec<Text>>, diagnostics: &mut Diagnostics) {
         let one = Diagnostic::new(&codes::OVERRIDES, at, "a line that begins with `#`: tables have no comments");
         diagnostics.push(one.help("remove the line, or write what it says into a comment of the composite"));
     }
+}
+
+/// Removes the empty columns behind the last one with a name, as spreadsheets write them, and reports them.
+fn surplus(lines: &mut [Vec<Text>], diagnostics: &mut Diagnostics) {
+    let Some(head) = lines.first() else { return };
+    let named = head.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+    let is_empty = |line: &Vec<Text>| line.iter().skip(named).all(|cell| cell.is_empty());
+    let Some(first) = head.get(named).filter(|_| lines.iter().all(is_empty)) else { return };
+    let message = match head.len() - named {
+        1 => "a column without a name, in which nothing is".to_owned(),
+        more => format!("{more} columns without a name, in which nothing is"),
+    };
+    let one = Diagnostic::new(&codes::OVERRIDES, first.location, message);
+    diagnostics.push(one.help("remove the commas at the end of each line"));
+    lines.iter_mut().for_each(|line| line.truncate(named));
+}
+
+/// The fault of a table whose first line tells a spreadsheet the separator.
+fn separator(file: FileId, text: &str) -> Option<Diagnostic> {
+    let start = text.len() - text.trim_start_matches('\u{feff}').len();
+    let line = text[start..].lines().next().filter(|line| line.to_ascii_lowercase().starts_with("sep="))?;
+    let behind =
+        text[start + line.len()..].find(|c| !matches!(c, '\r' | '\n')).unwrap_or(text.len() - start - line.len());
+    let whole = Span::new(start as u32, (start + line.len() + behind) as u32).in_file(file);
+    let message = "this line tells a spreadsheet the separator of the values, which is a comma here";
+    let one = Diagnostic::new(&codes::OVERRIDES, Text::part_of(file, text, line).location, message);
+    Some(one.suggest("remove this line", whole, ""))
 }
 
 /// The fault of a table with the marks of git around two versions of its lines.

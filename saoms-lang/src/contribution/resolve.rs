@@ -12,6 +12,7 @@ use crate::load::description::Kind;
 use crate::load::{ReadContext, STANDARD_INPUT, load_component_type, load_file};
 use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
 use crate::source::{Location, Sources, identity};
+use crate::syntax::escaped;
 
 impl Finder {
     /// Reads the composites that those of a contribution include or implement components with, and what those name in
@@ -184,12 +185,15 @@ impl Finder {
         let other = seen.named(&wanted.local);
         let elsewhere = other.map(|other| other.namespace.clone());
         if let Some(other) = other {
-            searched.push(format!(
-                "{} has a composite {} of the namespace {}",
-                quoted(&other.path.display().to_string()),
-                quoted(&other.local),
-                quoted(&other.namespace)
-            ));
+            let (path, local) = (quoted(&other.path.display().to_string()), quoted(&other.local));
+            let meant = wanted.namespaces.as_ref().and_then(|all| all.first()).filter(|_| other.namespace.is_empty());
+            searched.push(match meant {
+                Some(meant) => format!(
+                    "{path} has a composite {local} without a target namespace: write {} in its start tag",
+                    quoted(&format!("targetNamespace=\"{}\"", escaped(meant)))
+                ),
+                None => format!("{path} has a composite {local} of the namespace {}", quoted(&other.namespace)),
+            });
         }
         let (namespaces, local) = (wanted.namespaces.as_deref(), wanted.local.as_str());
         searched.extend(self.unread(folder, local, context.sources.open()));

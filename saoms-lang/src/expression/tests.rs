@@ -48,6 +48,8 @@ fn numbers_are_calculated_as_people_do() {
         ("* 2", "[*] expected a value before `*`"),
         ("(1 + 2", "[(] `(` has no closing `)`"),
         ("1 2", "[2] expected an operator before this"),
+        ("index =< 2", "[=<] there is no `=<` -> <="),
+        ("index => 2", "[=>] there is no `=>` -> >="),
         ("$index", "[$] write the property's name without `$` in an expression -> "),
         ("inedx + 1", "[inedx] no `inedx`"),
         ("2 * ( inedx )", "[inedx] no `inedx`"),

@@ -22,8 +22,8 @@ pub(super) type Placed = (Token, Range<usize>);
 /// The signs, the longer ones first.
 const SIGNS: [&str; 13] = ["==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/", "%", "(", ")"];
 
-/// Signs that others use: what they are here.
-const OTHERS: [(&str, &str); 4] = [("&&", "and"), ("||", "or"), ("=", "=="), ("!", "not ")];
+/// Signs that others use: what they are here; the longer ones first.
+const OTHERS: [(&str, &str); 6] = [("&&", "and"), ("||", "or"), ("=<", "<="), ("=>", ">="), ("=", "=="), ("!", "not ")];
 
 /// The words that are no names.
 const RESERVED: [&str; 5] = ["and", "or", "not", "true", "false"];

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::Loader;
 use super::children::is_known;
+use super::other_words::{is_class_beside_implementation, is_word_for};
 use super::vocabulary::{self, Holds, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
 use crate::limits::LIST_WORDS;
@@ -123,13 +124,21 @@ impl Loader<'_> {
             None if vocabulary::own_names(kind).any(|known| known == name) => {
                 own_without_prefix(one, attribute, element)
             }
+            None if name == "mustSupply" => {
+                one.help("remove it: it belongs to a property of the composite that its users have to give")
+            }
             None if kind.has(name, Version::Osoa10) => one.help("remove it: only SCA 1.0 has this attribute"),
             None if name == "file" => one.help("only a property of a component has it: write the value here"),
             None if kind.names(self.version).next().is_none() => one.help("it has no attributes"),
             None => {
                 let names: Vec<String> = kind.names(self.version).map(quoted).collect();
                 let one = one.help(format!("{} has the attributes {}", quoted(kind.name), names.join(", ")));
-                if passes { one } else { as_property(one, element, attribute) }
+                match is_class_beside_implementation(element, attribute) {
+                    _ if passes => one,
+                    true => one
+                        .help("`class` belongs to its `implementation.rust` or `implementation.java`: write it there"),
+                    false => as_property(one, element, attribute),
+                }
             }
         };
         self.report(one);
@@ -472,27 +481,4 @@ fn is_named_so(element: Element<'_>, attribute: Attribute<'_>) -> bool {
         && element.attribute("name").is_none()
         && free.next().is_some_and(|one| one.name() == attribute.name())
         && free.next().is_none()
-}
-
-/// True if others call an attribute of such an element by this name: their files name a class or another file in their
-/// own words.
-fn is_word_for(written: &str, known: &str, element: Element<'_>) -> bool {
-    match (element.local_name(), known) {
-        ("include" | "implementation.composite", "name") => {
-            matches!(written, "file" | "href" | "src" | "ref" | "location" | "composite" | "class")
-        }
-        ("component" | "composite", "name") => written == "id",
-        ("implementation.java" | "implementation.rust", "class") => matches!(written, "name" | "type"),
-        // In a component it may be the property that is called so, but where another attribute gives the value.
-        ("property", "name") => {
-            let is_of_composite = element.parent().is_some_and(|around| around.parent().is_none());
-            matches!(written, "id" | "key") && (is_of_composite || element.attribute("value").is_some())
-        }
-        ("property", "value") => matches!(written, "val" | "default"),
-        ("wire", "source") => matches!(written, "from" | "src"),
-        ("wire", "target") => matches!(written, "to" | "dest" | "destination"),
-        ("reference", "target") => matches!(written, "to" | "value" | "ref" | "component" | "href" | "promote"),
-        ("deployable", "composite") => matches!(written, "name" | "file" | "ref"),
-        _ => false,
-    }
 }

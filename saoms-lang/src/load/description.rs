@@ -65,6 +65,11 @@ pub(crate) fn path_in(root: &Path) -> Option<PathBuf> {
     DESCRIPTIONS.iter().map(|name| root.join(name)).find(|path| path.is_file())
 }
 
+/// True if a file has the name of a description.
+pub(super) fn is_name(path: &Path) -> bool {
+    DESCRIPTIONS.iter().any(|name| path.ends_with(name))
+}
+
 impl Entry {
     pub(crate) fn is(&self, kind: Kind, what: &str) -> bool {
         self.kind == kind && self.what == what
@@ -167,6 +172,9 @@ impl Description {
             let is_extension = ending.is_some_and(|ending| nearest(ending, ENDINGS).is_none());
             if CONTRIBUTION.children.contains(&name) {
                 loader.check_not_kept(child);
+            } else if loader.is_wrapper(child, &CONTRIBUTION) {
+                // What is in it is no wrapper: it goes no deeper.
+                child.children().for_each(|inner| self.add(inner, loader));
             } else if !is_extension {
                 _ = loader.unexpected(child, &CONTRIBUTION, family);
             }

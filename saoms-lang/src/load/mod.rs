@@ -14,6 +14,7 @@ mod damage;
 pub(crate) mod definitions;
 pub(crate) mod description;
 mod encoding;
+mod other_words;
 mod property;
 pub(crate) mod read;
 mod root;

@@ -19,6 +19,10 @@ impl Loader<'_> {
             match child.local_name() {
                 "value" if is_sca => values.push(value(child)),
                 other if is_sca && self.is_slip(other) => {
+                    if self.is_wrapper(child, kind) {
+                        values.extend(child.children().map(value));
+                        continue;
+                    }
                     if self.unexpected(child, kind, Family::Sca) == Some("value") {
                         values.push(value(child));
                     }

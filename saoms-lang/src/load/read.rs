@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use super::encoding;
+use super::{description, encoding};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes, nearest_few, quoted};
 pub use crate::limits::MAX_SIZE;
 use crate::limits::{ADDRESSABLE_BYTES, FOLDER_ENTRIES, OFFERED_NAMES};
@@ -70,7 +70,10 @@ fn add(
             let is_empty = text.trim_start_matches('\u{feff}').trim().is_empty();
             let file = sources.add(name, text);
             if is_empty {
-                diagnostics.push(empty(file));
+                diagnostics.push(match description::is_name(path) {
+                    true => empty_of(file, "<contribution xmlns=\"...\"/>"),
+                    false => empty(file),
+                });
                 return None;
             }
             Some(file)
@@ -127,8 +130,12 @@ pub(crate) fn value(path: &Path, max_size: u64, written: &Text, open: &OpenTexts
 
 /// The diagnostic for a file of nothing, or of nothing but white space.
 pub(super) fn empty(file: FileId) -> Diagnostic {
-    Diagnostic::new(&codes::FILE_EMPTY, start_of(file), "the file is empty")
-        .help("write at least `<composite xmlns=\"...\" name=\"...\" targetNamespace=\"...\"/>`")
+    empty_of(file, "<composite xmlns=\"...\" name=\"...\" targetNamespace=\"...\"/>")
+}
+
+fn empty_of(file: FileId, least: &str) -> Diagnostic {
+    let one = Diagnostic::new(&codes::FILE_EMPTY, start_of(file), "the file is empty");
+    one.help(format!("write at least {}", quoted(least)))
 }
 
 fn start_of(file: FileId) -> Location {

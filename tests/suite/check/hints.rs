@@ -17,6 +17,7 @@ fn told(test: &str, files: &[(&str, &str)]) -> Vec<String> {
 pub(super) fn told_of(test: &str, files: &[(&str, &str)], checked: &[&str]) -> Vec<String> {
     let folder = empty_folder(&format!("hints/{test}"));
     for (name, text) in files {
+        fs::create_dir_all(folder.join(name).parent().unwrap()).unwrap();
         fs::write(folder.join(name), text).unwrap();
     }
     let output = saoms_in(&folder, &[&["check"], checked].concat());

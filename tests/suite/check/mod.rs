@@ -1,5 +1,6 @@
 //! Whole fleets and what is wrong with them.
 
+mod beside;
 mod cascades;
 mod first_fleets;
 mod hints;

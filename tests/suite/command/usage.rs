@@ -24,6 +24,25 @@ fn whoever_names_a_composite_alone_is_told_how_to_run_it() {
 }
 
 #[test]
+fn an_option_or_a_command_in_another_form_is_told_the_right_one() {
+    let hall = "composites/hall.composite";
+    for (arguments, tip) in [
+        (&["--check", hall][..], "did you mean the command `saoms check`?"),
+        (&["run", hall, "virtual"], "write `--virtual` for the option"),
+        (&["run", hall, "—virtual"], "write `--virtual` for the option"),
+        (&["run", hall, "–-virtual"], "write `--virtual` for the option"),
+        (&["check", hall, "—wiring"], "write `--wiring` for the option"),
+        (&["help", "chek"], "'check'"),
+    ] {
+        let output = saoms(arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert!(stderr(&output).contains(tip), "{arguments:?}: {}", stderr(&output));
+    }
+    let output = saoms(&["check", hall, "lost.composite"]);
+    assert!(stderr(&output).contains("S0001") && !stderr(&output).contains("option"), "{}", stderr(&output));
+}
+
+#[test]
 fn what_happens_stands_in_one_column_however_long_the_names() {
     let shown = stdout(&saoms(&["run", "composites/airport.composite", "--virtual"]));
     // When, who, what: where what begins.

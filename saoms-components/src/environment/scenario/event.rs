@@ -85,6 +85,7 @@ fn own(words: &mut Tokenizer<'_>) -> Result<EventSpec, TextFault> {
 /// A robot, or numbers to draw one of.
 fn robots(words: &mut Tokenizer<'_>) -> Result<Spanned<RandomRange<u32>>, TextFault> {
     let first = words.peek().unwrap_or_default();
+    several(words, first)?;
     let value = drawn(words, robot)?;
     Ok(Spanned { value, bytes: words.bytes(words.span(first, words.last())) })
 }
@@ -129,6 +130,26 @@ fn some(words: &Tokenizer<'_>, drawn: RandomRange<u32>) -> Result<RandomRange<u3
     }
 }
 
+/// Refuses several robots in one event.
+fn several(words: &Tokenizer<'_>, first: &str) -> Result<(), TextFault> {
+    let rest = if first.is_empty() { "" } else { words.rest(first).trim_end() };
+    let robots = || rest.split([',', ' ', '\t']).filter(|word| !matches!(*word, "" | "and" | "&"));
+    if robots().nth(1).is_none() || !robots().all(|word| number(word).is_some()) {
+        return Ok(());
+    }
+    let each: Vec<&str> = robots().collect();
+    let fault = words.fault(rest, format!("found {} robots, expected one in an event", each.len()));
+    let start = words.before(first).trim();
+    // The time since the event before is counted once.
+    let mut of_start = start.split_whitespace();
+    let again = match (of_start.next(), of_start.nth(1), of_start.next()) {
+        (Some("then"), Some(event), None) => format!("then 0s {event}"),
+        (Some("then"), ..) => return Err(fault.help("write an event for each of them, in a line of its own")),
+        _ => start.to_owned(),
+    };
+    Err(fault.instead(Some(each.join(&format!("; {again} ")))))
+}
+
 /// The number of a robot, written as a number or as a name that ends with it.
 fn robot(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
     let word = words.next(ROBOT)?;
@@ -137,9 +158,11 @@ fn robot(words: &mut Tokenizer<'_>) -> Result<u32, TextFault> {
         let span = words.span(word, number);
         return Err(words.wrong(span, ROBOT).instead(Some(number)));
     }
+    number(word).ok_or_else(|| words.wrong(word, ROBOT))
+}
+
+/// The number at the end of a word.
+fn number(word: &str) -> Option<u32> {
     let digits = &word[word.trim_end_matches(|sign: char| sign.is_ascii_digit()).len()..];
-    match digits.parse() {
-        Ok(number @ 1..) if !word.starts_with(['-', '+', '(']) => Ok(number),
-        _ => Err(words.wrong(word, ROBOT)),
-    }
+    digits.parse().ok().filter(|number| *number > 0 && !word.starts_with(['-', '+', '(']))
 }

@@ -111,7 +111,8 @@ pub(super) fn read_line(text: &str, line: &str, before: Before, vocabulary: Voca
     }
     if start == "then" && before == Before::Start {
         let message = "found `then` in the first line: there is no event before it to count from";
-        return Err(words.fault(start, message).instead(Some("at")));
+        let is_repeated = line.split_whitespace().any(|word| word == "every");
+        return Err(words.fault(start, message).instead(Some(if is_repeated { "from" } else { "at" })));
     }
     if start == "then" && before == Before::Endless {
         let message = "the line before has no end, so nothing can follow it";

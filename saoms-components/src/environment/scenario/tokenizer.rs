@@ -83,6 +83,11 @@ impl<'a> Tokenizer<'a> {
         &self.line[bytes(self.line, word).start..]
     }
 
+    /// The line up to a word.
+    pub(super) fn before(&self, word: &str) -> &'a str {
+        &self.line[..bytes(self.line, word).start]
+    }
+
     /// Takes all words that are left.
     pub(super) fn skip_rest(&mut self) {
         self.at = self.words.len();

@@ -88,7 +88,7 @@ fn nothing_to_draw(
             Place::topic(AREA.name()).in_component(*index),
             format!("this component publishes its area on the topic `{name}`"),
         )
-        .help(together(AREA.name(), (fleet.components()[*index].path, name), ("the scenario", heard)))
+        .help(together(AREA.name(), &fleet.components()[*index], ("the scenario", heard)))
 }
 
 fn check_spot(area: &WorldMap, piece: &LuggageLine, spot: &Spanned<Spot>, budget: &mut Budget) -> Option<Finding> {

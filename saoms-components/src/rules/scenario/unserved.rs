@@ -176,7 +176,7 @@ fn without_master(fleet: &FleetView<'_>, events: &str) -> Mistake {
     };
     let own = fleet.components()[master].topic(ENVIRONMENT.name());
     let label = format!("this master forwards events of the topic `{own}`, but the scenario uses `{events}`");
-    let help = together(ENVIRONMENT.name(), (fleet.components()[master].path, own), ("the scenario", events));
+    let help = together(ENVIRONMENT.name(), &fleet.components()[master], ("the scenario", events));
     Mistake {
         message,
         help,
@@ -218,8 +218,7 @@ fn not_brought(fleet: &FleetView<'_>, events: &str, luggage: &BTreeSet<&str>, wo
         let label =
             format!("this robot receives luggage on the topic `{}`, but this luggage is on `{told}`", topic(robot));
         let message = "no robot receives the luggage of this scenario";
-        let own = (components[robot].path, topic(robot));
-        let help = together(EVENT_LUGGAGE.name(), own, ("this luggage", told));
+        let help = together(EVENT_LUGGAGE.name(), &components[robot], ("this luggage", told));
         return Some(Mistake {
             message,
             help,
@@ -271,7 +270,7 @@ fn not_known<'r>(fleet: &FleetView<'_>, events: &str, robots: impl Iterator<Item
     let own = world.topic(ENVIRONMENT.name());
     let label = format!("this world receives luggage on the topic `{own}`, but this luggage is on `{events}`");
     let message = "the world of the robots does not receive the luggage of this scenario, so robots cannot collect it";
-    let help = together(ENVIRONMENT.name(), (world.path, own), ("this luggage", events));
+    let help = together(ENVIRONMENT.name(), world, ("this luggage", events));
     Some(Mistake {
         message,
         help,
@@ -295,8 +294,7 @@ fn not_handled(fleet: &FleetView<'_>, events: &str) -> Option<Mistake> {
         return Some(Mistake { message, help, other: None });
     };
     let label = format!("this component receives them on the topic `{}`, but these are on `{told}`", topic(master));
-    let own = (fleet.components()[master].path, topic(master));
-    let help = together(EXCEPTIONAL_EVENT.name(), own, ("the scenario", told));
+    let help = together(EXCEPTIONAL_EVENT.name(), &fleet.components()[master], ("the scenario", told));
     Some(Mistake {
         message,
         help,

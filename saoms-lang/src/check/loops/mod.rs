@@ -41,8 +41,16 @@ impl Resolved<'_> {
         self.changed.iter().map(|one| {
             let (spec, name) = (&self.specs[one.place], &one.element.name);
             let (values, places) = (&spec.values, &one.places);
-            let subject =
-                Subject { what: "loop", name, at: name.location, element: None, renamed: &[], values, places };
+            let subject = Subject {
+                what: "loop",
+                name,
+                at: name.location,
+                element: None,
+                renamed: &[],
+                values,
+                places,
+                site: "",
+            };
             (&*spec.class, subject)
         })
     }

@@ -31,6 +31,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) values: &'a [(SmolStr, PropertyValue)],
     /// The place of each value.
     pub(crate) places: &'a [ValuePlace],
+    /// The site of a component; empty for none, and for a loop.
+    pub(crate) site: &'a str,
 }
 
 impl<'a> Subject<'a> {
@@ -79,7 +81,9 @@ pub(crate) fn diagnostic<'s>(
         // Replicas in one use of a composite are no two uses of it.
         let around = |subject: Subject<'s>| subject.name.rsplit_once('/').map(|(around, _)| around);
         if at != place.at || around(about) != around(subject(other)) {
-            one = one.other(at, text);
+            // Those in two sites need no advice to be sites.
+            let is_apart = at == place.at && about.site != subject(other).site;
+            one = if is_apart { one } else { one.other(at, text) };
         }
     }
     if let Some(source) = place.source {

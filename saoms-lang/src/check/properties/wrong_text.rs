@@ -44,7 +44,10 @@ pub(crate) fn diagnostic(text: &Text, target: Target<'_>, message: &str, has_ind
     let inside = |before, behind| text.trim().strip_prefix(before)?.strip_suffix(behind);
     let (one, name) = match has_expression(text) {
         true => (
-            one.help("`${...}` is evaluated only in components with a `saoms:count`"),
+            one.help(match has_index {
+                true => "`${...}` is evaluated only in the element of the component: tables and other files have no expressions",
+                false => "`${...}` is evaluated only in components with a `saoms:count`",
+            }),
             inside("${", "}").filter(|name| name.trim() != INDEX),
         ),
         false => (one, inside("$(arg ", ")").or_else(|| inside("$", ""))),

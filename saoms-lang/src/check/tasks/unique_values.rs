@@ -141,12 +141,22 @@ fn without_site([one, two]: [&Member<'_>; 2], value: &str, severity: Severity) -
     let message =
         format!("{first} and {other} are uses of one composite in one site, and both have a component {value}");
     let name = &two.component.name;
+    let own = "give their components IDs of their own by a property of the composite";
+    let targets = |member: &Member<'_>| -> HashSet<SmolStr> {
+        let all = member.component.references.iter().flat_map(|reference| &reference.targets);
+        all.map(|target| target.value.clone()).collect()
+    };
+    // What they are both wired to would be in another site than one of them.
+    let help = match targets(one).is_disjoint(&targets(two)) {
+        true => format!(
+            "give each its own site, as in `saoms:site=\"{name}\"`: IDs need to differ only within a site; to let them \
+             work together, {own}"
+        ),
+        false => format!("both are wired to one component, so they work together: {own}"),
+    };
     Diagnostic::new(&codes::NOT_UNIQUE, name.location, message)
         .label(one.component.name.location, "the first")
-        .help(format!(
-            "give each its own site, as in `saoms:site=\"{name}\"`: IDs need to differ only within a site; to let them \
-             work together, give their components IDs of their own by a property of the composite"
-        ))
+        .help(help)
         .severity(severity)
 }
 

@@ -148,6 +148,9 @@ fn value(property: &Property, text: Option<&Text>, is_unset: bool) -> Result<Exp
                 "value",
                 "write it in the file, or give it with `--set`, or in the component that the composite implements",
             ),
+            false if property.many().is_some_and(|many| many.value) => {
+                ("single value: it has `many`", "remove `many` where it is declared, and give it one value")
+            }
             false => (
                 "simple value",
                 "give the property one simple value, or use a part of the value, as with `source=\"$name/part\"`",

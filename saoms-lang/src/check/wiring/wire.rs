@@ -55,7 +55,13 @@ pub(crate) fn wires<'f>(
                 let swapped = [(source, to), (to, source)];
                 let edit = |(one, other): (&Text, &Text)| Edit { location: one.location, replacement: escaped(other) };
                 report.push(one.suggest_edits("swap `source` and `target`", swapped.map(edit).into()));
-                all.entry(from).or_default().push(Wire { target: source, scope, is_replacing });
+                let (_, name) = from;
+                if has_room(ends_left, to, scope, fleet, report) {
+                    for (one, _) in spread(to, scope, fleet) {
+                        let Some(member) = fleet.find(scope, parts(&one).0) else { continue };
+                        all.entry((member, name)).or_default().push(Wire { target: source, scope, is_replacing });
+                    }
+                }
                 continue;
             }
             if !has_room(ends_left, source, scope, fleet, report) {
@@ -77,10 +83,12 @@ pub(crate) fn wires<'f>(
     (all, dangling)
 }
 
-/// The component and the reference that are the target of a wire, where the source is a service.
+/// The component and the reference that are the target of a wire, where the source is a service. Of a group of replicas
+/// it is the first.
 fn backwards<'f>((source, to): (&Text, &'f Text), scope: usize, fleet: &'f Fleet<'_>) -> Option<ReferenceId<'f>> {
     let reference = parts(to).1?;
-    let ends = [source, to].map(|end| fleet.find(scope, parts(end).0));
+    let (first, _) = spread(to, scope, fleet).next()?;
+    let ends = [source, &first].map(|end| fleet.find(scope, parts(end).0));
     let [Some(from), Some(member)] = ends else { return None };
     let is_reference = |member, name| fleet.reference_names(member).is_some_and(|names| names.contains(&name));
     let is_service = |member, name| matches!(fleet.offer(member, name), Offer::Service(_));
