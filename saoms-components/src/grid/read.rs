@@ -122,7 +122,10 @@ impl Map {
                 Err((part, message)) => faults.push(TextFault::of(text, part, message)),
             }
         }
-        faults.extend(blank_rows.fault(text));
+        let blank = blank_rows.fault(text);
+        // The header may count them: one mistake.
+        let counts_blank = blank.is_some();
+        faults.extend(blank);
         let Some(first) = rows.first().copied() else {
             faults.push(TextFault::new(0..text.len(), "found no rows, expected one line of `.` and `@` a row"));
             return Err(faults);
@@ -136,7 +139,7 @@ impl Map {
             faults.push(TextFault::of(text, side.map_or(first, |(_, side)| side), message));
             return Err(faults);
         }
-        if let Some((_, side)) = header.height.filter(|_| rows.len() != height) {
+        if let Some((_, side)) = header.height.filter(|_| rows.len() != height && !counts_blank) {
             let message = format!("found {} rows, expected the {height} of the header", rows.len());
             let beyond = rows.get(height).map_or(bytes(text, side), |row| bytes(text, row));
             faults.push(TextFault::new(beyond, message));

@@ -106,6 +106,11 @@ fn wrong_maps_say_where_and_why() {
             "height 2\nwidth 2\nmap\n..\n..\n  \n",
             &["`  ` found a row of blanks, expected `.` for each free block or `@` for each blocked one"],
         ),
+        // They are what the header counts as well.
+        (
+            "height 3\nwidth 2\nmap\n  \n..\n..\n",
+            &["`  ` found a row of blanks, expected `.` for each free block or `@` for each blocked one"],
+        ),
         ("width 2\nmap\n...", &["`...` found 3 blocks in this row, expected 2 as in the header"]),
         ("width 9000\nmap\n.", &["`9000` found 9000 x 1 blocks, expected at most 8192 on a side"]),
     ] {
