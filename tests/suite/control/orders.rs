@@ -132,6 +132,8 @@ fn what_came_from_outside_is_in_the_journal_and_happens_again() {
     let mut running = Running::start_beside(folder, &fleet(), &options);
     running.until("Robot1", |robot| robot["values"]["state"] == "free");
     assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event taken\n");
+    // Work that is left when Robot2 starts could be claimed by it, and waits while it is stopped.
+    running.until("World", |world| world["values"]["delivered"] == 2);
     assert_eq!(running.told(&["send", "start Robot2"]), "done\n");
     running.until("Robot2", |robot| robot["state"] == "running");
     running.told(&["topic", "pub", "RMSTOPIC", "{\"robot\":2,\"awake\":true,\"emulate\":0}"]);
@@ -141,7 +143,6 @@ fn what_came_from_outside_is_in_the_journal_and_happens_again() {
     assert!(refused.contains("did you mean `stop`?"), "{refused}");
     let refused = running.refused(&["send", "stop Robot"]);
     assert!(refused.contains("the fleet has no component `Robot`"), "{refused}");
-    running.until("World", |world| world["values"]["delivered"] == 2);
     running.told(&["down"]);
     let folder = running.folder().to_owned();
     let (code, text) = running.wait();

@@ -23,7 +23,7 @@ fn check(texts: &PropertyTexts<'_>) -> JudgedTexts {
     let raised = scenario.lines.iter().filter_map(|line| match &line.event {
         EventSpec::Raised(event) => {
             let call = EventCall::read(event).ok()?;
-            Some(RaisedEvent { text: line.text, call: call.moved(line.bytes.start) })
+            Some(RaisedEvent { text: line.text as usize, call: call.moved(line.bytes.start) })
         }
         _ => None,
     });

@@ -41,7 +41,7 @@ pub struct Scenario {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Index of the text that contains the line.
-    pub text: usize,
+    pub text: u32,
     /// Time since the start, or since the last event of the line before.
     pub time: RandomRange<Duration>,
     /// True if the time counts from the line before.
@@ -145,12 +145,14 @@ impl Scenario {
                 findings.push(fault.finding(property, place));
                 continue;
             }
+            // A text of a hundred thousand lines takes no more memory than they need.
+            lines.reserve_exact(line::split(text.as_ref()).count());
             for part in line::split(text.as_ref()) {
                 let read = line::read(text.as_ref(), part, before, vocabulary);
                 let is_endless = read.as_ref().is_ok_and(|line| line.times.is_none() && line.until.is_none());
                 before = if is_endless { Before::Endless } else { Before::Event };
                 match read {
-                    Ok(line) => lines.push(Line { text: place, ..line }),
+                    Ok(line) => lines.push(Line { text: u32::try_from(place).unwrap_or(u32::MAX), ..line }),
                     Err(_) if findings.len() == MOST_WRONG => return (Scenario { lines }, findings),
                     Err(fault) => findings.push(fault.finding(property, place)),
                 }

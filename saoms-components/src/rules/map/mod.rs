@@ -112,7 +112,7 @@ pub(super) fn luggage(fleet: &FleetView<'_>) -> Vec<LuggageLine> {
         for line in scenario.lines() {
             if let EventSpec::Luggage { from, to } = &line.event {
                 let endless = (line.times.is_none() && line.until.is_none()).then_some(line.every);
-                all.push(LuggageLine { index, text: line.text, endless, from: from.clone(), to: to.clone() });
+                all.push(LuggageLine { index, text: line.text as usize, endless, from: from.clone(), to: to.clone() });
             }
         }
     }

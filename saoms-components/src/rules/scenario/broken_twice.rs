@@ -51,7 +51,7 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
             if number != robot.value.most || heard.iter().any(|name| repaired.contains(&(number, *name))) {
                 continue;
             }
-            let place = Place::property("scenario").part(line.text, robot.bytes.clone()).in_component(index);
+            let place = Place::property("scenario").part(line.text as usize, robot.bytes.clone()).in_component(index);
             let help = match is_gone || first.contains_key(&(number, true)) {
                 false => "remove this event, or choose another robot: a broken robot is never repaired",
                 true => "remove this event, or choose another robot: nothing brings the robot back",

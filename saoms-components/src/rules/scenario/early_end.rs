@@ -37,7 +37,8 @@ fn early_ends(lines: &[Line], index: usize) -> Vec<Finding> {
         // Most scenarios have none, and some are very long.
         return Vec::new();
     }
-    let place = |line: &Line| Place::property("scenario").part(line.text, line.bytes.clone()).in_component(index);
+    let place =
+        |line: &Line| Place::property("scenario").part(line.text as usize, line.bytes.clone()).in_component(index);
     let times = last_times(lines);
     // The line whose last event comes latest of all, at the earliest.
     let Some((last, latest)) = lines.iter().zip(&times).max_by_key(|(_, time)| time.least) else { return Vec::new() };

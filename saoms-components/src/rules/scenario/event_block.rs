@@ -37,7 +37,7 @@ pub(super) fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                     &area,
                     &event.name,
                     block,
-                    Place::property("scenario").part(line.text, bytes).in_component(index),
+                    Place::property("scenario").part(line.text as usize, bytes).in_component(index),
                 )
             }));
         }

@@ -50,8 +50,8 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
                 return findings;
             }
             let names = known.get_or_insert_with(|| Names::of(fleet, &robots, index));
-            let text = &properties.scenario[line.text][robot.bytes.clone()];
-            let written = Written { text, value: robot.value, place: line.text, bytes: robot.bytes.clone() };
+            let text = &properties.scenario[line.text as usize][robot.bytes.clone()];
+            let written = Written { text, value: robot.value, place: line.text as usize, bytes: robot.bytes.clone() };
             let finding = check_name(fleet, names, &written, severity, &mut budget);
             findings.extend(finding.map(|finding| finding.at(written.place(index))));
         }

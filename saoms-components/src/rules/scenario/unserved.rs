@@ -98,7 +98,7 @@ impl FirstEvents {
         let (scenario, _) = Scenario::read_partly(texts);
         let first = |is: fn(&EventSpec) -> bool| {
             let line = scenario.lines().iter().find(|line| is(&line.event))?;
-            Some((line.text, line.bytes.clone()))
+            Some((line.text as usize, line.bytes.clone()))
         };
         FirstEvents {
             events: first(|one| !matches!(one, EventSpec::Raised(_) | EventSpec::End)),
