@@ -49,7 +49,7 @@ impl ClassPath for CommandClasses<'_> {
             let path = path.display();
             let text = format!(
                 "plugin `{path}` was found, but no option names it: its rules do not check the fleet; add `--plugin \
-                {path}` to let its code run"
+                {path}` to run its code"
             );
             PluginFault { is_error: false, text }
         });

@@ -94,7 +94,7 @@ impl<E: Reason> From<E> for Failure {
 
 /// What becomes a [`Failure`]: an error, a `String` or a `&str`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is no reason for a failure",
+    message = "`{Self}` is not a reason for a failure",
     label = "an error, a `String` or a `&str` becomes a failure, and several findings by `Failure::of_findings`",
     note = "an error that is `Send + Sync + 'static`, a `String` and a `&str` are; of several findings make one with \
             `Failure::of_findings`"

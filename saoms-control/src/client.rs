@@ -52,7 +52,7 @@ impl fmt::Display for ClientError {
         match self {
             ClientError::NotReached(place, error) => write!(formatter, "no fleet answers at `{place}`: {error}"),
             ClientError::Refused(reason) => formatter.write_str(reason),
-            ClientError::Malformed(what) => write!(formatter, "the answer of the fleet cannot be understood: {what}"),
+            ClientError::Malformed(what) => write!(formatter, "the answer of the fleet is malformed: {what}"),
         }
     }
 }
@@ -234,11 +234,11 @@ fn read_head(answer: &mut impl BufRead) -> io::Result<u16> {
     let mut line = String::new();
     head.read_line(&mut line)?;
     let status = line.split(' ').nth(1).and_then(|status| status.parse().ok());
-    let status = status.ok_or_else(|| io::Error::new(ErrorKind::InvalidData, "it is no HTTP"))?;
+    let status = status.ok_or_else(|| io::Error::new(ErrorKind::InvalidData, "it is not HTTP"))?;
     loop {
         line.clear();
         if head.read_line(&mut line)? == 0 {
-            return Err(io::Error::new(ErrorKind::UnexpectedEof, "it ends too early"));
+            return Err(io::Error::new(ErrorKind::UnexpectedEof, "it is incomplete"));
         }
         if line.trim().is_empty() {
             return Ok(status);

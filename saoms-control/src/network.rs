@@ -30,11 +30,11 @@ impl fmt::Display for NetworkError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             NetworkError::Malformed(why) => {
-                write!(formatter, "expected an address and a port, as `127.0.0.1:8080`: {why}")
+                write!(formatter, "expected an address and a port, such as `127.0.0.1:8080`: {why}")
             }
             NetworkError::NotLoopback(address) => write!(
                 formatter,
-                "other machines reach {address}, and nothing would be encrypted: who listens on the way reads the token"
+                "other machines can reach {address}, and nothing is encrypted: anyone who can read the network traffic gets the token"
             ),
             NetworkError::System(error) => error.fmt(formatter),
         }
@@ -117,12 +117,14 @@ fn without_port(host: &str) -> Option<&str> {
 pub(crate) fn server_of(url: &str) -> io::Result<String> {
     let wrong = |why: &str| Err(io::Error::new(ErrorKind::InvalidInput, why.to_owned()));
     let Some(rest) = url.strip_prefix("http://") else {
-        return wrong("it is no address as `http://127.0.0.1:8080`; a tunnel such as `ssh -L` reaches other machines");
+        return wrong(
+            "expected an address such as `http://127.0.0.1:8080`; a tunnel such as `ssh -L` reaches other machines",
+        );
     };
     let server = rest.strip_suffix('/').unwrap_or(rest);
     let (_, port) = server.rsplit_once(':').unwrap_or_default();
     if server.contains(['/', '@', '?', '#']) || without_port(server).is_none() || port.parse::<u16>().is_err() {
-        return wrong("expected an address and a port, as `http://127.0.0.1:8080`");
+        return wrong("expected an address and a port, such as `http://127.0.0.1:8080`");
     }
     Ok(server.to_owned())
 }

@@ -130,7 +130,7 @@ fn make_private(folder: &Path) -> io::Result<()> {
     }
     let metadata = fs::symlink_metadata(folder)?;
     if !metadata.is_dir() || metadata.uid() != user() || metadata.mode() & 0o077 != 0 {
-        let message = format!("the folder `{}` is not the user's alone", folder.display());
+        let message = format!("other users can access the folder `{}`", folder.display());
         return Err(io::Error::new(ErrorKind::PermissionDenied, message));
     }
     Ok(())
@@ -171,7 +171,7 @@ fn remove_dead(path: &Path) -> io::Result<()> {
 /// `Ok` if nobody listens on a socket.
 fn is_dead(path: &Path) -> io::Result<()> {
     if !fs::symlink_metadata(path)?.file_type().is_socket() {
-        return Err(io::Error::new(ErrorKind::AlreadyExists, "there is a file, which is no socket"));
+        return Err(io::Error::new(ErrorKind::AlreadyExists, "a file that is not a socket is there"));
     }
     match connect(path) {
         Ok(_) => Err(io::Error::new(ErrorKind::AddrInUse, "another program listens there")),
@@ -186,7 +186,7 @@ pub(crate) fn connect(path: &Path) -> io::Result<UnixStream> {
     // It bounds the time for which a connection waits in the queue, too.
     socket.set_write_timeout(Some(PATIENCE))?;
     socket.connect(&SockAddr::unix(path)?).map_err(|error| match error.kind() {
-        ErrorKind::WouldBlock => io::Error::new(ErrorKind::TimedOut, "it takes no connection"),
+        ErrorKind::WouldBlock => io::Error::new(ErrorKind::TimedOut, "it accepts no connection"),
         _ => error,
     })?;
     Ok(socket.into())

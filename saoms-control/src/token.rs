@@ -42,10 +42,10 @@ impl Token {
         let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | libc::O_CLOEXEC).open(path)?;
         let metadata = file.metadata()?;
         if !metadata.is_file() {
-            return Err(io::Error::new(ErrorKind::InvalidInput, "it is no file"));
+            return Err(io::Error::new(ErrorKind::InvalidInput, "it is not a regular file"));
         }
         if metadata.mode() & 0o077 != 0 || ![user(), 0].contains(&metadata.uid()) {
-            let message = "others than the user could use the token in it: `chmod 600` makes it the user's alone";
+            let message = "other users could read the token: restrict the file with `chmod 600`";
             return Err(io::Error::new(ErrorKind::PermissionDenied, message));
         }
         let mut text = String::new();
@@ -53,7 +53,7 @@ impl Token {
         let text = text.trim();
         if !(LENGTHS.0..=LENGTHS.1).contains(&text.len()) || !text.bytes().all(|byte| byte.is_ascii_graphic()) {
             let (least, most) = LENGTHS;
-            let message = format!("a token has {least} to {most} visible ASCII characters, and nothing between them");
+            let message = format!("a token has {least} to {most} visible ASCII characters, without blanks");
             return Err(io::Error::new(ErrorKind::InvalidData, message));
         }
         Ok(Token(text.to_owned()))

@@ -87,7 +87,8 @@ pub(crate) fn class(input: &DeriveInput) -> Result<TokenStream> {
         (None, _) => handles.extends().iter().map(|(_, base)| loops_of(base)).collect(),
         (Some(loops), Some(knowledge)) => loops.registrations(&properties, knowledge),
         (Some(_), None) => {
-            let message = "a class with loops needs their knowledge: `#[knowledge]` at its field, or `knowledge = RobotKnowledge`";
+            let message =
+                "a class with loops needs a knowledge: `#[knowledge]` at its field, or `knowledge = RobotKnowledge`";
             return Err(Error::new_spanned(&declared.name, message));
         }
     };
@@ -170,7 +171,7 @@ impl Declared {
         if let Some(of) = handles.knowledge() {
             let Type::Path(path) = of else { return Err(Error::new_spanned(of, "expected the name of a knowledge")) };
             if declared.knowledge.replace(path.path.clone()).is_some() {
-                return Err(Error::new_spanned(of, "the class says its knowledge already"));
+                return Err(Error::new_spanned(of, "the class names its knowledge already"));
             }
         }
         handles::take_topics(&mut declared.publishes, handles.publishes())?;

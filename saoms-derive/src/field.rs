@@ -122,8 +122,10 @@ fn key_field<'a>(key: &LitStr, fields: &[(&'a Ident, &Type)]) -> Result<&'a Iden
 /// The members of `Message` for a type whose field is the block of a message.
 fn place_of(text: &LitStr, field: &Ident, fields: &[(&Ident, &Type)]) -> TokenStream {
     let of = fields.iter().find(|(name, _)| *name == field).map(|(_, of)| of);
-    let message =
-        format!("`{}` is no block: expected a struct with two fields of type `i32` and `#[field(pair)]`", text.value());
+    let message = format!(
+        "`{}` is not a block: expected a struct with two fields of type `i32` and `#[field(pair)]`",
+        text.value()
+    );
     quote_spanned! {text.span()=>
         const HAS_PLACE: bool = {
             ::core::assert!(::saoms_api::generated::is_pair(<#of as ::saoms_api::Field>::VALUE), #message);

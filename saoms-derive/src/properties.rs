@@ -50,7 +50,7 @@ pub(crate) fn properties(input: &DeriveInput) -> Result<TokenStream> {
         Member::Flat(field, _) => quote_spanned! {field.span()=>
             const _: () = ::core::assert!(
                 ::saoms_api::generated::are_distinct(<#ident as ::saoms_api::Properties>::NAMES),
-                "one of the properties in here is a property beside it, too",
+                "a property inside has the same name as a property beside it",
             );
         },
     });
@@ -189,7 +189,7 @@ fn is_flat(attributes: &[Attribute]) -> Result<bool> {
     }
     match flat {
         Some(span) if others > 0 => {
-            Err(Error::new(span, "`flatten` stands alone: the inner properties say the rest themselves"))
+            Err(Error::new(span, "`flatten` allows no other options: the inner properties have their own"))
         }
         found => Ok(found.is_some()),
     }

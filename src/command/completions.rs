@@ -10,7 +10,7 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  printed
   1  standard output could not be written
-  2  there are none for this shell";
+  2  the shell is not supported";
 
 /// Print completions of the command line for a shell
 #[derive(Debug, Args)]

@@ -24,8 +24,8 @@ const PAGES: &str = include_str!("../../docs/diagnostics.md");
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct ExplainArguments {
-    /// The codes to explain, as `S3004`; also the name of one, as `unknown-property`, or a rule of the SCA Assembly
-    /// specification, as `ASM50037`
+    /// The codes to explain, such as `S3004`; or their names, such as `unknown-property`, or rules of the SCA Assembly
+    /// specification, such as `ASM50037`
     #[arg(value_name = "CODE")]
     pub(crate) codes: Vec<String>,
 
@@ -99,8 +99,8 @@ fn refusal(wanted: &str, all: &[&Code]) -> String {
     let is_rule = wanted.get(..3).is_some_and(|start| start.eq_ignore_ascii_case("ASM"));
     if is_rule && wanted.bytes().skip(3).all(|byte| byte.is_ascii_digit()) {
         return format!(
-            "error: no code is about the rule `{wanted}` alone\n\
-             help: explain the code that stands before it in the diagnostic, as S2021 in `error[S2021, {wanted}]`\n"
+            "error: no code is only about the rule `{wanted}`\n\
+             help: explain the code before it in the diagnostic, such as S2021 in `error[S2021, {wanted}]`\n"
         );
     }
     let mut text = format!("error: there is no code `{wanted}`\n");

@@ -16,11 +16,12 @@ use crate::output::{Outputs, Place, displayed, eprint, eprint_coloured, print, p
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  every file is formatted now; with --check, was before
-  1  with --check, a file is not formatted (its name is on standard output); else, a file could not be written
-  2  a file cannot be read or is not well-formed XML (the diagnostics say where), and was left as it is; or a folder has no composites";
+  0  every file is formatted; with --check, every file was formatted already
+  1  with --check, a file is not formatted (its name is on standard output); without, a file could not be written
+  2  a file cannot be read or is not well-formed XML (the diagnostics say where), and was left
+     as it is; or a folder has no composites";
 
-/// Write composites in one layout: indentation, attributes, blank lines; order, comments and text stay
+/// Format composites: indentation, attributes and blank lines; order, comments and text stay
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct FmtArguments {
@@ -33,11 +34,12 @@ pub(crate) struct FmtArguments {
     #[arg(long)]
     pub(crate) check: bool,
 
-    /// Columns that a start tag has to fit into; else each attribute but the first gets a line
+    /// The longest start tag that stays on one line; in a longer one, each attribute but the first has a line of its
+    /// own
     #[arg(long, value_name = "COLUMNS", default_value_t = saoms_tools::format::WIDTH)]
     pub(crate) width: usize,
 
-    /// Also format files outside the folder that links in it lead to
+    /// Also format files outside the folder to which links in the folder lead
     #[arg(long)]
     pub(crate) allow_outside: bool,
 

@@ -15,7 +15,7 @@ use crate::fleet::{compiled, files_read};
 use crate::output::{Asked, Outputs, displayed, eprint, eprint_coloured};
 
 const EXIT_CODES: &str = "Exit codes:
-  0  drawn; what a wrong composite lacks is marked in the picture
+  0  drawn; missing parts of a faulty composite are marked in the picture
   1  the picture could not be written
   2  the file cannot be read or is not a composite, the format is missing, or the picture would overwrite a
      file that was read";
@@ -92,7 +92,9 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     if found.iter().any(|one| one.severity == Severity::Error) {
         let names: Vec<String> = fleet.files.iter().map(|file| displayed(file)).collect();
         let name = names.join(" ");
-        eprint(&format!("warning: drawn as far as it is understood; `saoms check {name}` shows what is wrong\n"));
+        eprint(&format!(
+            "warning: the picture is incomplete, since the composite has errors; `saoms check {name}` shows them\n"
+        ));
     }
     let diagram = Diagram::of(contribution, &compilation.registry, census);
     let path = arguments.output.as_deref().unwrap_or(Path::new(INPUT));

@@ -211,7 +211,7 @@ fn parsed() -> Arguments {
             && let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg)
             && ["-o", "--output"].contains(&word.as_str())
         {
-            let tip = "this command writes to standard output: write `> FILE` behind it".to_owned();
+            let tip = "this command writes to standard output: add `> FILE` to write to a file".to_owned();
             error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
         }
         if error.kind() == ErrorKind::UnknownArgument

@@ -62,9 +62,11 @@ pub(crate) fn report(arguments: &ReportArguments) -> Exit {
 fn rebuilt(document: &JournalDocument) -> Value {
     let last = document.journal.entries().last().map_or(Time::START, |entry| entry.time());
     let reason = match document.end {
-        Some(_) => "the run came to its end; the journal does not tell how".to_owned(),
+        Some(_) => "the run ended; the journal does not record its result".to_owned(),
         None => {
-            format!("the journal has no end: the run crashed, was killed, or goes on; its last record is of {last}")
+            format!(
+                "the journal has no end: the run crashed, was killed, or is still running; its last record is at {last}"
+            )
         }
     };
     json!({

@@ -48,7 +48,7 @@ pub(super) fn prepare() {
 
 /// Says that hardware may still move when the process ends.
 pub(crate) fn still_moves(name: &str) -> String {
-    format!("error: the hardware of component `{name}` may still move: what stops it has not returned\n")
+    format!("error: the hardware of component `{name}` may still move: its stop function has not returned\n")
 }
 
 /// Stops all hardware and waits for that, but not much longer than the patience. A signal handler may ask.

@@ -53,7 +53,7 @@ pub(crate) fn install() {
         keep_from_libraries();
         hardware::prepare();
         if let Err(error) = hang::watch() {
-            eprint(&format!("warning: nobody watches for code that does not return: {error}\n"));
+            eprint(&format!("warning: code that does not return will not be detected: {error}\n"));
         }
     });
 }

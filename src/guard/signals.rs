@@ -93,8 +93,8 @@ pub(super) fn take_back(who: &str, place: &str) {
         let what = match kept.use_as {
             UseAs::End => "it ends the run again",
             // Runtimes of other languages need theirs: those of Go and Java find null pointers so.
-            UseAs::Crash if is_function => "a crash may not be told by name",
-            UseAs::Crash => "crashes are told by name again",
+            UseAs::Crash if is_function => "a crash may not be reported with the name of the library",
+            UseAs::Crash => "crashes are reported with the name of the library again",
             UseAs::Pipe if is_function => continue,
             UseAs::Pipe => "it is ignored again",
         };

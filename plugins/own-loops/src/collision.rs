@@ -58,7 +58,9 @@ impl Loop for Distance {
                 let why = record!(robot_near: "robot {robot} is near, at {block}", robot, block);
                 Some(Step::new(why, record!(keeps_distance: "keeps its distance"), true))
             }
-            None if stops => Some(Step::new(record!(way_free: "its way is free"), record!(goes_on: "goes on"), false)),
+            None if stops => {
+                Some(Step::new(record!(way_free: "its way is free"), record!(goes_on: "continues"), false))
+            }
             _ => None,
         })
     }

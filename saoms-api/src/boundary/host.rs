@@ -331,7 +331,7 @@ unsafe extern "C" fn journal(state: *mut c_void, phase: u32, view: *const Record
     unsafe {
         with_host(state, (), |host| {
             let phase = [Phase::Symptom, Phase::Decision, Phase::Effect].get(phase as usize).copied();
-            let phase = phase.ok_or_else(|| Failure::new("it is of no phase"));
+            let phase = phase.ok_or_else(|| Failure::new("its phase is unknown"));
             match phase.and_then(|phase| Ok((phase, read_record(given(view, "the record")?)?))) {
                 Ok((phase, record)) => host.journal(phase, &record),
                 Err(failure) => warn(host, "a record", &failure),

@@ -91,8 +91,7 @@ impl Lease {
             return result;
         }
         let misuse = format!(
-            "what is lent for the time of a call was used {misuses} times from another thread, when no call went on, \
-             or by what it called, which was refused"
+            "the context or knowledge of a call was used {misuses} times from another thread, after the call, or by code that it called: this was refused"
         );
         Err(Failure::new(match result {
             Ok(()) => misuse,

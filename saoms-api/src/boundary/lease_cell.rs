@@ -99,12 +99,12 @@ impl LeaseCell {
     fn begin_use(&self) -> Result<(), Failure> {
         if !self.is_held() {
             return Err(Failure::new(
-                "a context was used from another thread, or when no call went on: it is lent for the time of a call",
+                "a context was used from another thread or after its call: it is valid only during the call",
             ));
         }
         if self.in_use.replace(true) {
             self.misuses.fetch_add(1, Ordering::Relaxed);
-            return Err(Failure::new("a context was used by what it called itself"));
+            return Err(Failure::new("a context was used by code that it had called"));
         }
         Ok(())
     }

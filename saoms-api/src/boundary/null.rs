@@ -41,5 +41,5 @@ pub(super) unsafe fn place<'a, T>(argument: *mut T, what: &str) -> Result<&'a mu
 
 #[cold]
 fn null(what: &str) -> Failure {
-    Failure::new(format!("found null for {what}, expected where it is"))
+    Failure::new(format!("found null for {what}, expected its address"))
 }

@@ -88,13 +88,13 @@ impl EventCall {
             let word = &text[bytes.clone()];
             if word == TO {
                 let Some(component) = words.next() else {
-                    let message = "found the end of the line, expected the component behind `to`";
+                    let message = "found the end of the line, expected the component after `to`";
                     return Err(LineFault::new(end..end, message));
                 };
                 call.to = Some(Word::of(text, component));
                 if let Some(more) = words.next() {
                     let found = &text[more.clone()];
-                    let message = format!("found `{found}`, expected the end of the line behind the component");
+                    let message = format!("found `{found}`, expected the end of the line after the component");
                     let fault = LineFault::new(more, message);
                     return Err(fault.help("write the fields before `to`, and another event on a line of its own"));
                 }

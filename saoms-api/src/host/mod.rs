@@ -93,7 +93,7 @@ pub trait Host {
     /// # Errors
     /// As there; this host takes no events.
     fn raise(&mut self, event: &str) -> Result<(), Failure> {
-        Err(Failure::new(format!("the event `{event}` reaches nobody: this host passes on no events")))
+        Err(Failure::new(format!("the event `{event}` has no receiver: this host does not support events")))
     }
     /// See [`Context::reference`](crate::Context::reference).
     ///

@@ -136,9 +136,9 @@ fn mistakes_are_told_at_their_words_with_what_is_meant() {
         `size=`: found no value of the field `size`
         `size`: found the field `size` twice
         `fire`: event `fire` needs its fields: `size` is missing
-        ``: found the end of the line, expected the component behind `to`
-        `B`: found `B`, expected the end of the line behind the component
-        `luggage`: found `luggage`, which this class does not play
+        ``: found the end of the line, expected the component after `to`
+        `B`: found `B`, expected the end of the line after the component
+        `luggage`: found `luggage`, an event that this class does not support
     "#]]
     .assert_eq(&told);
 }
@@ -190,6 +190,6 @@ fn editors_offer_and_explain_them() {
 
         Taken by `example.Hall`."#]]
     .assert_eq(&offered("at 1s fi|re size=1").1.unwrap());
-    assert_eq!(offered("at 1s e|nd").1.unwrap(), "end: `end`: nothing; the run goes on until then");
+    assert_eq!(offered("at 1s e|nd").1.unwrap(), "end: `end`: nothing happens; the run does not end before this time");
     assert_eq!(offered("at 1s end # fi|re").1, None);
 }

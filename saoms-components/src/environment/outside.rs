@@ -54,11 +54,11 @@ impl Reader {
         self.before = Before::Event;
         place_is_known(&line)?;
         if line.times.is_none() && line.until.is_none() {
-            let fault = TextFault::new(line.bytes, "found no last event, but a line from outside needs one");
-            return Err(fault.help("end it: `100 times`, or `until 60s`"));
+            let fault = TextFault::new(line.bytes, "this line never ends, but a line of `--events` has to end");
+            return Err(fault.help("add an end: `100 times`, or `until 60s`"));
         }
         if number.is_some() && !(matches!(line.event, EventSpec::Luggage { .. }) && line.times == Some(1)) {
-            let message = format!("found `{NUMBER}` behind something else than one piece of luggage");
+            let message = format!("found `{NUMBER}`, which is allowed only after a single piece of luggage");
             return Err(TextFault::new(event.len()..text.len(), message));
         }
         // Each line draws for itself, so that one more or less changes nothing in the others.
@@ -69,7 +69,7 @@ impl Reader {
         let until = line.until.map(|until| Time::START + until);
         while until.is_none_or(|until| at <= until) {
             if messages.len() == MOST {
-                let message = format!("found more than {MOST} events in a line from outside");
+                let message = format!("found more than {MOST} events in one line of `--events`");
                 return Err(TextFault::new(line.bytes, message));
             }
             let event = draw(&line.event, &mut chance, None).ok_or_else(|| {
@@ -132,7 +132,7 @@ fn numbered(text: &str) -> Result<(&str, Option<u32>), TextFault> {
         Ok(given @ FIRST_LUGGAGE..=u32::MAX) => Ok((&text[..bytes(text, word).start], Some(given))),
         _ => {
             let message =
-                format!("found `{number}`, expected a number of luggage from outside: {FIRST_LUGGAGE} or more");
+                format!("found `{number}`, expected a luggage number for events from outside: {FIRST_LUGGAGE} or more");
             Err(TextFault::of(text, number, message))
         }
     }
@@ -246,9 +246,9 @@ mod tests {
             [
                 "3.000 s luggage (3,1) to (3,10) number 1000007",
                 "now luggage (3,1) to (3,10) number 1000008",
-                "`7`: found `7`, expected a number of luggage from outside: 1000001 or more, None",
-                "`number 1000009`: found `number` behind something else than one piece of luggage, None",
-                "`number 1000009`: found `number` behind something else than one piece of luggage, None",
+                "`7`: found `7`, expected a luggage number for events from outside: 1000001 or more, None",
+                "`number 1000009`: found `number`, which is allowed only after a single piece of luggage, None",
+                "`number 1000009`: found `number`, which is allowed only after a single piece of luggage, None",
             ]
         );
     }
@@ -276,8 +276,8 @@ mod tests {
                 "`att`: found `att`, expected an event, `at`, `from` or `then` at the start of a line, Some(\"at\")",
                 "`hello`: found `hello`, expected an event, `at`, `from` or `then` at the start of a line, None",
                 "`random`: found `random`, expected a block such as `(3,1)`, or two corners such as `(1,0)..(10,10)`, None",
-                "`landing`: found no last event, but a line from outside needs one, None",
-                "`landing`: found more than 100000 events in a line from outside, None",
+                "`landing`: this line never ends, but a line of `--events` has to end, None",
+                "`landing`: found more than 100000 events in one line of `--events`, None",
                 "`(3,1)..(3,1)`: found (3,1), where the luggage starts: expected another block, None",
                 "`quickly`: found `quickly`, expected the end of the line, or `;` before the next event, None",
                 "`ü`: found `ü`, expected an event, `at`, `from` or `then` at the start of a line, None",

@@ -81,7 +81,7 @@ impl Player {
         let count = scenario.lines().len();
         let is_of_scenario = chances.len() == count && played.len() == count;
         if !is_of_scenario || due.iter().any(|due| due.line as usize >= count) {
-            return Err("its scenario has other lines now".into());
+            return Err("its scenario has changed".into());
         }
         let due = due.iter().map(|due| Reverse((due.at.since(Time::START), due.line as usize)));
         Ok(Player { lines: scenario.lines().iter().cloned().zip(chances).collect(), played, due: due.collect() })

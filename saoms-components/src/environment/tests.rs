@@ -167,7 +167,7 @@ fn every_wrong_line_says_where_and_why() {
         ("from 8s every 1s 0 times landing 4", "0", format!("found `0`, expected {times}"), None),
         ("at 8s until 9s landing 4", "until", "found `until` without `every`: this happens once".into(), None),
         ("from 8s every 1s until 7s landing 4", "7s", "found `until 7s`, which is before the first event".into(), None),
-        ("from 8s every 1s landing 1\nthen 1s landing 2", "then", "the line before has no end, so nothing can follow it".into(), None),
+        ("from 8s every 1s landing 1\nthen 1s landing 2", "then", "the line before never ends, so no event can follow it".into(), None),
     ] {
         let text = format!("at 1s landing 1; at 2s landing 1 # 2\n{line}\nat 7s landing 9");
         let findings = Scenario::read(&["at 0 landing 2".to_owned(), text.clone()]).unwrap_err();
@@ -394,7 +394,8 @@ fn a_site_in_a_scenario_is_told_to_belong_to_events_from_outside() {
         ("North : end", "North :"),
     ] {
         let findings = Scenario::read(&["# a: b", line]).unwrap_err();
-        let expected = format!("found the site `{site}`, which stands only before events from outside (`--events`)");
+        let expected =
+            format!("found the site `{site}`, which is allowed only before events from outside (`--events`)");
         assert_eq!(findings.iter().map(saoms_api::Finding::message).collect::<Vec<_>>(), [expected]);
     }
     for line in ["at: 3s end", "at 10:30 end", "at 3s luggage: (1,1) to (2,2)"] {

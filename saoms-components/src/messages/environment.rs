@@ -72,7 +72,7 @@ pub enum LuggageStage {
 #[message(speaker(
     "robot",
     unless(stage = "REQUEST"),
-    instead = "for new luggage publish a request, and send `breakdown` or `gone` to free what the robot has taken"
+    instead = "for new luggage publish a request; to free luggage that the robot has taken, send `breakdown` or `gone`"
 ))]
 pub struct EventLuggage {
     /// Number of the robot that responds; in a request 0, or the number of the only robot that it is for.

@@ -44,7 +44,10 @@ impl PartialOrd for Priority {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(
     key = "robot",
-    speaker("robot", instead = "stop the robot with `estop`, or send `gone` when it is off the floor")
+    speaker(
+        "robot",
+        instead = "to keep the robot at its block, stop it with `estop`; if it was removed from the floor, send `gone`"
+    )
 )]
 pub struct Position {
     /// Number of the robot.

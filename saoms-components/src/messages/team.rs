@@ -50,7 +50,7 @@ const LOW: f64 = 35.0;
 #[derive(Clone, Debug, Default, PartialEq, Message)]
 #[message(
     key = "robot",
-    speaker("robot", instead = "send `gone` when the robot is off the floor, and `start` it when it is back")
+    speaker("robot", instead = "if the robot was removed from the floor, send `gone`; when it is back, `start` it")
 )]
 pub struct RobotList {
     /// Number of the robot.
@@ -145,8 +145,12 @@ pub enum CriticalStage {
 /// A request for help by a robot that cannot go on, or the response of a healer.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(
-    speaker("critical", only(stage = "REQUEST"), instead = "send `breakdown` or `gone`: the robot's job is open then"),
-    speaker("healer", unless(stage = "REQUEST"), instead = "wake a robot that helps with a message on RMSTOPIC")
+    speaker(
+        "critical",
+        only(stage = "REQUEST"),
+        instead = "send `breakdown` or `gone`: then other robots can take the robot's job"
+    ),
+    speaker("healer", unless(stage = "REQUEST"), instead = "to make a robot help, wake it with a message on RMSTOPIC")
 )]
 pub struct CriticalSituation {
     /// Number of the robot that needs help.

@@ -75,14 +75,14 @@ fn signs(marks: &Marks<'_>, style: &Style, robots: &[Moved<'_>]) -> Vec<Entry> {
     add(lines && !robots.is_empty(), Sign::Start, "start, with the robot's number");
     add(lines && !robots.is_empty(), Sign::End, "end, with the robot's number");
     add(!lines, Sign::Start, "a robot at the end of the run");
-    add(!lines && marks.frame.cell >= super::density::ARROWED, Sign::Flow, "the way that most went");
+    add(!lines && marks.frame.cell >= super::density::ARROWED, Sign::Flow, "the most frequent direction");
     let luggage = readable && marks.frame.cell >= super::marks::NUMBERED;
     let numbers = if luggage { ": numbers or count" } else { "" };
     add(readable && !recording.collected.is_empty(), Sign::Collect, &format!("luggage collected{numbers}"));
     add(readable && !recording.delivered.is_empty(), Sign::Deliver, &format!("luggage delivered{numbers}"));
     add(readable && !recording.open.is_empty(), Sign::Wait, "luggage from here is not delivered");
     let jumps = robots.iter().any(|(.., path)| path.legs.iter().any(|leg| leg.jump));
-    add(jumps, Sign::Unheard, "the way of the robot is unknown");
+    add(jumps, Sign::Unheard, "the path of the robot is unknown here");
     for (incident, text) in [
         (Incident::Collision, "collision"),
         (Incident::Stranded, "stands with an empty battery"),
@@ -93,7 +93,7 @@ fn signs(marks: &Marks<'_>, style: &Style, robots: &[Moved<'_>]) -> Vec<Entry> {
     if let Style::Lines { sharing, .. } = style {
         let note = match sharing {
             Sharing::None => None,
-            Sharing::Direction => Some("A robot's passes in one direction share a line."),
+            Sharing::Direction => Some("All passes of a robot in one direction share a line."),
             Sharing::Robot => Some("All passes of a robot share a line."),
         };
         signs.extend(note.map(|note| Entry::Sign { sign: Sign::Note, text: note.to_owned() }));

@@ -71,8 +71,8 @@ pub struct RobotKnowledge {
     /// ships changes it.
     #[entry(effector, unit = "%")]
     pub charge_at: f64,
-    /// True if a loop set `readyToGoUnderCharge`: with `safe`, which otherwise shows there what the robot does anyway,
-    /// the robot goes to its charger once it has no job.
+    /// True if a loop set `readyToGoUnderCharge`: the robot then goes to its charger once it has no job. With `safe`,
+    /// that entry is otherwise only a display.
     #[entry(quiet)]
     pub(super) asked_to_charge: bool,
     /// Number of executions that the battery has to last beyond the way to the charger.
@@ -87,7 +87,7 @@ pub struct RobotKnowledge {
     /// State of the robot.
     #[entry(flatten)]
     pub variables: Variables,
-    /// True if an operator stopped it: it orders nothing of its hardware until it is released.
+    /// True if an operator stopped it: it gives no orders to its hardware until it is released.
     #[entry(quiet)]
     pub(super) stopped: bool,
     /// True if the robot broke and does nothing any more.

@@ -31,7 +31,7 @@ impl Patience {
             self.longest = self.longest.max(waited);
             if std::mem::take(&mut self.is_told) {
                 let waited = Time::from_nanos(now.as_nanos() - since.as_nanos());
-                context.info(format_args!("goes on after waiting {waited}"));
+                context.info(format_args!("continues after waiting {waited}"));
             }
             return;
         }

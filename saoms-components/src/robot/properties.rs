@@ -29,7 +29,7 @@ pub struct RobotProperties {
     /// Column of the block with its charger, where it starts.
     #[property(default = 0, range = 0..)]
     pub(crate) charge_x: i32,
-    /// Row of that block; by default the robot's number.
+    /// Row of the block with its charger; by default the robot's number.
     #[property(range = 0..)]
     pub(crate) charge_y: Option<i32>,
     /// Battery level at the start.
@@ -51,7 +51,7 @@ pub struct RobotProperties {
     /// True if the robot starts asleep at its charger and takes no jobs until it is woken.
     #[property(default = false)]
     pub(crate) asleep: bool,
-    /// True if the robot is stopped: it keeps its block and its job, and orders nothing of its hardware. `saoms estop`
+    /// True if the robot is stopped: it keeps its block and its job, and gives no orders to its hardware. `saoms estop`
     /// sets it, and `saoms release` removes it.
     #[property(default = false, live)]
     pub(crate) stopped: bool,

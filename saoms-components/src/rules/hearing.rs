@@ -46,7 +46,9 @@ pub(super) fn together(topic: &str, component: &ComponentView<'_>, (what, other)
         (Some(site), Some(others)) if site != others => {
             let help = match (site, others) {
                 ("", site) | (site, "") => {
-                    format!("remove `saoms:site` there, or put all that work together into the site `{site}`")
+                    format!(
+                        "remove `saoms:site` there, or put all components that work together into the site `{site}`"
+                    )
                 }
                 _ => "give both the same `saoms:site`".to_owned(),
             };

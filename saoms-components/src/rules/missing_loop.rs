@@ -55,7 +55,7 @@ const MOVES: Part = Part {
 const PARTS: [Part; 5] = [
     Part {
         name: "EventLuggageMS",
-        without: "{} takes no luggage that waits",
+        without: "{} never takes waiting luggage",
         instead: "sets `job`",
         needed: Needed::Always,
     },

@@ -16,9 +16,9 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5013",
         name: "shift",
-        meaning: "A shift schedules itself, a world or a master, a component that runs from the start of the fleet, or a component that \
-            another shift schedules at the same time; it is shorter than the component's period; or nothing \
-            schedules one that waits for it.",
+        meaning: "A shift schedules itself, a world, a master, a component that runs from the start of the fleet, or a \
+            component that another shift schedules at the same time; a shift is shorter than the component's \
+            period; or no component schedules a shift that waits for its start.",
         severity: Severity::Warning,
         rule: None,
     },

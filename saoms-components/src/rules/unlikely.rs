@@ -13,7 +13,7 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5020",
         name: "unlikely-value",
-        meaning: "A value has probably a wrong unit: a component has a period of more than a minute or another time of less than \
+        meaning: "A value probably has the wrong unit: a component has a period of more than a minute or another time of less than \
             a millisecond, or a robot starts with a battery of 1 % or less.",
         severity: Severity::Warning,
         rule: None,

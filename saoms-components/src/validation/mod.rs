@@ -103,7 +103,7 @@ impl MessageValidator {
         };
         context.log(
             Level::Error,
-            format_args!("ignores {from}, {what} of {which}: {problem} (more of this kind is only counted)"),
+            format_args!("ignores {from}, {what} of {which}: {problem} (further ones are only counted)"),
         );
     }
 

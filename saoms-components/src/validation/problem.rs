@@ -90,7 +90,7 @@ impl fmt::Display for Problem {
                 write!(formatter, "found a battery of {percent} %, expected 0 to 100")
             }
             Problem::Period { micros } => {
-                write!(formatter, "found a period of {micros} us, expected one of at most a day")
+                write!(formatter, "found a period of {micros} us, expected at most a day")
             }
             Problem::Response { robot } => {
                 write!(formatter, "found a response of robot {robot}, expected a request, which names no robot")

@@ -101,7 +101,7 @@ impl Hardware for World {
     fn begin(&mut self, context: &mut Context<'_>, robot: u32, action: Action) -> Result<Progress, Failure> {
         self.memory.forget();
         if self.referee.is_running(robot)? {
-            return Err(Failure::new(format!("robot {robot} begins an action before its last one is over")));
+            return Err(Failure::new(format!("robot {robot} begins an action before its previous action has ended")));
         }
         self.unload_if_forgotten(robot)?;
         if self.referee.is_retired(robot) {
@@ -116,7 +116,7 @@ impl Hardware for World {
         // Decided once, at the beginning: meanwhile a robot that stood there may start again, and leave.
         if !self.reaches(robot, action.block)? {
             let here = self.referee.block(robot)?;
-            warn!(context, "robot {robot} at {here} does not reach {}", action.block);
+            warn!(context, "robot {robot} at {here} cannot reach {}", action.block);
             return Ok(Progress::Failed);
         }
         self.referee.begin_handling(robot, action, context.now() + self.properties.handling_time)?;

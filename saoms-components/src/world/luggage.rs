@@ -163,7 +163,7 @@ impl Stock {
                 piece.place = PiecePosition::On(robot);
                 Ok(HandlingOutcome::Handled)
             }
-            PiecePosition::At(place) => Err(format!("luggage {luggage} is not here but at {place}")),
+            PiecePosition::At(place) => Err(format!("luggage {luggage} is not here: it is at {place}")),
             PiecePosition::On(other) => Err(format!("luggage {luggage} is on robot {other}")),
         }
     }

@@ -115,7 +115,7 @@ fn luggage_is_delivered_once_and_only_by_who_carries_it() {
     stock.add(7, from, to);
     stock.add(7, to, from);
     assert!(!stock.is_settled());
-    assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is not here but at (1,0)".into()));
+    assert_eq!(stock.collect(7, 1, to, |_| false), Err("luggage 7 is not here: it is at (1,0)".into()));
     assert_eq!(stock.collect(7, 1, from, |_| false), Ok(HandlingOutcome::Handled));
     assert_eq!(stock.collect(7, 2, from, |_| false), Err("luggage 7 is on robot 1".into()));
     assert_eq!(stock.deposit(7, 2, to), Err("it does not carry luggage 7".into()));

@@ -139,7 +139,7 @@ impl Targets {
             match thread::Builder::new().name("saoms-alerts".to_owned()).spawn(work) {
                 Ok(thread) => self.all.push((sender, thread)),
                 Err(error) => {
-                    let text = format!("alerts are not delivered: the system gives no thread: {error}");
+                    let text = format!("alerts are not delivered: the system cannot create a thread: {error}");
                     note(Level::Error, text);
                 }
             }

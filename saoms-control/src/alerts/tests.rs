@@ -145,7 +145,7 @@ fn what_is_refused_for_good_does_not_hold_up_what_follows() {
         assert_eq!(serve(&listener, status).1["alert"]["subject"], subject);
     }
     let told = alerts.logged();
-    assert!(told.ends_with("it answers with the status 301: name the address to which it leads"), "{told}");
+    assert!(told.ends_with("it answers with the status 301: use the address to which it redirects"), "{told}");
     assert_eq!(alerts.list.finish(LONG), 2);
     assert_eq!(alerts.list.counts().undelivered, 0, "a list that was finished has no targets");
 }

@@ -80,7 +80,7 @@ fn judged(line: &str) -> Result<(), Failed> {
     let text = format!("it answers with the status {status}");
     match status {
         200..=299 => Ok(()),
-        300..=399 => Err(Failed::ForGood(format!("{text}: name the address to which it leads"))),
+        300..=399 => Err(Failed::ForGood(format!("{text}: use the address to which it redirects"))),
         // Too early, too slow or too many.
         408 | 425 | 429 => Err(Failed::ForNow(text)),
         400..=499 => Err(Failed::ForGood(text)),

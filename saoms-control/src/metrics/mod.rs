@@ -106,7 +106,7 @@ pub const METRICS: &[Metric] = metrics! {
     "saoms_lateness_seconds" histogram ["component"]
         "Lateness of the starts of executions in real time; the sum is at most 1/16 off."
         lateness;
-    "saoms_in_code_seconds" gauge ["component"] "Time since its present code was called, while that has not returned."
+    "saoms_in_code_seconds" gauge ["component"] "Time for which a call to its code has not returned."
         |measured, samples| {
             for one in &measured.fleet.status.components {
                 if let Some(time) = one.in_code_s {
@@ -118,7 +118,7 @@ pub const METRICS: &[Metric] = metrics! {
         |measured, samples| queues(measured, samples, |queue| queue.waiting);
     "saoms_queue_limit_events" gauge ["component" "topic"] "Events that may wait for the component."
         |measured, samples| queues(measured, samples, |queue| queue.queue);
-    "saoms_component_value" gauge ["component" "name"] "A number that a component says of itself in `saoms status`."
+    "saoms_component_value" gauge ["component" "name"] "A number that a component reports in `saoms status`."
         |measured, samples| {
             for one in &measured.fleet.status.components {
                 let mut numbers = BTreeMap::new();
@@ -161,7 +161,7 @@ pub const METRICS: &[Metric] = metrics! {
         |measured, samples| samples.add(&[], measured.clients.refused.load(Ordering::Relaxed) as f64);
     "saoms_control_denied_total" counter [] "Requests over the network without the token, or from another site."
         |measured, samples| samples.add(&[], measured.clients.denied.load(Ordering::Relaxed) as f64);
-    "saoms_control_dropped_total" counter [] "Clients that were dropped, because they took nothing of their answer."
+    "saoms_control_dropped_total" counter [] "Clients that were disconnected, because they did not read their answer."
         |measured, samples| samples.add(&[], measured.clients.dropped.load(Ordering::Relaxed) as f64);
     "saoms_control_lost_total" counter [] "Lines of the log and messages that clients missed, because they were too slow."
         |measured, samples| samples.add(&[], measured.clients.lost.load(Ordering::Relaxed) as f64);

@@ -63,7 +63,9 @@ pub(super) struct ByQuery {
 
 /// Acknowledges the alerts of the numbers in the body, or all that wait. The log says who did.
 pub(super) async fn acknowledge(State(fleet): Fleet, Query(query): Query<ByQuery>, body: String) -> Answer {
-    let number = |text: &str| text.parse().map_err(|_| Refusal::unprocessable(format!("`{text}` is no alert")));
+    let number = |text: &str| {
+        text.parse().map_err(|_| Refusal::unprocessable(format!("`{text}` is not the number of an alert")))
+    };
     let ids = body.split_whitespace().map(number).collect::<Result<Vec<u64>, _>>()?;
     let by = query.by.as_deref().and_then(word).unwrap_or_else(|| "somebody".to_owned());
     let unknown = |id| Refusal::unprocessable(format!("there is no alert {id}"));

@@ -32,7 +32,7 @@ impl Refusal {
     }
 
     pub(super) fn too_long(most: usize) -> Refusal {
-        let message = format!("the body has more than {most} bytes, or broke off");
+        let message = format!("the body has more than {most} bytes, or is incomplete");
         Refusal { status: StatusCode::PAYLOAD_TOO_LARGE, message }
     }
 
@@ -41,7 +41,7 @@ impl Refusal {
     }
 
     pub(super) fn not_found() -> Refusal {
-        let message = "there is no such route: `GET /v1/openapi.json` describes all".to_owned();
+        let message = "there is no such route: `GET /v1/openapi.json` describes all routes".to_owned();
         Refusal { status: StatusCode::NOT_FOUND, message }
     }
 }

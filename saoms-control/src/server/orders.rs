@@ -70,7 +70,7 @@ pub(super) async fn call(
     let arguments: Map<String, Value> = match body.trim() {
         "" => Map::new(),
         body => serde_json::from_str(body)
-            .map_err(|error| Refusal::unprocessable(format!("the arguments are no object in JSON: {error}")))?,
+            .map_err(|error| Refusal::unprocessable(format!("the arguments are not a JSON object: {error}")))?,
     };
     give(fleet, Order::Call { component, operation, arguments: arguments.into_iter().collect() }).await
 }

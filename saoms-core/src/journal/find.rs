@@ -22,7 +22,7 @@ pub fn find<'a>(components: &'a [ComponentName], component: &str) -> Result<&'a 
         [] => Err(unknown(components, component)),
         ref several => {
             let names: Vec<String> = several.iter().map(|one| format!("`{}`", one.name)).collect();
-            Err(format!("`{component}` can be any of {}: write more of its path", names.join(", ")))
+            Err(format!("`{component}` is ambiguous: it can be {}; write more of its path", names.join(", ")))
         }
     }
 }

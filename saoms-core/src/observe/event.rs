@@ -163,7 +163,9 @@ impl fmt::Display for Occurrence {
                 write!(formatter, "failed and is restarted in {}: {message}", saoms_api::host::format_duration(*pause))
             }
             Occurrence::Restarted { number, continued: false } => write!(formatter, "restarted ({number})"),
-            Occurrence::Restarted { number, continued: true } => write!(formatter, "restarted ({number}), and goes on"),
+            Occurrence::Restarted { number, continued: true } => {
+                write!(formatter, "restarted ({number}), and continues")
+            }
             Occurrence::Replaced { continued: true } => {
                 formatter.write_str("is replaced by its new build, and continues with the earlier state")
             }
@@ -172,7 +174,7 @@ impl fmt::Display for Occurrence {
             }
             Occurrence::Slow { what, budget } => write!(
                 formatter,
-                "{what} takes longer than {}: the component runs on a thread of its own from now on, less punctually",
+                "{what} takes longer than {}: from now on the component runs on a thread of its own, which starts executions less punctually",
                 saoms_api::host::format_duration(*budget)
             ),
             Occurrence::Dropped { topic, count, sender } => {

@@ -177,7 +177,7 @@ impl Open {
             }
             Err(error) => {
                 if !std::mem::replace(&mut self.stays, true) {
-                    tell(&format!("the journal could not be moved aside: {error}; it grows"));
+                    tell(&format!("the journal could not be rotated: {error}; its file keeps growing"));
                 }
                 Ok(())
             }

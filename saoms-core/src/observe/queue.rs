@@ -146,7 +146,7 @@ impl EventQueue {
                 notification.deliver(observers);
             }
             if lost > 0 {
-                let text = format!("{lost} events came faster than they could be shown, and are lost");
+                let text = format!("{lost} events came faster than they could be shown, and were lost");
                 let what = Occurrence::Note { level: Level::Warning, text };
                 observers.event(&RunEvent { time: last, component: None, what });
             }

@@ -21,7 +21,7 @@ pub(super) fn check(text: &str) -> Result<(), String> {
             format!("the name `{name}` ({role}) has {length} bytes, expected at most {LONGEST}")
         }
         _ => format!(
-            "the name `{name}` ({role}) has a control character, or another one that nobody sees: give it another name"
+            "the name `{name}` ({role}) contains a control character or another invisible character: choose another name"
         ),
     };
     shorten(&mut message);

@@ -116,9 +116,7 @@ impl Plugin {
     fn code(&self) -> Result<&Code, Failure> {
         if self.use_of_code == CodeUse::Nothing {
             let path = self.path.display();
-            return Err(Failure::new(format!(
-                "no option names this library: add `--plugin {path}` to let its code run"
-            )));
+            return Err(Failure::new(format!("no option names this library: add `--plugin {path}` to run its code")));
         }
         let code = self.code.get_or_init(|| library::load(&self.path, &self.metadata, &self.text));
         code.as_ref().map_err(|error| Failure::new(error.to_string()))

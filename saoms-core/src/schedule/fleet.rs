@@ -99,8 +99,7 @@ impl RunningFleet {
         // From here on, dropping the fleet ends the run.
         let handle = Handle { shared };
         if let Err(error) = &awake {
-            let text =
-                format!("processors that sleep will be slow to wake, /dev/cpu_dma_latency cannot be held: {error}");
+            let text = format!("idle processors may wake up late: /dev/cpu_dma_latency cannot be opened: {error}");
             handle.shared.note(Level::Warning, text);
         }
         let mut fleet =

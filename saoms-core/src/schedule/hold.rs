@@ -131,7 +131,7 @@ pub(super) fn resume(shared: &Shared) -> Result<(), HoldError> {
         shared.clock.go_on();
         engine.hold = NEVER;
         engine.restart_pace();
-        engine.note_hold(now, "goes on".to_owned());
+        engine.note_hold(now, "resumed".to_owned());
         engine.wake = true;
     }
     shared.release(engine);

@@ -290,7 +290,7 @@ impl Engine {
             self.deliver_injection(time, cause, topic, (bytes, marks.0, marks.1), to);
         }
         if !is_heard {
-            let text = format!("the event `{text}` reaches nobody: no component that takes it is scheduled");
+            let text = format!("the event `{text}` has no receiver: no component that takes it is scheduled");
             self.note(time, Occurrence::Note { level: Level::Warning, text });
         }
     }

@@ -41,7 +41,7 @@ impl fmt::Display for ForeignSpeaker {
         let ForeignSpeaker { field, number, component, instead } = self;
         write!(
             formatter,
-            "`{field}` is {number}, the number of component `{component}`, in whose name only the component itself speaks"
+            "`{field}` is {number}, the number of component `{component}`: only that component can publish messages with this number"
         )?;
         if instead.is_empty() { Ok(()) } else { write!(formatter, "; {instead}") }
     }

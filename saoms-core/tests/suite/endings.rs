@@ -199,8 +199,8 @@ fn reports_have_what_components_contribute_and_nothing_that_they_must_not() {
     );
     assert_eq!(
         diary.lines(),
-        "[0.000 s] A: `seed` of the report is the program's own, and stays as it is\n\
-         [0.000 s] A: `outcome.x` of the report is the program's own, and stays as it is\n"
+        "[0.000 s] A: `seed` of the report belongs to the program, and is not changed\n\
+         [0.000 s] A: `outcome.x` of the report belongs to the program, and is not changed\n"
     );
     assert_eq!(of(&report, "A").class, "actor");
     let json = serde_json::to_value(&report).unwrap();

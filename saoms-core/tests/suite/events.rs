@@ -233,8 +233,8 @@ fn an_event_that_nobody_takes_is_a_warning() {
     assert_eq!(
         told,
         unindent(
-            "[0.010 s] Player: the event `fire` reaches nobody: no component that takes it runs in this site
-         [0.010 s] Player: the event `flood size=1 to A` reaches nobody: no component that takes it runs in this site"
+            "[0.010 s] Player: the event `fire` has no receiver: no component that takes it runs in this site
+         [0.010 s] Player: the event `flood size=1 to A` has no receiver: no component that takes it runs in this site"
         )
     );
 }

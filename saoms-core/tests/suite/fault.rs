@@ -44,7 +44,7 @@ fn components_fail_and_panic_and_are_handled_as_ever() {
     let settings = Settings { faults: Faults { tasks, ..Faults::default() }, ..simulated(40) };
     let (report, diary) = run(&fleet, settings);
     let told = diary.lines();
-    let failed = "[0.010 s] A: failed and is restarted in 20ms: a fault was put into this execution\n";
+    let failed = "[0.010 s] A: failed and is restarted in 20ms: this execution fails by fault injection\n";
     assert!(told.contains(failed), "{told}");
     assert!(told.contains("[0.030 s] A: restarted (1)\n"), "{told}");
     assert!(told.contains("[0.010 s] B: failed: panicked at "), "{told}");

@@ -125,7 +125,7 @@ fn what_an_execution_heard_in_vain_is_heard_again_and_counted_once() {
          [0.010 s] L: a words, 0 calls
          [0.020 s] L: failed and is restarted in 15ms: it was told to
          [0.035 s] L: goes on: true
-         [0.035 s] L: restarted (1), and goes on
+         [0.035 s] L: restarted (1), and continues
          [0.035 s] L: a b words, 0 calls
          [0.045 s] L: a b c d e words, 0 calls
          [0.055 s] L: a b c d e words, 0 calls
@@ -146,7 +146,7 @@ fn the_first_execution_can_fail_too() {
          [0.005 s] L: failed and is restarted in 10ms: it was told to
          [0.010 s] C: is told nothing: component `L` is not running
          [0.015 s] L: goes on: true
-         [0.015 s] L: restarted (1), and goes on
+         [0.015 s] L: restarted (1), and continues
          Elapsed after 0.02 s",
     );
 }
@@ -163,10 +163,10 @@ fn what_makes_it_fail_twice_is_not_heard_a_third_time() {
          [0.010 s] L: a words, 0 calls
          [0.020 s] L: failed and is restarted in 1ms: it hears poison
          [0.021 s] L: goes on: true
-         [0.021 s] L: restarted (1), and goes on
+         [0.021 s] L: restarted (1), and continues
          [0.021 s] L: failed and is restarted in 2ms: it hears poison
          [0.023 s] L: goes on: true
-         [0.023 s] L: restarted (2), and goes on
+         [0.023 s] L: restarted (2), and continues
          [0.023 s] L: a c words, 0 calls
          [0.033 s] L: a c words, 0 calls
          [0.043 s] L: a c words, 0 calls
@@ -190,14 +190,14 @@ fn what_calls_changed_is_not_lost_but_for_the_one_that_failed() {
          [0.014 s] C: is told \"two\"
          [0.020 s] L: failed and is restarted in 1ms: it was told to
          [0.021 s] L: goes on: true
-         [0.021 s] L: restarted (1), and goes on
+         [0.021 s] L: restarted (1), and continues
          [0.021 s] L:  words, 4 calls
          [0.024 s] C: is told \"one\"
          [0.024 s] C: is told \"two\"
          [0.024 s] L: failed and is restarted in 2ms: panicked at saoms-core/tests/suite/goes_on.rs:LINE:13: it was told to
          [0.024 s] C: is told nothing: component `L` could not serve the call: panicked at saoms-core/tests/suite/goes_on.rs:LINE:13: it was told to
          [0.026 s] L: goes on: true
-         [0.026 s] L: restarted (2), and goes on
+         [0.026 s] L: restarted (2), and continues
          [0.026 s] L:  words, 6 calls
          [0.034 s] C: is told \"one\"
          [0.034 s] C: is told \"two\"
@@ -218,7 +218,7 @@ fn a_reaction_that_failed_comes_again() {
          [0.000 s] L: reacts: a
          [0.010 s] L: failed and is restarted in 1ms: its reaction was told to
          [0.011 s] L: goes on: true
-         [0.011 s] L: restarted (1), and goes on
+         [0.011 s] L: restarted (1), and continues
          [0.011 s] L: reacts: a b
          [0.011 s] L: a b words, 0 calls
          [0.020 s] L: reacts: a b c

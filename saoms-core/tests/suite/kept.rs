@@ -160,7 +160,7 @@ fn a_restart_goes_on_from_the_last_execution_that_did_not_fail() {
          [0.020 s] A: failed and is restarted in 5ms: it was told to (messages of this execution that are not sent: 1)
          [0.020 s] B: hears []
          [0.025 s] A: starts, kept 4: [2]
-         [0.025 s] A: restarted (1), and goes on
+         [0.025 s] A: restarted (1), and continues
          [0.025 s] A: counts 3, keeps 6, kept 4
          [0.025 s] B: hears [3]
          [0.030 s] B: hears []
@@ -168,7 +168,7 @@ fn a_restart_goes_on_from_the_last_execution_that_did_not_fail() {
          [0.035 s] B: hears []
          [0.040 s] B: hears []
          [0.045 s] A: starts, kept 6: [3]
-         [0.045 s] A: restarted (2), and goes on
+         [0.045 s] A: restarted (2), and continues
          [0.045 s] A: counts 4, keeps 8, kept 6
          [0.045 s] B: hears [4]
          Elapsed after 0.05 s",
@@ -184,7 +184,7 @@ fn a_state_that_cannot_be_restored_is_forgotten() {
          [0.000 s] A: counts 1, keeps 2, kept 0
          [0.010 s] A: failed and is restarted in 5ms: it was told to (messages of this execution that are not sent: 1)
          [0.015 s] A: starts, kept 2: [1]
-         [0.015 s] A: failed and is restarted in 10ms: could not start: could not go on from its saved state: it has no memory
+         [0.015 s] A: failed and is restarted in 10ms: could not start: could not continue with its saved state: it has no memory
          [0.025 s] A: starts, kept 2: [1]
          [0.025 s] A: restarted (2)
          [0.025 s] A: counts 1, keeps 4, kept 2

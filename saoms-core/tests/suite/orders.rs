@@ -64,13 +64,13 @@ fn faults_of_orders_are_told_at_their_place() {
         ("start", "found the end of the line, expected the path of a component at ``"),
         ("start A B", "found `B`, expected the end of the line at `B`"),
         ("start A for", "found the end of the line, expected a time, such as `10s` at ``"),
-        ("stop A; stop B", "an order has a line of its own: found `;` at `A;`"),
+        ("stop A; stop B", "found `;`: write each order on a line of its own at `A;`"),
         ("set A", "found the end of the line, expected `PROPERTY=VALUE` at ``"),
         ("set A step", "found `step`, expected `PROPERTY=VALUE` at `step`"),
         ("set A step=\"5\" more", "found `more`, expected the end of the line at `more`"),
         ("call A", "found `A`, expected a component and its operation, such as `Gps.where` at `A`"),
         ("call A.where 3", "found `3`, expected `ARGUMENT=VALUE` at `3`"),
-        ("from 3s stop A", "an order happens once; did you mean `at`? at `from`"),
+        ("from 3s stop A", "an order is carried out once; did you mean `at`? at `from`"),
     ] {
         assert_eq!(fault(line), expected, "{line}");
     }

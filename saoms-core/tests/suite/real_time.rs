@@ -303,7 +303,7 @@ fn a_fleet_that_is_too_much_for_the_machine_says_so_and_ends() {
     let settings = Settings { budget: Duration::from_secs(5), ..real(900) };
     let (report, diary) = run(&format!("{busy}B actor period=50"), settings);
     assert_eq!(outcome(&report), "Elapsed after 0.9 s");
-    assert!(diary.lines().contains("take more time than there is"), "{}", diary.lines());
+    assert!(diary.lines().contains("need more processor time than is available"), "{}", diary.lines());
     assert!((0..8).all(|n| of(&report, &format!("A{n}")).missed > 0));
     assert!(of(&report, "B").executions > 2);
 }

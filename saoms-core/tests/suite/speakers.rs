@@ -80,7 +80,7 @@ fn nobody_outside_speaks_in_the_name_of_a_component() {
     let answer = |who: i64| json!({"who": who, "stage": "ANSWER"});
     let words = |topic: &str, component: &str, number: i64| {
         format!(
-            "topic `{topic}`: `who` is {number}, the number of component `{component}`, in whose name only the component itself speaks; send a request"
+            "topic `{topic}`: `who` is {number}, the number of component `{component}`: only that component can publish messages with this number; send a request"
         )
     };
     for (component, number) in [("A", 7), ("B", 8), ("C", 9)] {

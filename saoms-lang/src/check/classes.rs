@@ -169,7 +169,7 @@ fn is_in_library(
                 "write the path of the library from the folder of the composite, or name its folder with `--plugin`",
             )
         }
-        None => wrong(format!("the library {} was not looked for", quoted(library))),
+        None => wrong(format!("the library {} was not searched for", quoted(library))),
     };
     if !assume_classes {
         report.push(found);

@@ -32,7 +32,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
         let Some((other, _, at)) = others.iter().find(|(_, other, _)| other != value) else { return };
         let message = format!("{} and {} disagree on {what}", quoted(&other.name), quoted(&first.name));
         let one = Diagnostic::new(&codes::RUN_SETTINGS_DIFFER, *at, message).label(*place, "the other value");
-        report.push(one.help("give both the same value, or one of them none: they are one fleet"));
+        report.push(one.help("give both the same value, or set it in only one of them: they form one fleet"));
     };
     let all = || outermost.iter();
     let urls = all().filter_map(|one| {
@@ -47,7 +47,7 @@ pub(crate) fn check(fleet: &Fleet<'_>, report: &mut Report<'_>) {
     differ("the command for alerts", commands.collect());
     let hangups =
         all().filter_map(|one| Some((one, one.run.hangup?.value.name().to_owned(), one.run.hangup?.location)));
-    differ("what a lost terminal leads to", hangups.collect());
+    differ("the effect of a lost terminal", hangups.collect());
 }
 
 /// The settings of a fleet without errors.

@@ -201,7 +201,7 @@ impl Index {
         let shown = quoted(&shown.display().to_string());
         match (self.is_cut, self.unreadable.first()) {
             (true, _) => format!(
-                "looked among some ten thousand files in {shown} and below, and not in all; name the file of that \
+                "searched only the first ten thousand files or so in {shown} and below; name the file of that \
                 composite in the command as well"
             ),
             (false, Some((folder, error))) => format!(

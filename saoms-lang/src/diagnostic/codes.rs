@@ -67,7 +67,7 @@ codes! {
     FILE_EMPTY = "S0005" Error "file-empty": "The file is empty, or has only white space.";
     FILE_BINARY = "S0006" Error "file-binary": "The file is not text.";
     FILE_ENCODING = "S0007" Error "file-encoding": "The file is not in UTF-8.";
-    TOO_MANY = "S0008" Warning "too-many": "Further diagnostics with this code in this file are counted, but not shown; the severity is that of those.";
+    TOO_MANY = "S0008" Warning "too-many": "Further diagnostics with this code in this file are counted, but not shown; it has the severity of the diagnostics that it stands for.";
     FILE_OUTSIDE = "S0009" Error "file-outside": "A composite or the description of a contribution names a file or folder outside its folder and its contribution.";
     // S01: XML 1.0 and its namespaces. The first of a file ends the reading of it.
     XML_SYNTAX = "S0101" Error "xml-syntax": "The file is not well-formed XML.";
@@ -89,7 +89,7 @@ codes! {
     UNKNOWN_ELEMENT = "S1004" Error "unknown-element" ("ASM13001"): "SCA or SAOMS has no element with this name.";
     MISPLACED_ELEMENT = "S1005" Error "misplaced-element" ("ASM13001"): "An element is not allowed at this place.";
     REPEATED_ELEMENT = "S1006" Error "repeated-element" ("ASM13001"): "An element that is allowed once is given again.";
-    UNKNOWN_ATTRIBUTE = "S1007" Error "unknown-attribute" ("ASM13001") [Judgement]: "An attribute that the element does not have.";
+    UNKNOWN_ATTRIBUTE = "S1007" Error "unknown-attribute" ("ASM13001") [Judgement]: "An element has an attribute that SCA or SAOMS does not define for it.";
     MISSING_ATTRIBUTE = "S1008" Error "missing-attribute" ("ASM13001"): "A required attribute is missing.";
     MISSING_TARGET_NAMESPACE = "S1009" Error "missing-target-namespace" ("ASM13001") [Judgement, OutlivesExpansion]: "A composite has no target namespace.";
     MISSING_IMPLEMENTATION = "S1010" Error "missing-implementation" ("ASM13001") [AbsentPart]: "A component has no implementation.";
@@ -153,8 +153,8 @@ codes! {
     VALUE_FILE = "S2052" Error "value-file" ("ASM50046"): "A file of values does not have the form that SCA requires.";
     TARGET_IN_TWO_WAYS = "S2054" Error "target-in-two-ways" ("ASM50026"): "A reference has its target in two ways; only one is allowed.";
     EXCHANGE = "S2059" Warning "exchange" [AbsentComposite]: "A contribution exports a namespace in which it has nothing, or imports a namespace that no contribution around it exports.";
-    INNER_RUN_SETTING = "S2061" Warning "inner-run-setting" [WithoutEffect]: "A composite inside another one says where alerts are delivered, or what a lost terminal leads to, which only the outermost one can.";
-    RUN_SETTINGS_DIFFER = "S2062" Error "run-settings-differ": "Two outermost composites of one fleet say differently where alerts are delivered, or what a lost terminal leads to.";
+    INNER_RUN_SETTING = "S2061" Warning "inner-run-setting" [WithoutEffect]: "An inner composite sets the target of alerts or the effect of a lost terminal; only the outermost composite can set these.";
+    RUN_SETTINGS_DIFFER = "S2062" Error "run-settings-differ": "Two outermost composites of one fleet set different targets of alerts, or different effects of a lost terminal.";
     // S30: classes and properties.
     UNKNOWN_CLASS = "S3001" Error "unknown-class": "No class of this name is registered.";
     IMPLEMENTATION_UNSUPPORTED = "S3002" Error "implementation-unsupported": "A component has a kind of implementation that this program cannot run.";
@@ -190,19 +190,19 @@ codes! {
     READER_FASTER = "S4014" Note "reader-faster" [OfWiring]: "A topic is read more often than it is published. Reported by `saoms check --wiring`.";
     TRIGGER = "S4015" Error "trigger": "A `trigger` names a topic whose messages cannot trigger the component.";
     MINIMUM_UNUSED = "S4016" Warning "minimum-unused" [OutlivesExpansion, WithoutEffect]: "A `minimum` has no effect: no topic triggers the component.";
-    EVENT_MISMATCH = "S4017" Error "event-mismatch": "Two classes take an event of one name with different fields, or its name is a word of a language.";
-    EVENT_UNTAKEN = "S4018" Warning "event-untaken" [OutlivesExpansion, WithoutEffect, AbsentComponent]: "A text has an event that no component takes.";
+    EVENT_MISMATCH = "S4017" Error "event-mismatch": "Two classes take an event of one name with different fields, or the name of an event is a reserved word of the language of a property.";
+    EVENT_UNTAKEN = "S4018" Warning "event-untaken" [OutlivesExpansion, WithoutEffect, AbsentComponent]: "The text of a property has an event that no component takes.";
     // S45: the loops of components.
     UNKNOWN_LOOP = "S4501" Error "unknown-loop": "A component does not have the named loop.";
     LOOP_REPEATED = "S4502" Error "loop-repeated": "A loop of a component is given twice.";
     LOOP_CONTRADICTION = "S4503" Error "loop-contradiction": "The attributes of a loop contradict each other.";
     LOOP_ORDER = "S4504" Error "loop-order": "The order of loops is circular, or refers to a removed loop.";
-    LOOP_KNOWLEDGE = "S4505" Error "loop-knowledge": "A loop works on knowledge that the component does not have, or on that of another library.";
+    LOOP_KNOWLEDGE = "S4505" Error "loop-knowledge": "A loop works on knowledge that the component does not have, or on the knowledge of another library.";
     UNKNOWN_ENTRY = "S4506" Error "unknown-entry": "A loop senses or effects an entry that the component does not have.";
     EFFECTOR_CLASH = "S4507" Error "effector-clash": "Two loops of a component change the same effector.";
     ENTRY_REPEATED = "S4508" Error "entry-repeated": "A loop adds an entry that already exists.";
     LOOP_REFERENCE = "S4509" Error "loop-reference": "A loop and its component have references with the same name, but with different interfaces.";
-    LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "An element for a loop changes nothing.";
+    LOOP_UNCHANGED = "S4510" Warning "loop-unchanged": "A `saoms:loop` element has no effect.";
     LOOP_UNSERVED = "S4511" Warning "loop-unserved" [OutlivesExpansion]: "A loop that replaces another one leaves entries that no loop effects or senses any more.";
 }
 

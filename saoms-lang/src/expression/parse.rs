@@ -163,7 +163,7 @@ impl Parser<'_> {
     fn deeper(&mut self, at: Range<usize>) -> Result<(), ExpressionFault> {
         self.depth += 1;
         match self.depth > EXPRESSION_DEPTH {
-            true => Err(ExpressionError::new("parentheses and operators are nested too deep").at(at)),
+            true => Err(ExpressionError::new("parentheses and operators are nested too deeply").at(at)),
             false => Ok(()),
         }
     }

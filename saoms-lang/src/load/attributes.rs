@@ -128,7 +128,9 @@ impl Loader<'_> {
                 one.help("remove it: it belongs to a property of the composite that its users have to give")
             }
             None if kind.has(name, Version::Osoa10) => one.help("remove it: only SCA 1.0 has this attribute"),
-            None if name == "file" => one.help("only a property of a component has it: write the value here"),
+            None if name == "file" => {
+                one.help("only a property of a component has this attribute: write the value here")
+            }
             None if kind.names(self.version).next().is_none() => one.help("it has no attributes"),
             None => {
                 let names: Vec<String> = kind.names(self.version).map(quoted).collect();
@@ -160,7 +162,9 @@ impl Loader<'_> {
             Some(meant) => one.replace(attribute.name(), attribute.name_location(), &format!("{prefix}:{meant}")),
             None if kind.has(name, self.version) && element.attribute(name).is_some() => one.help(given_already(name)),
             None if kind.has(name, self.version) => one.mend("remove the prefix", name),
-            None if name == "env" => one.help("only a property of the composite has it: take that with `source`"),
+            None if name == "env" => one.help(
+                "only a property of the composite has this attribute: take the value of such a property with `source`",
+            ),
             None if vocabulary::own_names(&vocabulary::COMPONENT).any(|known| known == name) => one.help(format!(
                 "write it in the start tag of a `component`: {} has no such attribute",
                 quoted(kind.name)
@@ -256,7 +260,7 @@ impl Loader<'_> {
             let code = format!("U+{:04X}", unseen as u32);
             let message = format!("the name {} contains the invisible character {code}", quoted(&clean));
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message);
-            self.report(one.suggest("write it without that", name.location, escaped(&clean)));
+            self.report(one.suggest("remove that character", name.location, escaped(&clean)));
             return Located::new(clean.into(), name.location);
         }
         if let Some(bad) = without_expressions(&name).chars().find(|c| c.is_whitespace() || *c == '/') {

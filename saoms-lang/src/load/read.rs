@@ -299,7 +299,7 @@ fn text(path: &Path, bytes: Vec<u8>, expected: &Expected) -> Result<String, Box<
             ),
         };
         let shown = String::from_utf8_lossy(&bytes).into_owned();
-        let help = format!("{help}; the file cannot be checked before");
+        let help = format!("{help}; until then the file cannot be checked");
         Box::new(Wrong { code: &codes::FILE_ENCODING, shown, at: at as u32, message, help })
     })
 }
@@ -336,13 +336,13 @@ fn near(path: &Path, ending: Option<&str>) -> Option<String> {
     }
     match near.is_empty() {
         false => Some(format!("there is {}", listed(&near, parent))),
-        true => likely(&names, ending, parent).map(|likely| format!("the folder has {likely}")),
+        true => likely(&names, ending, parent).map(|likely| format!("the folder contains {likely}")),
     }
 }
 
 /// Files with the ending in a directory that was given in place of one.
 fn inside(directory: &Path, ending: Option<&str>) -> Option<String> {
-    likely(&names(directory), ending, directory).map(|likely| format!("it has {likely}"))
+    likely(&names(directory), ending, directory).map(|likely| format!("the folder contains {likely}"))
 }
 
 fn likely(names: &[String], ending: Option<&str>, shown_as: &Path) -> Option<String> {

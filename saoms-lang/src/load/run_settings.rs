@@ -29,9 +29,7 @@ impl Loader<'_> {
             let message = format!("{} needs the attribute `{prefix}:alertUrl`", quoted(token.name()));
             let one = Diagnostic::new(&codes::MISSING_ATTRIBUTE, token.name_location(), message);
             self.report(
-                one.help(
-                    "add the address that the token is for; a command takes a token from its environment by itself",
-                ),
+                one.help("add the address for which the token is; a command can read a token from its environment"),
             );
         }
         settings

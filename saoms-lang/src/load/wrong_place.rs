@@ -31,7 +31,7 @@ impl Loader<'_> {
         let tags = [Some(element.start_tag_span()), element.end_tag_span()];
         let edits = tags.into_iter().flatten();
         let edits = edits.map(|tag| Edit { location: tag.in_file(file), replacement: String::new() }).collect();
-        let description = format!("remove its tags: what is in it belongs in {}", quoted(parent.name));
+        let description = format!("remove its start tag and end tag: its content belongs in {}", quoted(parent.name));
         self.report(one.suggest_edits(description, edits));
         true
     }

@@ -115,7 +115,7 @@ fn host_and_port(authority: &str) -> Result<(String, u16), AddressFault> {
         Some(inside) => {
             let (host, port) = inside.split_once(']').ok_or_else(no_host)?;
             host.parse::<Ipv6Addr>().map_err(|_| {
-                AddressFault::new(format!("has `{host}` in brackets, which is no address of IPv6"), "correct it")
+                AddressFault::new(format!("has `{host}` in brackets, which is not an IPv6 address"), "correct it")
             })?;
             match port.strip_prefix(':') {
                 None if port.is_empty() => (host, None),
@@ -137,7 +137,7 @@ fn host_and_port(authority: &str) -> Result<(String, u16), AddressFault> {
     }
     let is_named = |letter: char| letter.is_ascii_alphanumeric() || "-._:".contains(letter);
     if !host.chars().all(is_named) {
-        return Err(AddressFault::new(format!("has the host `{host}`, which is no name"), "correct it"));
+        return Err(AddressFault::new(format!("has the host `{host}`, which is not a host name"), "correct it"));
     }
     let port = match port {
         None => 80,
@@ -186,7 +186,7 @@ mod tests {
             ("http:///a", "has no host"),
             ("http://:80/a", "has no host"),
             ("http://[::1/a", "has no host"),
-            ("http://[x]/a", "has `x` in brackets, which is no address of IPv6"),
+            ("http://[x]/a", "has `x` in brackets, which is not an IPv6 address"),
             ("http://::1/a", "has an address of IPv6 without brackets -> http://[::1]/"),
             ("http://a:0/", "has the port `0`, expected a number from 1 to 65535"),
             ("http://a:65536/", "has the port `65536`, expected a number from 1 to 65535"),
@@ -198,7 +198,7 @@ mod tests {
             ("http://a/\r\nX: y", "has the character `\\r`, which no address has"),
             ("http://a/grün", "has the character `ü`, which no address has"),
             ("http://a/b#c", "has a part after `#`, which is never sent -> http://a/b"),
-            ("http://a*/b", "has the host `a*`, which is no name"),
+            ("http://a*/b", "has the host `a*`, which is not a host name"),
         ] {
             assert_eq!(read(text), expected, "{text}");
         }

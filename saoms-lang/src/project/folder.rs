@@ -97,7 +97,7 @@ pub(super) fn blame_deployables(
         let user = std::mem::take(&mut inner.user);
         if !user.is_empty() {
             let help = format!(
-                "call only composites deployable that run by themselves: {} uses this one, and gives it what it lacks",
+                "list only composites as deployable that run by themselves: {} uses this one, and supplies what it lacks",
                 quoted(&user)
             );
             one.help.insert(0, help);

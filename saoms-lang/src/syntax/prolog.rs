@@ -90,7 +90,7 @@ pub(super) fn broken(input: Input<'_>, start: u32) -> Diagnostic {
     let rest = &input.text[start as usize..];
     let unclosed = |len: usize, what: &str| {
         let one = input.ended(&codes::XML_UNCLOSED, start, start + len as u32, format!("this {what} has no end"));
-        one.help("end it; until then, the rest of the file is part of it and is not checked")
+        one.help("close it: until then, the rest of the file belongs to it and is not checked")
     };
     if starts_doctype(rest) {
         return doctype(input, start, start + 9);

@@ -39,14 +39,16 @@ impl SpeakerField {
         let find = |name: &str| {
             let mut fields = schema["fields"].as_array().into_iter().flatten();
             let found = fields.find(|field| field["name"] == name).map(|field| &field["type"]);
-            found.ok_or_else(|| format!("`speakers` names `{name}`, which is no field of `{message}`"))
+            found.ok_or_else(|| format!("`speakers` names `{name}`, which is not a field of `{message}`"))
         };
         if !find(&self.field)?.as_str().is_some_and(|of| of.starts_with("int") || of.starts_with("uint")) {
-            return Err(format!("`speakers` names `{}` of `{message}`, which is no integer", self.field));
+            return Err(format!("`speakers` names `{}` of `{message}`, which is not an integer", self.field));
         }
         for (field, constant) in self.only.iter().chain(&self.unless) {
             if find(field)?["values"].get(constant).is_none() {
-                return Err(format!("`speakers` names `{constant}`, which is no constant of `{field}` of `{message}`"));
+                return Err(format!(
+                    "`speakers` names `{constant}`, which is not a constant of `{field}` of `{message}`"
+                ));
             }
         }
         Ok(())

@@ -197,12 +197,16 @@ fn who_speaks_has_to_be_an_integer_field_and_a_number_or_a_text() {
     for (speaker, kind, words) in [
         (json!({"field": "who", "unless": {"stage": "REQUEST"}}), "string", "fits"),
         (json!({"field": "who", "only": {"stage": "ANSWER"}, "instead": "ask"}), "integer", "fits"),
-        (json!({"field": "whom"}), "string", "topic `SAID`: `speakers` names `whom`, which is no field of `Said`"),
-        (json!({"field": "what"}), "string", "topic `SAID`: `speakers` names `what` of `Said`, which is no integer"),
+        (json!({"field": "whom"}), "string", "topic `SAID`: `speakers` names `whom`, which is not a field of `Said`"),
+        (
+            json!({"field": "what"}),
+            "string",
+            "topic `SAID`: `speakers` names `what` of `Said`, which is not an integer",
+        ),
         (
             json!({"field": "who", "unless": {"stage": "Request"}}),
             "string",
-            "topic `SAID`: `speakers` names `Request`, which is no constant of `stage` of `Said`",
+            "topic `SAID`: `speakers` names `Request`, which is not a constant of `stage` of `Said`",
         ),
         (json!({"field": "who"}), "float", "property `id` cannot be `speaker`: it is neither one integer nor one text"),
     ] {

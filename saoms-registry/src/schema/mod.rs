@@ -178,21 +178,23 @@ fn message(value: &Value, deepest: usize) -> Result<Schema, SchemaError> {
     let fields = fields.collect::<Result<Vec<Field>, _>>()?;
     let field = |name: &String, role: &str| {
         let found = fields.iter().position(|field| field.name == *name);
-        found.ok_or_else(|| SchemaError(format!("the {role} of `{}` is `{name}`, which is no field of it", shape.name)))
+        found.ok_or_else(|| {
+            SchemaError(format!("the {role} of `{}` is `{name}`, which is not one of its fields", shape.name))
+        })
     };
     let place = shape.place.as_ref().map(|place| field(place, "place")).transpose()?;
     if let Some(place) = place.filter(|place| !is_block(&fields[*place].kind)) {
         let name = &fields[place].name;
         return Err(SchemaError(format!(
-            "the place of `{}` is `{name}`, which is no message of two fields of type int32",
+            "the place of `{}` is `{name}`, which is not a message with two fields of type int32",
             shape.name
         )));
     }
     let key = shape.key.as_ref().map(|key| field(key, "key")).transpose()?;
     let what = match key.map(|key| &fields[key].kind) {
-        Some(Type::Number(number)) if number.is_float() => Some("no integer"),
+        Some(Type::Number(number)) if number.is_float() => Some("not an integer"),
         None | Some(Type::Number(_) | Type::Enumeration(..) | Type::Bool) => None,
-        Some(_) => Some("no number"),
+        Some(_) => Some("not a number"),
     };
     if let (Some(key), Some(what)) = (key, what) {
         let name = &fields[key].name;

@@ -127,7 +127,7 @@ pub(super) fn constant<'a>(
     let found = scalar(number, reader)?;
     let known = values.iter().find(|(_, value)| found == Scalar::Integer(*value));
     known.map(|(name, _)| name.as_str()).ok_or_else(|| {
-        let Scalar::Integer(found) = found else { return DecodeError::new("found no integer", at) };
+        let Scalar::Integer(found) = found else { return DecodeError::new("expected an integer", at) };
         DecodeError::new(format!("found {found}, which is not a constant of the enumeration"), at)
     })
 }

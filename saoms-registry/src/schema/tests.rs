@@ -160,5 +160,5 @@ fn the_key_of_a_message_is_read_from_its_bytes() {
     assert_eq!(key(&own(r#"{"enumeration":"uint8","values":{"A":3}}"#), &[0, 1, 0, 0, 3]), Some(3));
     assert_eq!(key(All::SCHEMA, &cdr::encode(&All::default())), None);
     let error = Schema::parse(&own(r#""float32""#)).unwrap_err().to_string();
-    assert_eq!(error, "the key of `Own` is `key`, which is no integer");
+    assert_eq!(error, "the key of `Own` is `key`, which is not an integer");
 }

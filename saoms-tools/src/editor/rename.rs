@@ -32,7 +32,7 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
     }
     if name.is_empty() || name.contains(|c: char| c.is_whitespace() || "/<>&\"'".contains(c)) {
         return Err(format!(
-            "`{name}` cannot be a name: a name is not empty, and has no blanks, `/`, quotes, `<`, `>` and `&`"
+            "`{name}` cannot be a name: a name is not empty, and has no blanks, `/`, quotes, `<`, `>` or `&`"
         ));
     }
     if matches!(found.symbol, Symbol::Topic { .. }) && (name.contains(',') || name.contains("::")) {
@@ -43,7 +43,7 @@ pub fn rename(scene: &Scene, byte: usize, name: &str) -> Result<Vec<(FileRange, 
     let is_named = |one: &&Occurrence| one.is_definition || matches!(one.symbol, Symbol::Topic { .. });
     let old = all.iter().find(is_named).map(|one| text(scene, &own(scene, one)).to_owned());
     let Some(old) = old else {
-        return Err("what is named here is not defined in any file near this one".to_owned());
+        return Err("this name is not defined in any file near this one".to_owned());
     };
     if matches!(found.symbol, Symbol::Component { .. }) && group(&old).is_some() && group(name).is_none() {
         return Err(format!(
@@ -88,21 +88,21 @@ fn refusal(scene: &Scene, symbol: &Symbol) -> Option<String> {
             if scene.is_imported(*file) =>
         {
             let path = scene.files[*file].path.display();
-            Some(format!("this has its name from another contribution, in `{path}`"))
+            Some(format!("this name is defined in another contribution, in `{path}`"))
         }
-        Symbol::Class { name } => Some(format!("the class `{name}` has its name from its author")),
-        Symbol::Part { name, .. } => Some(format!("`{name}` has its name from the class of the component")),
+        Symbol::Class { name } => Some(format!("the name of the class `{name}` is defined in its code")),
+        Symbol::Part { name, .. } => Some(format!("`{name}` is named in the code of the component's class")),
         Symbol::Loop { file, component, name } => {
             let of = scene.component(*file, component)?;
             let is_meant = |(short, class): &(&str, &str)| short == name || class == name;
             let is_added = scene.class(of.1).is_some() && !scene.default_loops(of).iter().any(is_meant);
-            (!is_added).then(|| format!("the loop `{name}` has its name from the class"))
+            (!is_added).then(|| format!("the loop `{name}` is named in the code of the component's class"))
         }
         Symbol::Topic { name } => {
             let uses = scene.uses_of_topics();
             let own = uses.iter().find(|one| one.name == name && one.at.is_none())?;
             let component = &own.component.name.text;
-            Some(format!("`{name}` is the name that the class of `{component}` gives the topic"))
+            Some(format!("`{name}` is the topic's name in the class of `{component}`"))
         }
         Symbol::Index { .. } => Some(format!("`{INDEX}` is the number of a replica")),
         _ => None,
@@ -153,7 +153,7 @@ fn taken(scene: &Scene, symbol: &Symbol, name: &str) -> Result<(), String> {
         }
         _ => false,
     };
-    if is_taken { Err(format!("`{name}` is taken")) } else { Ok(()) }
+    if is_taken { Err(format!("the name `{name}` is already used")) } else { Ok(()) }
 }
 
 /// Refuses where an expression names this one along with others, as `$start${index}` names `start1`.

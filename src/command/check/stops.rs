@@ -39,9 +39,9 @@ impl fmt::Display for StopReport<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let all = stopped(self.0);
         if all.is_empty() {
-            return out.write_str("an emergency stop reaches nothing\n\n");
+            return out.write_str("an emergency stop affects no component\n\n");
         }
-        out.write_str("an emergency stop\n")?;
+        out.write_str("components that an emergency stop affects\n")?;
         let is_alike = |one: &Stopped<'_>, other: &Stopped<'_>| {
             (one.class, one.hears, &one.hardware) == (other.class, other.hears, &other.hardware)
         };
@@ -62,7 +62,7 @@ impl fmt::Display for StopReport<'_> {
                 }
             }
             out.write_str(match first.hears {
-                true => "; it hears of the stop\n",
+                true => "; its property `stopped` is set\n",
                 false => "; its executions are left out\n",
             })?;
         }

@@ -54,7 +54,7 @@ impl fmt::Display for Wiring<'_> {
             for (does, ends) in [("published by", &topic.writers), ("read by", &topic.readers)] {
                 let groups = groups(ends, self.0);
                 if groups.is_empty() {
-                    writeln!(out, "  {does} nobody")?;
+                    writeln!(out, "  {does} no component")?;
                 }
                 for group in &groups {
                     writeln!(out, "  {does} {group}")?;

@@ -83,7 +83,7 @@ pub(crate) fn components(arguments: &ComponentsArguments) -> Exit {
 }
 
 fn unknown(name: &str, registry: &Registry) -> String {
-    let mut text = format!("error: no class of components and no loop is named `{name}`\n");
+    let mut text = format!("error: there is no component class or loop `{name}`\n");
     let mut nearest = registry.nearest(name);
     nearest.extend(registry.nearest_loops(name));
     if !nearest.is_empty() {
@@ -235,7 +235,7 @@ fn property_lines((property, preset): (&PropertyDeclaration, Option<&str>)) -> S
         facts.push(format!("unique as {scope}"));
     }
     if property.speaker {
-        facts.push("says who speaks".to_owned());
+        facts.push("identifies the sender".to_owned());
     }
     let mut text = format!("  {}: {}\n", property.name, facts.join(", "));
     for line in wrapped(&property.doc, 96) {
@@ -252,7 +252,7 @@ fn library_line(origin: Option<&Path>) -> String {
 fn topic_line(topic: &ClassTopic) -> String {
     let mut text = format!("  {} ({} topic of {})\n", topic.name, topic.kind.name(), topic.message);
     for speaker in &topic.speakers {
-        let _ = writeln!(text, "      who speaks: {speaker}");
+        let _ = writeln!(text, "      sender: {speaker}");
     }
     text
 }

@@ -13,22 +13,22 @@ use crate::output::{eprint, print};
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  shown, also if nothing needs a person; with --follow, the fleet has ended
+  0  shown, also if there are no alerts; with --follow, the fleet has ended
   1  it could not be written
   2  no fleet runs, it is not clear which one is meant, or the command line is wrong";
 
-/// Show what needs a person in a running fleet
+/// Show the alerts of a running fleet: what needs a person
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES, args_conflicts_with_subcommands = true)]
 pub(crate) struct AlertsArguments {
     #[command(subcommand)]
     command: Option<AlertsCommand>,
 
-    /// Show also alerts that are over, and those that are acknowledged
+    /// Also show alerts that are over, and acknowledged alerts
     #[arg(long)]
     all: bool,
 
-    /// Go on with changes as they come, until the fleet ends
+    /// Continue with changes as they happen, until the fleet ends
     #[arg(long, short)]
     follow: bool,
 
@@ -43,10 +43,10 @@ enum AlertsCommand {
 
 const ACK_CODES: &str = "\
 Exit codes:
-  0  they are acknowledged
+  0  the alerts are acknowledged
   2  there is no such alert, no fleet runs, or it is not clear which one is meant";
 
-/// Acknowledge alerts: they stay in the list until they are over, but wait for nobody. The log says who it was
+/// Acknowledge alerts: they stay in the list of `--all` until they are over. The log records who acknowledged them
 #[derive(Debug, Args)]
 #[command(after_help = ACK_CODES)]
 struct AckArguments {
@@ -54,7 +54,7 @@ struct AckArguments {
     #[arg(value_name = "ID", required_unless_present = "all")]
     ids: Vec<u64>,
 
-    /// All that wait
+    /// All alerts that are not acknowledged
     #[arg(long, conflicts_with = "ids")]
     all: bool,
 
@@ -80,7 +80,7 @@ fn list(arguments: &AlertsArguments) -> Exit {
     }
     arguments.fleet.show(&answer, || {
         let lines: Vec<String> = answer.as_array().into_iter().flatten().map(|alert| line(alert) + "\n").collect();
-        if lines.is_empty() { "nothing needs a person\n".to_owned() } else { lines.concat() }
+        if lines.is_empty() { "no alerts\n".to_owned() } else { lines.concat() }
     });
     Exit::Done
 }
@@ -93,7 +93,7 @@ fn follow(arguments: &AlertsArguments) -> Exit {
     for (name, data) in response.events() {
         let Ok(data) = serde_json::from_str::<Value>(&data) else { continue };
         match &*name {
-            "lost" => eprint(&format!("warning: {data} changes came faster than they were read, and are lost\n")),
+            "lost" => eprint(&format!("warning: {data} changes came faster than they were read, and were lost\n")),
             "alerts" => {
                 let alerts = data.as_array().into_iter().flatten().filter(|alert| is_wanted(alert, arguments.all));
                 alerts.for_each(|alert| show(alert, alert, arguments));
@@ -127,7 +127,7 @@ fn acknowledge(arguments: &AckArguments) -> Exit {
     arguments.fleet.show(&answer, || {
         let ids = answer["acknowledged"].as_array().into_iter().flatten().map(Value::to_string);
         match ids.collect::<Vec<_>>().join(", ") {
-            ids if ids.is_empty() => "nothing is acknowledged: nothing waited\n".to_owned(),
+            ids if ids.is_empty() => "no alert to acknowledge\n".to_owned(),
             ids => format!("acknowledged: {ids}\n"),
         }
     });

@@ -9,16 +9,17 @@ use crate::Exit;
 
 const STOP_CODES: &str = "\
 Exit codes:
-  0  they are stopped
+  0  the components are stopped
   2  there is no such component, no fleet runs, or it is not clear which one is meant";
 
-/// Stop machines of a running fleet at once, until they are released
+/// Emergency stop: stop machines of a running fleet at once, until `saoms release`
 ///
-/// The functions that stop their hardware are called, whatever their code does, and the heartbeat of the hardware ends.
+/// The stop functions of their hardware are called even if the code of a component hangs, and the heartbeat of the
+/// hardware ends.
 #[derive(Debug, Args)]
 #[command(after_help = STOP_CODES)]
 pub(crate) struct EmergencyStopArguments {
-    /// The paths of the components; without any, all that move something
+    /// The paths of the components; without any, all components that an emergency stop affects
     #[arg(value_name = "COMPONENT")]
     components: Vec<String>,
 
@@ -28,14 +29,14 @@ pub(crate) struct EmergencyStopArguments {
 
 const RELEASE_CODES: &str = "\
 Exit codes:
-  0  they are released
+  0  the components are released
   2  there is no such component, no fleet runs here, or it is not clear which one is meant";
 
 /// Release machines of a running fleet that `saoms estop` stopped
 #[derive(Debug, Args)]
 #[command(after_help = RELEASE_CODES)]
 pub(crate) struct ReleaseArguments {
-    /// The paths of the components; without any, all that are stopped
+    /// The paths of the components; without any, all stopped components
     #[arg(value_name = "COMPONENT")]
     components: Vec<String>,
 

@@ -18,12 +18,12 @@ const TOKEN_FILE: &str = "SAOMS_TOKEN_FILE";
 /// Options of commands for a running fleet.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct RunningFleetArguments {
-    /// The fleet, where several run on this machine: its name, its process, or the path of its socket. `saoms ps` lists
+    /// The fleet, if several run on this machine: its name, its process ID, or the path of its socket. `saoms ps` lists
     /// them. `http://ADDRESS:PORT` is one that `saoms run --serve` serves
     #[arg(long = "fleet", value_name = "NAME")]
     pub(crate) name: Option<String>,
 
-    /// The file with the token of a fleet at an address; without it, the file that `SAOMS_TOKEN_FILE` names
+    /// The file with the token for a fleet at an address; without this option, the file that `SAOMS_TOKEN_FILE` names
     #[arg(long, value_name = "FILE", requires = "name")]
     pub(crate) token_file: Option<PathBuf>,
 
@@ -56,7 +56,7 @@ impl RunningFleetArguments {
         let named = self.token_file.clone().or_else(|| std::env::var_os(TOKEN_FILE).map(PathBuf::from));
         let Some(file) = named else {
             let message = format!(
-                "the fleet at `{}` wants a token\n  = help: name its file with `--token-file`, or with `{TOKEN_FILE}`",
+                "the fleet at `{}` requires a token\n  = help: name its file with `--token-file`, or with `{TOKEN_FILE}`",
                 one_line(url)
             );
             return Err(self.refuse(&message, Exit::WrongInput));

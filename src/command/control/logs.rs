@@ -20,15 +20,15 @@ Exit codes:
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct LogsArguments {
-    /// Go on with new lines as they come, until the fleet ends
+    /// Continue with new lines as they are written, until the fleet ends
     #[arg(long, short)]
     follow: bool,
 
-    /// The number of lines before
+    /// The number of earlier lines to show
     #[arg(long, short = 'n', value_name = "N", default_value_t = 100)]
     lines: usize,
 
-    /// Show the lines of this component alone
+    /// Show only the lines of this component
     #[arg(value_name = "COMPONENT")]
     component: Option<String>,
 
@@ -52,7 +52,7 @@ pub(crate) fn logs(arguments: &LogsArguments) -> Exit {
     };
     for (name, data) in response.events() {
         if name == "lost" {
-            eprint(&format!("warning: {data} lines came faster than they were read, and are lost\n"));
+            eprint(&format!("warning: {data} lines came faster than they were read, and were lost\n"));
         } else if let Ok(line) = serde_json::from_str(&data) {
             show(&line, arguments);
         }

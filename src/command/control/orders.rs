@@ -15,7 +15,7 @@ Exit codes:
   0  the fleet ends
   2  no fleet runs, it is not clear which one is meant, or the command line is wrong";
 
-/// End a running fleet: its components shut down, and its status is `stopped`
+/// End a running fleet: its components shut down, and its run has the status `stopped`
 #[derive(Debug, Args)]
 #[command(after_help = DOWN_CODES)]
 pub(crate) struct DownArguments {
@@ -25,10 +25,10 @@ pub(crate) struct DownArguments {
 
 const SEND_CODES: &str = "\
 Exit codes:
-  0  the event is taken: it happens at the next instant, or at its time
+  0  the event is accepted: it happens at the next instant, or at its time
   2  the line is wrong, no fleet runs, or it is not clear which one is meant";
 
-/// Let an event happen in a running fleet
+/// Send an event to a running fleet
 #[derive(Debug, Args)]
 #[command(after_help = SEND_CODES)]
 pub(crate) struct SendArguments {
@@ -53,7 +53,7 @@ pub(crate) struct StartArguments {
     #[arg(value_name = "COMPONENT")]
     component: String,
 
-    /// Stop it again after this time (a bare number is milliseconds; units us, ms, s, min, h)
+    /// Stop the component again after this time (a bare number is milliseconds; units us, ms, s, min, h)
     #[arg(long = "for", value_name = "DURATION", value_parser = duration)]
     duration: Option<Duration>,
 
@@ -80,11 +80,11 @@ pub(crate) struct StopArguments {
 
 const SET_CODES: &str = "\
 Exit codes:
-  0  the component has taken the value
+  0  the component has accepted the value
   2  it is refused: there is no such component or property, the property cannot change while it runs, or the
      value is wrong; no fleet runs, or it is not clear which one is meant";
 
-/// Give a property of a running component another value: one that its class declares `live`
+/// Change a property of a running component; its class must declare the property as `live`
 #[derive(Debug, Args)]
 #[command(after_help = SET_CODES)]
 pub(crate) struct SetArguments {
@@ -148,8 +148,8 @@ pub(crate) fn send(arguments: &SendArguments) -> Exit {
         Err(exit) => return exit,
     };
     arguments.fleet.show(&answer, || match (answer["events"].as_u64(), &answer["reply"]) {
-        (Some(1), _) => "1 event taken\n".to_owned(),
-        (Some(count), _) => format!("{count} events taken\n"),
+        (Some(1), _) => "1 event accepted\n".to_owned(),
+        (Some(count), _) => format!("{count} events accepted\n"),
         (None, Value::Null) => "done\n".to_owned(),
         (None, reply) => format!("{reply}\n"),
     });

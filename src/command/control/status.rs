@@ -18,7 +18,7 @@ Exit codes:
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct StatusArguments {
-    /// Show these components alone: their paths or IDs
+    /// Show only these components: their paths or IDs
     #[arg(value_name = "COMPONENT")]
     components: Vec<String>,
 
@@ -77,7 +77,7 @@ pub(super) fn headline(answer: &Value) -> String {
 /// The state of a component, or what is more important.
 pub(super) fn state(component: &Value) -> String {
     match component["in_code_s"].as_f64() {
-        _ if component["emergency_stop"] == true => "stopped at once".to_owned(),
+        _ if component["emergency_stop"] == true => "emergency stop".to_owned(),
         Some(seconds) if seconds >= 1.0 => format!("in its code for {seconds:.0} s"),
         _ => word(&component["state"]),
     }
@@ -85,7 +85,7 @@ pub(super) fn state(component: &Value) -> String {
 
 /// A snapshot for people.
 fn shown(answer: &Value) -> String {
-    let mut table = Table::new(&["COMPONENT", "STATE", "EXECUTIONS", "MISSED", "FAILURES", "WHAT IT SAYS"]);
+    let mut table = Table::new(&["COMPONENT", "STATE", "EXECUTIONS", "MISSED", "FAILURES", "DETAILS"]);
     for component in answer["status"]["components"].as_array().into_iter().flatten() {
         let number = |field: &str| component[field].to_string();
         table.row([

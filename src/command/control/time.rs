@@ -14,7 +14,7 @@ Exit codes:
   0  the fleet pauses
   2  the run ends, no fleet runs, or it is not clear which one is meant";
 
-/// Pause a running fleet: no component executes, and no time of the run passes
+/// Pause a running fleet: no component executes, and the time of the run stands still
 #[derive(Debug, Args)]
 #[command(after_help = PAUSE_CODES)]
 pub(crate) struct PauseArguments {
@@ -24,10 +24,10 @@ pub(crate) struct PauseArguments {
 
 const RESUME_CODES: &str = "\
 Exit codes:
-  0  the fleet goes on
+  0  the fleet runs again
   2  the run ends, no fleet runs, or it is not clear which one is meant";
 
-/// Let a paused fleet go on
+/// Resume a paused fleet
 #[derive(Debug, Args)]
 #[command(after_help = RESUME_CODES)]
 pub(crate) struct ResumeArguments {
@@ -37,10 +37,10 @@ pub(crate) struct ResumeArguments {
 
 const STEP_CODES: &str = "\
 Exit codes:
-  0  the fleet advances, and pauses then
+  0  the fleet advances, then pauses
   2  it runs in real time, the run ends, no fleet runs, or it is not clear which one is meant";
 
-/// Let a fleet in virtual time advance by a time, and pause it there
+/// Advance a fleet in virtual time by a duration, then pause it
 #[derive(Debug, Args)]
 #[command(after_help = STEP_CODES)]
 pub(crate) struct StepArguments {
@@ -56,7 +56,7 @@ pub(crate) struct StepArguments {
 const SPEED_CODES: &str = "\
 Exit codes:
   0  the speed is set
-  2  the fleet runs in real time, the factor is none, the run ends, no fleet runs, or it is not clear which one is
+  2  the fleet runs in real time, the factor is wrong, the run ends, no fleet runs, or it is not clear which one is
      meant";
 
 /// Set how fast virtual time passes in a running fleet
@@ -76,7 +76,7 @@ pub(crate) fn pause(arguments: &PauseArguments) -> Exit {
 }
 
 pub(crate) fn resume(arguments: &ResumeArguments) -> Exit {
-    order(&arguments.fleet, "POST", "/v1/resume", "", |_| "goes on\n".to_owned())
+    order(&arguments.fleet, "POST", "/v1/resume", "", |_| "resumed\n".to_owned())
 }
 
 pub(crate) fn step(arguments: &StepArguments) -> Exit {

@@ -43,7 +43,7 @@ struct ListArguments {
     fleet: RunningFleetArguments,
 }
 
-/// Show who publishes and reads a topic, how many events wait for whom, and the fields of its messages
+/// Show the publishers and readers of a topic, the events that wait for each reader, and the fields of its messages
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 struct InfoArguments {
@@ -54,14 +54,14 @@ struct InfoArguments {
     fleet: RunningFleetArguments,
 }
 
-/// Show the messages of a topic: what a state topic retains, then those that come, until the fleet ends
+/// Show the messages of a topic: first the retained messages of a state topic, then new messages, until the fleet ends
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 struct EchoArguments {
     /// The topic
     topic: String,
 
-    /// End after so many messages
+    /// End after this number of messages
     #[arg(long, short = 'n', value_name = "N")]
     count: Option<u64>,
 
@@ -69,14 +69,14 @@ struct EchoArguments {
     fleet: RunningFleetArguments,
 }
 
-/// Count the messages of a topic in each second, for a while
+/// Measure the rate of a topic: messages per second
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 struct HzArguments {
     /// The topic
     topic: String,
 
-    /// The time for which they are counted (a bare number is milliseconds; units us, ms, s, min, h)
+    /// How long to count messages (a bare number is milliseconds; units us, ms, s, min, h)
     #[arg(long = "for", value_name = "DURATION", default_value = "3s", value_parser = duration)]
     limit: Duration,
 
@@ -151,7 +151,7 @@ fn info(arguments: &InfoArguments) -> Result<(), Exit> {
             text.push_str(&format!("  {}: {}\n", word(&field["name"]), one_line(&of)));
         }
         for speaker in topic["speakers"].as_array().into_iter().flatten() {
-            text.push_str(&format!("who speaks: {}\n", word(speaker)));
+            text.push_str(&format!("sender: {}\n", word(speaker)));
         }
         text.push_str("published by\n");
         for publisher in topic["publishers"].as_array().into_iter().flatten() {
@@ -175,7 +175,7 @@ fn messages(fleet: &RunningFleetArguments, topic: &str) -> Result<impl Iterator<
     let response = fleet.request("GET", &format!("/v1/topics/{}/messages", escape(topic)), "")?;
     Ok(response.events().filter_map(|(name, data)| {
         if name == "lost" {
-            eprint(&format!("warning: {data} messages came faster than they were read, and are lost\n"));
+            eprint(&format!("warning: {data} messages came faster than they were read, and were lost\n"));
             return None;
         }
         Some((name == "retained", data))

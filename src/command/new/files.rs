@@ -138,7 +138,7 @@ impl Template {
             PluginKind::Robot => template!("robot", true, "drives a robot: its wheels and its arm"),
             PluginKind::Loop => template!("loop", false, "lets a robot watch its battery"),
             PluginKind::Extension => template!("extension", true, "brings a robot that tells how far it has driven"),
-            PluginKind::Master => template!("master", true, "brings a master that asks for luggage by itself"),
+            PluginKind::Master => template!("master", true, "brings a master that requests luggage by itself"),
             PluginKind::C => Template {
                 code: include_str!("templates/c/plugin.c"),
                 fleet: "",

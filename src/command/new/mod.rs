@@ -15,7 +15,7 @@ use files::Names;
 const EXIT_CODES: &str = "\
 Exit codes:
   0  made
-  1  made, but standard output could not be written
+  1  created, but standard output could not be written
   2  one of the files is there already, the name cannot be used, or a file could not be written";
 
 /// Make a working plugin, site or composite to start from

@@ -28,17 +28,18 @@ const NONE: &str = "none";
 /// Where a fleet is reached over the network.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct NetworkArguments {
-    /// Let clients with a token reach the fleet at this address, such as `127.0.0.1:8080`, beside the socket; with port
-    /// 0 the system chooses one. The token is made, in a file beside the socket, unless `--token-file` names one
+    /// Also serve clients with a token at this address, such as `127.0.0.1:8080`; with port 0 the system chooses a
+    /// port. Without `--token-file`, a new token is written to a file beside the socket
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub(crate) serve: Option<String>,
 
-    /// The file with the token for `--serve`: 16 visible characters or more, which nobody else may read
+    /// The file with the token for `--serve`: at least 16 visible characters; no other user may be able to read the
+    /// file
     #[arg(long, value_name = "FILE", requires = "serve")]
     pub(crate) token_file: Option<PathBuf>,
 
-    /// Let `--serve` take an address that other machines reach, although nothing is encrypted: who listens on the way
-    /// reads the token, and can give orders
+    /// Allow `--serve` at an address that other machines can reach, although nothing is encrypted: anyone who can read
+    /// the network traffic gets the token, and can control the fleet
     #[arg(long, requires = "serve")]
     pub(crate) serve_unencrypted: bool,
 }

@@ -217,8 +217,8 @@ fn cannot_wait() {
     guard::forget_signals();
     let libraries = guard::libraries();
     eprint(&format!(
-        "warning: Ctrl-C ends the process without a report: code of library `{libraries}` closed what the program waits \
-         with\n"
+        "warning: Ctrl-C ends the process without a report: code of library `{libraries}` closed the descriptor with \
+         which the program waits for signals\n"
     ));
 }
 

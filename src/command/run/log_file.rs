@@ -59,7 +59,7 @@ impl LogFile {
             && let Err(error) = file.rotate()
             && !self.stays.swap(true, Ordering::Relaxed)
         {
-            self.tell("moved aside", &error, "it grows");
+            self.tell("rotated", &error, "its file keeps growing");
         }
         match file.write(line.as_bytes()) {
             Ok(()) => {
@@ -69,7 +69,7 @@ impl LogFile {
             }
             Err(error) => {
                 if self.lost.fetch_add(1, Ordering::Relaxed) == 0 {
-                    self.tell("written", &error, "lines are lost, and counted");
+                    self.tell("written", &error, "lines are lost; the run reports their number");
                 }
                 if !self.fails.swap(true, Ordering::Relaxed) {
                     let path = self.path.display();

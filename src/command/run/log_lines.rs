@@ -22,33 +22,33 @@ const NAMES: (usize, usize) = (14, 32);
 /// Options of the log.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct LogArguments {
-    /// Write the log also to this file, where it goes on; `--quiet` and `--console` do not concern it
+    /// Also append the log to this file; `--quiet` and `--console` have no effect on it
     #[arg(long, value_name = "FILE")]
     pub(crate) log: Option<PathBuf>,
 
-    /// Lines of the log for people, or each as a JSON object with the time of day
+    /// The format of the log: lines for people, or JSON objects with the time of day
     #[arg(long, value_enum, default_value_t = LogFormat::Plain)]
     log_format: LogFormat,
 
-    /// The least severe lines of the log: errors alone, or also warnings, what happens (`info`), or what only
-    /// developers want to know [default: info]
+    /// The least severe lines that the log contains: `error`, `warning`, `info` (what happens) or `debug` (for
+    /// developers) [default: info]
     #[arg(long, value_enum, value_name = "LEVEL")]
     log_level: Option<LogLevel>,
 
-    /// Begin plain lines of the log with the time of day in UTC
+    /// Start plain lines of the log with date and time in UTC
     #[arg(long)]
     log_date: bool,
 
-    /// Move the files of `--log` and `--journal` aside before they are larger than this: FILE becomes FILE.1, that
-    /// FILE.2, and so on
+    /// Rotate the files of `--log` and `--journal` before they are larger than this: FILE becomes FILE.1, FILE.1
+    /// becomes FILE.2, and so on
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     rotate_size: Option<u64>,
 
-    /// Move these files aside when they are older than this (a bare number is milliseconds; units us, ms, s, min, h)
+    /// Rotate these files when they are older than this (a bare number is milliseconds; units us, ms, s, min, h)
     #[arg(long, value_name = "DURATION", value_parser = duration)]
     rotate_age: Option<Duration>,
 
-    /// The number of earlier files that are kept, beside the present one [default: 9]
+    /// The number of earlier files to keep, beside the current one [default: 9]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=9999))]
     rotate_keep: Option<u32>,
 }

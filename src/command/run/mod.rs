@@ -52,12 +52,12 @@ use report_file::ReportFile;
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0    done, also when --for elapsed or `saoms down` came with work left (the report says so), or when nobody reads what
-       it prints any more
+  0    done; also if --for or `saoms down` ended the run with work left (the report says so), or if
+       the reader of standard output closed it
   1    the run failed: a component failed for good, a message was lost, a report, picture or standard output could not be
        written; or it is incomplete: work was given up
-  2    the input is wrong: a composite, a value, the command line, a place where no file can be or that is read; nothing
-       was started
+  2    the input is wrong: a composite, a value or the command line; or an output cannot be written, or is an input;
+       nothing was started
   130  ended by Ctrl-C, SIGTERM or SIGHUP (a lost terminal, unless `hangup` of the composite is `hold` or `goOn`)";
 
 /// Check composites and run the fleet that they describe together
@@ -88,7 +88,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Write the report without the records of the journal, which take megabytes after a long run; their counts stay
+    /// Leave the records of the journal out of the report: they take megabytes after a long run. Their counts stay
     #[arg(long, requires = "report")]
     pub(crate) short_report: bool,
 
@@ -106,7 +106,8 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) events: Option<PathBuf>,
 
-    /// Go on when all work is done, since more may be sent: until `saoms down`, a signal, or the time of `--for`
+    /// Keep running when all work is done, for events that are sent later: until `saoms down`, a signal, or the time of
+    /// `--for`
     #[arg(long)]
     pub(crate) stay: bool,
 
@@ -114,14 +115,14 @@ pub(crate) struct RunArguments {
     #[arg(long)]
     pub(crate) paused: bool,
 
-    /// Seconds of virtual time in a second, such as `1`, `10` or `0.5`, in place of as fast as the machine allows;
-    /// `saoms speed` changes it
+    /// Seconds of virtual time in a second, such as `1`, `10` or `0.5`; without this option, as fast as the machine
+    /// allows. `saoms speed` changes it
     #[arg(long, value_name = "FACTOR|max", requires = "virtual_time")]
     pub(crate) speed: Option<Speed>,
 
-    /// Let commands such as `saoms status` reach the fleet at this socket, or nowhere (`none`). In real time the usual
-    /// socket is `NAME-PID.sock` in `$XDG_RUNTIME_DIR/saoms`, or `/tmp/saoms-UID` without that folder; in virtual time
-    /// there is none without `--stay`, `--paused` or `--speed`
+    /// The socket at which commands such as `saoms status` reach the fleet, or `none`. The default in real time is
+    /// `NAME-PID.sock` in `$XDG_RUNTIME_DIR/saoms`, or in `/tmp/saoms-UID` without that folder; in virtual time a fleet
+    /// has a socket only with `--stay`, `--paused` or `--speed`
     #[arg(long, value_name = "PATH|none")]
     pub(crate) control: Option<String>,
 
@@ -144,7 +145,7 @@ pub(crate) struct RunArguments {
     #[arg(long, conflicts_with = "console")]
     pub(crate) quiet: bool,
 
-    /// Show what happens as `plain` lines, or as the `classic` console of the original
+    /// The style of the console: `plain` lines, or `classic`, as the original program printed them
     #[arg(long, value_enum, value_name = "STYLE", default_value_t = ConsoleStyle::Plain)]
     pub(crate) console: ConsoleStyle,
 
@@ -152,17 +153,17 @@ pub(crate) struct RunArguments {
     #[arg(long, conflicts_with = "timer_slack")]
     pub(crate) realtime: bool,
 
-    /// Maximum delay of the timer that the kernel may add to save power, in real time and without `--realtime`; 1ns is
-    /// the most punctual
+    /// The delay that the kernel may add to the timer to save power, in real time without `--realtime`; 1ns is the most
+    /// punctual
     #[arg(long, value_name = "DURATION", default_value = "50us", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) timer_slack: Duration,
 
-    /// Time that an execution may delay the others before a spare thread takes over, in real time
+    /// The time that an execution may delay the others before a spare thread takes over, in real time
     #[arg(long, value_name = "DURATION", default_value = "1ms", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) budget: Duration,
 
-    /// Time that a component may take to end before it is abandoned, and that a reader of standard output may block
-    /// after a signal
+    /// The time that a component may take to end before it is abandoned, and that a blocked standard output may delay
+    /// the end after a signal
     #[arg(long, value_name = "DURATION", default_value = "2s", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) grace: Duration,
 }

@@ -79,7 +79,7 @@ impl Notifier {
             Ok(Notifier { manager, _end: end })
         });
         let told = |error: &io::Error| {
-            fleet.note(Level::Warning, format!("the service manager cannot be told that the fleet runs: {error}"));
+            fleet.note(Level::Warning, format!("the service manager cannot be notified that the fleet runs: {error}"));
         };
         started.inspect_err(told).ok()
     }

@@ -72,7 +72,7 @@ fn taken_aside(asked: &Asked<'_>, place: &Place, rotation: Rotation, outputs: &O
     let Asked { what, option, path, .. } = asked;
     let (path, taken) = (displayed(path), displayed(&taken));
     Some(format!(
-        "error: `{option} {path}`: the {what} would be moved over `{taken}`, which is an input or another output\n"
+        "error: `{option} {path}`: the {what} would be rotated onto `{taken}`, which is an input or another output\n"
     ))
 }
 

@@ -126,7 +126,7 @@ impl Watcher {
     fn reload(&mut self, changed: &[PathBuf]) {
         let names: Vec<String> = changed.iter().map(|path| format!("`{}`", path.display())).collect();
         let names = one_line(&names.join(", ")).into_owned();
-        let kept = |why: &str| format!("{names} changed: {why}; the fleet goes on with the earlier build");
+        let kept = |why: &str| format!("{names} changed: {why}; the fleet continues with the earlier build");
         // Faults of a library have been reported already.
         let Ok(compilation) = compiled(&self.arguments, |project, classes| project.to_start().compile(classes)) else {
             return self.handle.note(Level::Error, kept("it cannot be used"));
@@ -176,7 +176,7 @@ impl Watcher {
                     };
                     self.note(
                         Level::Error,
-                        &format!("component `{path}` is not replaced, the earlier one goes on: {why}"),
+                        &format!("component `{path}` is not replaced, the earlier one continues: {why}"),
                     );
                 }
             }

@@ -19,9 +19,9 @@ pub(super) fn human(component: &str, asked: Option<Time>, why: &Why<'_>, documen
     let Some(time) = why.time else { return nothing(component, asked, document) };
     let mut text = match asked.filter(|asked| *asked != time) {
         Some(asked) => {
-            format!("What {component} did last up to {asked}, at {time}, and what led to it:\n")
+            format!("The last action of {component} until {asked} was at {time}; this led to it:\n")
         }
-        None => format!("What {component} did at {time}, and what led to it:\n"),
+        None => format!("{component} acted at {time}; this led to it:\n"),
     };
     for (place, chain) in why.chains.iter().enumerate() {
         text.push('\n');
@@ -51,10 +51,13 @@ fn nothing(component: &str, asked: Option<Time>, document: &JournalDocument) -> 
     let own = document.journal.of(component);
     match (asked, own.first()) {
         (Some(asked), Some(first)) => {
-            format!("{component} had done nothing by {asked}: its journal begins at {}\n", first.time())
+            format!(
+                "{component} had done nothing until {asked}: its first record in the journal is at {}\n",
+                first.time()
+            )
         }
         _ => {
-            format!("{component} wrote nothing to the journal in this run: no loop of it found a reason to act\n")
+            format!("{component} has no records in the journal of this run: none of its loops found a reason to act\n")
         }
     }
 }
@@ -89,7 +92,7 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     let kept = SHOWN - LAST;
     for (place, reason) in chain.reasons[..anew].iter().enumerate() {
         if elided > 0 && place == kept {
-            let text = format!("... {elided} more, all of them with --format json ...");
+            let text = format!("... {elided} more; --format json shows all ...");
             rows.push(Row { number: String::new(), entry: None, text });
         }
         if elided == 0 || place < kept || place >= kept + elided {
@@ -103,7 +106,7 @@ fn table(chain: &Chain<'_>, earlier: &[Chain<'_>]) -> String {
     if anew < chain.reasons.len() {
         rows.push(Row { number: String::new(), entry: None, text: "... and so on as above ...".to_owned() });
     } else if chain.missing.is_some() {
-        let text = "... what led to this is not in the journal any more ...".to_owned();
+        let text = "... earlier causes are not in the journal any more ...".to_owned();
         rows.push(Row { number: String::new(), entry: None, text });
     }
     let width = |cell: &dyn Fn(&Row<'_>) -> usize| rows.iter().map(cell).max().unwrap_or(0);

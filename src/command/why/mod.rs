@@ -22,12 +22,13 @@ use crate::output::{self, Outputs, eprint, print, print_as_is};
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  answered, also when the answer is that the robot did nothing
+  0  answered, even if the component did nothing
   1  standard output could not be written
-  2  the input is wrong: no such robot, a time after the end of the run, a file that is incomplete or has no journal; or the records that the whole
-     answer needs were overwritten, or left out by --short-report; no fleet runs, or it is not clear which one is meant";
+  2  the input is wrong: no such robot, a time after the end of the run, a file that is incomplete or has no journal; or the
+     records that the whole answer needs were overwritten, or left out by --short-report; no fleet runs, or it is not
+     clear which one is meant";
 
-/// Explain why a robot did something: one of a fleet that runs, or from the report or the journal of a run
+/// Explain why a component did something: in a running fleet, or from the report or the journal of a run
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct WhyArguments {
@@ -35,13 +36,13 @@ pub(crate) struct WhyArguments {
     #[arg(value_name = "ROBOT")]
     pub(crate) component: String,
 
-    /// Explain what it did last before this time of the run; by default, before its end (a bare number is milliseconds;
-    /// units us, ms, s, min, h)
+    /// Explain the last action before this time of the run; by default, before the end of the run (a bare number is
+    /// milliseconds; units us, ms, s, min, h)
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = duration)]
     pub(crate) at: Option<Duration>,
 
-    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input. Without it, the fleet
-    /// that runs is asked
+    /// The file of `saoms run --report`, or that of `saoms run --journal`; `-` is standard input. Without this option,
+    /// the running fleet is asked
     #[arg(long, visible_alias = "journal", value_name = "FILE", conflicts_with_all = ["name", "token_file"])]
     pub(crate) report: Option<PathBuf>,
 
@@ -94,8 +95,7 @@ fn whole_document(path: &Path) -> Result<JournalDocument, String> {
     if document.source == JournalSource::Report && journal.entries().is_empty() && journal.records > journal.overwritten
     {
         return Err(format!(
-            "{} is a report without the records of the journal, as `--short-report` writes it: run again without that \
-             option, or with `--journal FILE`, and ask that file",
+            "{} is a report without the records of the journal, as `--short-report` writes it: run again without that option, or with `--journal FILE`, and give that file to `saoms why`",
             named(path)
         ));
     }
@@ -113,9 +113,8 @@ fn of_running(arguments: &WhyArguments) -> Result<JournalDocument, Exit> {
         }
     })?;
     let document = read(&told.to_string());
-    let document = document.map_err(|error| {
-        fleet.refuse(&format!("the answer of the fleet cannot be understood: {error}"), Exit::WrongInput)
-    })?;
+    let document = document
+        .map_err(|error| fleet.refuse(&format!("the answer of the fleet is malformed: {error}"), Exit::WrongInput))?;
     Ok(JournalDocument { source: JournalSource::Running, ..document })
 }
 
@@ -130,7 +129,7 @@ fn answer(arguments: &WhyArguments, document: &JournalDocument) -> Result<Answer
         return Err(format!("the run {reached} {end}, before {asked}: ask for a time up to then"));
     }
     let why = document.journal.why(&component.name, at).map_err(|error| {
-        format!("what led to what `{}` did cannot be told: {error}. {}", component.name, advice(document))
+        format!("the causes of the action of `{}` are unknown: {error}. {}", component.name, advice(document))
     })?;
     let missing = why.chains.iter().find_map(|chain| chain.missing);
     let lost = missing.map(|missing| {

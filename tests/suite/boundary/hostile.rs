@@ -68,10 +68,10 @@ fn what_makes_no_sense_is_a_failure_of_its_component() {
 #[test]
 fn keys_that_a_state_topic_cannot_keep_are_told_and_counted() {
     let run = run("h.Actor", "keys without end");
-    assert_goes_on(&run, "has published 100000 keys on topic `SPOTS`, which is the most");
+    assert_goes_on(&run, "has published 100000 keys on topic `SPOTS`, the maximum");
     let bad = run.component("Bad");
     assert_eq!((&bad["dropped"], &bad["messages"]["sent"]), (&500.into(), &100_500.into()), "{}", run.text);
-    assert_eq!(run.text.matches("which is the most: messages of further keys are lost").count(), 2, "{}", run.text);
+    assert_eq!(run.text.matches("the maximum: messages with other keys are lost").count(), 2, "{}", run.text);
 }
 
 #[test]
@@ -100,11 +100,14 @@ fn a_region_may_move_often() {
 #[test]
 fn a_type_of_messages_that_contradicts_itself_is_refused() {
     for (definition, expected) in [
-        ("PLACE=\"where\"", "the place of `Spotted` is `where`, which is no field of it"),
-        ("PLACE=\"number\"", "the place of `Spotted` is `number`, which is no message of two fields of type int32"),
+        ("PLACE=\"where\"", "the place of `Spotted` is `where`, which is not one of its fields"),
+        (
+            "PLACE=\"number\"",
+            "the place of `Spotted` is `number`, which is not a message with two fields of type int32",
+        ),
         ("PLACE=7", "invalid type: integer `7`, expected a string"),
-        ("KEY=\"nobody\"", "the key of `Spotted` is `nobody`, which is no field of it"),
-        ("KEY=\"spot\"", "the key of `Spotted` is `spot`, which is no number"),
+        ("KEY=\"nobody\"", "the key of `Spotted` is `nobody`, which is not one of its fields"),
+        ("KEY=\"spot\"", "the key of `Spotted` is `spot`, which is not a number"),
     ] {
         let run = run_with("", &[definition]);
         assert_eq!(run.code, Some(2), "{}", run.text);

@@ -29,7 +29,7 @@ fn a_restart_of_a_library_goes_on_from_what_it_saved_and_kept() {
     let run = second(&component("K", "good.Keeper", &restart), &[library("good")]);
     let lines: Vec<&str> = run.text.lines().filter(|line| line.contains(" K ")).collect();
     let told = lines.join("\n");
-    assert!(told.contains("kept (2, [2, 255])") && told.contains("restarted (1), and goes on"), "{}", run.text);
+    assert!(told.contains("kept (2, [2, 255])") && told.contains("restarted (1), and continues"), "{}", run.text);
     let counts: Vec<&str> =
         lines.iter().filter_map(|line| line.split_once("counts ")).map(|(_, count)| count).collect();
     assert_eq!(counts[..4], ["1", "2", "3", "4"], "{}", run.text);

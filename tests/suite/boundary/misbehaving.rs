@@ -214,7 +214,7 @@ fn what_cannot_be_read_is_left_out_of_log_report_and_journal() {
 
 #[test]
 fn a_context_is_refused_to_other_threads_and_after_the_call() {
-    let expected = "from another thread, when no call went on, or by what it called, which was refused";
+    let expected = "from another thread, after the call, or by code that it called: this was refused";
     assert_fails(&beside_honest(&raw("uses a thread")), &[expected]);
     let other = component("Other", "raw.Actor", &property("does", "uses what another kept"));
     let run = beside_honest(&(raw("keeps") + &other));
@@ -233,7 +233,7 @@ fn a_provider_cannot_use_its_callers_context() {
         &(property("does", "calls") + "<reference name=\"callee\" target=\"Provider/callee\"/>"),
     );
     let run = beside_honest(&(provider + &caller));
-    assert_fails(&run, &["or by what it called, which was refused"]);
+    assert_fails(&run, &["or by code that it called: this was refused"]);
     assert!(run.report.get("raw").is_none(), "a call of another's context counted: {}", run.report);
 }
 

@@ -210,9 +210,15 @@ fn signals_that_a_library_takes_over_or_blocks_at_its_start_are_given_back_by_na
     for (does, expected) in [
         ("made: takes SIGINT", "took over the signal SIGINT in the constructor: it ends the run again"),
         ("begins: takes SIGINT", "took over the signal SIGINT in `initialize`: it ends the run again"),
-        ("made: resets SIGSEGV", "took over the signal SIGSEGV in the constructor: crashes are told by name again"),
+        (
+            "made: resets SIGSEGV",
+            "took over the signal SIGSEGV in the constructor: crashes are reported with the name of the library again",
+        ),
         ("made: resets SIGPIPE", "took over the signal SIGPIPE in the constructor: it is ignored again"),
-        ("made: takes SIGSEGV", "took over the signal SIGSEGV in the constructor: a crash may not be told by name"),
+        (
+            "made: takes SIGSEGV",
+            "took over the signal SIGSEGV in the constructor: a crash may not be reported with the name of the library",
+        ),
         ("made: blocks signals", "blocked the signals SIGINT, SIGTERM, SIGHUP, SIGSEGV"),
     ] {
         let output = assert_named(does, expected);
@@ -272,7 +278,7 @@ fn hardware_stops_before_code_of_a_library_ends_the_process() {
         assert_eq!((output.status.signal(), output.status.code() == Some(1)), (signal, signal.is_none()), "{does}");
         // Nobody waits for hardware without end.
         let output = ended_with(&bad("h.Motor", &format!("hangs in stop, {does}"), ""), &[]);
-        let expected = "error: the hardware of component `Bad` may still move: what stops it has not returned";
+        let expected = "error: the hardware of component `Bad` may still move: its stop function has not returned";
         assert!(stderr(&output).contains(expected), "{does}: {}", text(&output));
         assert_eq!((output.status.signal(), output.status.code() == Some(1)), (signal, signal.is_none()), "{does}");
     }

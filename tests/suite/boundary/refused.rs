@@ -137,7 +137,7 @@ fn a_library_with_names_that_steer_the_terminal() {
     ] {
         let path = from_c(&format!("steers-{name}"), Some(&METADATA.replacen(from, to, 1)), &[]);
         let said = refused(&path);
-        assert_says(&said, &["has metadata that cannot be read: the name ", shown, "give it another name"]);
+        assert_says(&said, &["has metadata that cannot be read: the name ", shown, "choose another name"]);
         assert!(!said.contains(['\u{1b}', '\u{202e}', '\u{7}']), "{said}");
     }
 }

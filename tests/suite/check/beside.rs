@@ -64,7 +64,12 @@ fn a_description_is_told_what_it_lacks() {
     assert_hint("empty", &told("empty", " \n"), "S0005", "write at least `<contribution xmlns=\"...\"/>`");
     let one = "<deployable xmlns:h=\"urn:hall\" composite=\"h:hall\"/>";
     let list = description(&format!("<deployables>{one}</deployables>"));
-    assert_hint("list", &told("list", &list), "S1004", "remove its tags: what is in it belongs in `contribution`");
+    assert_hint(
+        "list",
+        &told("list", &list),
+        "S1004",
+        "remove its start tag and end tag: its content belongs in `contribution`",
+    );
     assert_eq!(told("right", &description(one)), [""; 0]);
 }
 

@@ -41,7 +41,7 @@ fn without(names: &[&str]) -> String {
 fn a_robot_without_a_loop_is_told_what_it_does_not_do() {
     for (name, message) in [
         ("PathFollowerMS", "nothing moves `Robot1`"),
-        ("EventLuggageMS", "`Robot1` takes no luggage that waits"),
+        ("EventLuggageMS", "`Robot1` never takes waiting luggage"),
         ("GripperMS", "`Robot1` neither collects nor deposits luggage"),
         ("CollisionMS", "`Robot1` drives into other robots"),
         ("RobotListMS", "other robots do not know of `Robot1`"),

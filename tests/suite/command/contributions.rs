@@ -77,8 +77,7 @@ fn a_deployable_that_is_made_for_use_in_others_is_blamed_for_what_it_lacks() {
     let folder = contribution(&["a:hall"]);
     let inside = "<component name=\"Hall\"><implementation.composite name=\"a:hall\"/>\
         <property name=\"level\">40</property></component>";
-    let help = "= help: call only composites deployable that run by themselves: `user` uses this one, and gives it \
-        what it lacks";
+    let help = "= help: list only composites as deployable that run by themselves: `user` uses this one, and supplies what it lacks";
     for command in [&["check", "."][..], &["check", "sca-contribution.xml"], &["run", ".", "--virtual"]] {
         let (code, _, told) = saoms(folder.path(), command, "");
         assert!(code == 2 && told.contains("error[S2025, ASM60034]"), "{told}");

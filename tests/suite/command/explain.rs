@@ -31,7 +31,7 @@ fn a_mistyped_code_is_refused_with_the_nearest_one_and_the_others_are_explained(
     let output = saoms(&["explain", "S30O4", "S3001"]);
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).ends_with("those of a plugin with `--plugin PATH`\n"), "{}", stderr(&output));
-    assert!(stderr(&saoms(&["explain", "ASM60004"])).contains("help: explain the code that stands before it"));
+    assert!(stderr(&saoms(&["explain", "ASM60004"])).contains("help: explain the code before it"));
     assert!(stderr(&output).starts_with("error: there is no code `S30O4`\nhelp: did you mean `S3004`?\n"));
     assert!(stdout(&output).starts_with("S3001 "));
     assert!(stderr(&saoms(&["explain", "S509"])).contains("did you mean `S5009`?"), "not `S4509`");
@@ -88,7 +88,7 @@ fn several_files_need_a_folder() {
     }
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     let output = saoms(&["expand", "composites/hall.composite", "-o", "out.composite"]);
-    assert!(stderr(&output).contains("tip: this command writes to standard output: write `> FILE` behind it"));
+    assert!(stderr(&output).contains("tip: this command writes to standard output: add `> FILE` to write to a file"));
     let output = saoms(&["run", "composites/hall.composite", "--wiring"]);
     assert!(stderr(&output).contains("tip: this option belongs to `saoms check`"), "{}", stderr(&output));
     for (written, meant) in [("--time", "--for"), ("--duration", "--for"), ("--simulation", "--virtual")] {

@@ -64,10 +64,16 @@ fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
         format!("{head}<component name='A'><implementation.java class='no.Such'/><oops/></component></composite>");
     let (code, picture, error) = graph(&[&file("wrong.composite", &wrong)]);
     assert!(code == 0 && picture.contains("no such class is registered"), "{picture}");
-    assert!(error.starts_with("warning: drawn as far as it is understood; `saoms check "), "{error}");
+    assert!(
+        error.starts_with("warning: the picture is incomplete, since the composite has errors; `saoms check "),
+        "{error}"
+    );
     let (code, picture, error) = graph(&[&file("half-typed.composite", &wrong[..wrong.len() - 30])]);
     assert!(code == 0 && picture.contains("no such class is registered"), "{picture}");
-    assert!(error.starts_with("warning: drawn as far as it is understood; `saoms check "), "{error}");
+    assert!(
+        error.starts_with("warning: the picture is incomplete, since the composite has errors; `saoms check "),
+        "{error}"
+    );
     let (code, picture, error) = graph(&[&file("page.composite", "<html><body/></html>")]);
     assert!((code, picture.as_str()) == (2, "") && error.contains("error[S1001]"), "{error}");
     let (code, _, error) = graph(&["composites/hall.composite", "-o", "hall.jpeg"]);
@@ -209,7 +215,7 @@ fn severities_count_as_for_the_check_that_it_points_to() {
     let (code, _, told) = of("S2001=note");
     assert_eq!((code, told.as_str()), (0, ""));
     let (code, _, told) = of("S2001=error");
-    assert!(code == 0 && told.contains("shows what is wrong"), "{told}");
+    assert!(code == 0 && told.contains("shows them"), "{told}");
     let (code, _, told) = of("S2001=eror");
     assert!(code == 2 && told.contains("replace it with `error`"), "{told}");
 }

@@ -136,7 +136,7 @@ fn a_journal_that_was_moved_aside_is_read_as_one() {
     assert_eq!(few["journal"]["lost"], 0);
     let missing = saoms_in(folder.path(), &["why", "Robot004", "--at", "1s", "--report", "few.jsonl"]);
     let words = stdout(&missing) + &stderr(&missing);
-    assert!(words.contains("its journal begins at") || words.contains("--rotate-keep"), "{words}");
+    assert!(words.contains("its first record in the journal is at") || words.contains("--rotate-keep"), "{words}");
     std::os::unix::fs::symlink("few.jsonl", folder.path().join("link.jsonl")).unwrap();
     assert_eq!(report("link.jsonl"), few);
     fs::remove_file(folder.path().join("few.jsonl.1")).unwrap();
@@ -156,7 +156,7 @@ fn no_file_is_moved_over_an_input_or_another_output() {
     ] {
         let all = [&["run", "hall.2", "--virtual", "--rotate-size", "1kB"], arguments].concat();
         let (exit, _, errors) = answer(&saoms_in(folder.path(), &all));
-        assert!(exit == 2 && errors.contains("would be moved over") && errors.contains(taken), "{errors}");
+        assert!(exit == 2 && errors.contains("would be rotated onto") && errors.contains(taken), "{errors}");
     }
     assert_eq!(fs::read(folder.path().join("hall.2")).unwrap(), composite);
     let (exit, _, errors) = answer(&saoms_in(

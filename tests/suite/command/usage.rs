@@ -213,7 +213,7 @@ fn virtual_time_that_nothing_ends_says_so() {
     let fleet = file(&empty_folder("endless"), "one.composite", ONE_ROBOT);
     let mut child = command(&["run", &fleet, "--virtual"]).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-    let told = lines.any(|line| line.unwrap().contains("virtual time goes on until Ctrl-C"));
+    let told = lines.any(|line| line.unwrap().contains("virtual time continues until Ctrl-C"));
     let pid = i32::try_from(child.id()).unwrap();
     // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
     assert_eq!(unsafe { libc::kill(pid, libc::SIGINT) }, 0);

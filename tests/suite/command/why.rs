@@ -31,11 +31,11 @@ fn refused(folder: &Path, arguments: &[&str]) -> String {
 fn the_example_of_the_documentation_is_real() {
     let page = fs::read_to_string(root().join("docs/journal.md")).unwrap();
     let block = page.split("```console\n").nth(1).unwrap().split("```").next().unwrap();
-    let (command, expected) = block.split_once("report.json\nWhat ").unwrap();
+    let (command, expected) = block.split_once("report.json\nRobot7 ").unwrap();
     let command = command.rsplit_once("$ saoms ").unwrap().1;
     let arguments: Vec<&str> = command.split_whitespace().chain(["report.json"]).collect();
     let output = saoms_in(&folder("docs"), &arguments);
-    assert_eq!(stdout(&output), format!("What {expected}"));
+    assert_eq!(stdout(&output), format!("Robot7 {expected}"));
     assert_eq!(output.status.code(), Some(0));
 }
 
@@ -128,7 +128,7 @@ fn wrong_questions_are_told() {
 fn a_component_that_did_nothing_is_an_answer() {
     let output = saoms_in(&folder("nothing"), &["why", "Master", "--report", "report.json"]);
     assert_eq!(output.status.code(), Some(0));
-    assert!(stdout(&output).starts_with("Master wrote nothing to the journal in this run"));
+    assert!(stdout(&output).starts_with("Master has no records in the journal of this run"));
 }
 
 /// The report of a run whose oldest records were overwritten, made from a whole one.
@@ -142,13 +142,13 @@ fn what_was_overwritten_is_said() {
     fs::write(folder.join("part.json"), value.to_string()).unwrap();
     let output = saoms_in(&folder, &["why", "Robot7", "--at", "1s", "--report", "part.json"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stdout(&output).contains("... what led to this is not in the journal any more ..."));
+    assert!(stdout(&output).contains("... earlier causes are not in the journal any more ..."));
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.contains(&format!("record {root}, which led to this, was overwritten.")), "{told}");
     assert!(told.contains("run with `--journal FILE`"), "{told}");
     let told = refused(&folder, &["Environment", "--report", "part.json"]);
     assert!(
-        told.contains("what led to what `Environment` did cannot be told: what it did then was overwritten"),
+        told.contains("the causes of the action of `Environment` are unknown: what it did then was overwritten"),
         "{told}"
     );
 }

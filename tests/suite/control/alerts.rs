@@ -30,7 +30,7 @@ pub(super) fn until(running: &Running, kind: &str, is: impl Fn(&Value) -> bool) 
 #[test]
 fn a_robot_that_breaks_down_waits_for_a_person_until_somebody_takes_notice() {
     let running = Running::start(&fleet(), &["--stay"]);
-    assert_eq!(running.told(&["alerts"]), "nothing needs a person\n");
+    assert_eq!(running.told(&["alerts"]), "no alerts\n");
     running.until("Robot1", |robot| robot["values"]["state"] == "free");
     running.told(&["send", "luggage (2,1) to (4,9)"]);
     running.until("Robot1", |robot| robot["values"]["state"] == "carries luggage");
@@ -63,8 +63,8 @@ fn a_robot_that_breaks_down_waits_for_a_person_until_somebody_takes_notice() {
         sleep(Duration::from_millis(10));
     }
     assert!(running.told(&["alerts", "ack", "--all"]).starts_with("acknowledged: "));
-    assert_eq!(running.told(&["alerts", "ack", "--all"]), "nothing is acknowledged: nothing waited\n");
-    assert_eq!(running.told(&["alerts"]), "nothing needs a person\n");
+    assert_eq!(running.told(&["alerts", "ack", "--all"]), "no alert to acknowledge\n");
+    assert_eq!(running.told(&["alerts"]), "no alerts\n");
     assert!(running.told(&["alerts", "--all"]).contains("(acknowledged by "));
 
     // A new instance of the robot needs no help.

@@ -92,8 +92,8 @@ fn nobody_speaks_in_the_name_of_a_robot() {
             "stage": stage, "healer": healer, "healer_block": block(0, 0)})
     };
     for (topic, message, field, component, instead) in [
-        ("RLMSTOPIC", robot, "`robot` is 1", "Robot1", "send `gone` when the robot is off the floor"),
-        ("POSTOPIC", position, "`robot` is 2", "Robot2", "stop the robot with `estop`"),
+        ("RLMSTOPIC", robot, "`robot` is 1", "Robot1", "if the robot was removed from the floor, send `gone`"),
+        ("POSTOPIC", position, "`robot` is 2", "Robot2", "stop it with `estop`"),
         ("ELMSTOPIC", taken, "`robot` is 1", "Robot1", "for new luggage publish a request"),
         ("CSMSTOPIC", help("REQUEST", 0), "`critical` is 2", "Robot2", "send `breakdown` or `gone`"),
         ("CSMSTOPIC", help("INTENTION", 1), "`healer` is 1", "Robot1", "with a message on RMSTOPIC"),
@@ -106,8 +106,7 @@ fn nobody_speaks_in_the_name_of_a_robot() {
         assert!(line.contains(field), "{line}");
     }
     let info = running.told(&["topic", "info", "CSMSTOPIC"]);
-    let words =
-        "who speaks: `critical`, where `stage` is `REQUEST`\nwho speaks: `healer`, unless `stage` is `REQUEST`\n";
+    let words = "sender: `critical`, where `stage` is `REQUEST`\nsender: `healer`, unless `stage` is `REQUEST`\n";
     assert!(info.contains(words), "{info}");
     assert_eq!(running.component("Robot1")["values"]["state"], "free");
     running.told(&["down"]);
@@ -122,7 +121,7 @@ fn an_operator_says_that_a_robot_is_gone_and_back() {
     running.until("Robot1", state("free"));
     running.told(&["send", "luggage (9,9) to (1,9)"]);
     running.until("Robot1", |robot| robot["values"]["job"].is_string());
-    assert_eq!(running.told(&["send", "gone Robot1"]), "1 event taken\n");
+    assert_eq!(running.told(&["send", "gone Robot1"]), "1 event accepted\n");
     running.until("Robot1", |robot| robot["state"] == "idle");
     running.until("Master", |master| master["values"]["gone"] == json!([1]));
     running.until("World", |world| world["values"]["robots"] == 1);

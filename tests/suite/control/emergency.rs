@@ -15,7 +15,7 @@ fn robots_keep_their_blocks_and_jobs_until_they_are_released() {
     let stopped = running.until("Robot1", |robot| robot["values"]["state"] == "stopped");
     assert_eq!(stopped["emergency_stop"], true);
     let shown = running.told(&["status", "Robot1"]);
-    assert!(shown.contains("stopped at once") && shown.contains("waits for its release after a stop"), "{shown}");
+    assert!(shown.contains("emergency stop") && shown.contains("waits for its release after a stop"), "{shown}");
     let at = |robot: &Value| (robot["values"]["block"].clone(), robot["values"]["job"].clone());
     let executed = |robot: &Value| robot["executions"].as_u64().unwrap();
     let later = running.until("Robot1", |robot| executed(robot) > executed(&stopped) + 30);

@@ -53,8 +53,8 @@ fn a_fleet_with_code_that_hangs_stops_at_once_and_pauses() {
         let paused = running.told(&["pause"]);
         assert!(paused.starts_with("paused at "), "{at}: {paused}");
         let shown = running.told(&["status"]);
-        assert!(shown.contains("stopped at once"), "{at}: {shown}");
-        assert_eq!(running.told(&["resume"]), "goes on\n", "{at}");
+        assert!(shown.contains("emergency stop"), "{at}: {shown}");
+        assert_eq!(running.told(&["resume"]), "resumed\n", "{at}");
         running.told(&["down"]);
         assert_eq!(running.end().0, Some(1), "{at}");
     }

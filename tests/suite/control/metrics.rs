@@ -121,18 +121,19 @@ fn virtual_time_knows_no_lateness() {
 const HEAD: &str = "\
 # Metrics
 
-A running fleet gives its metrics to [Prometheus](https://prometheus.io) at `GET /metrics` of its
+A running fleet offers metrics for [Prometheus](https://prometheus.io) at `GET /metrics` of its
 [control](control.md), on the socket and, with the token, over the network:
 
 ```yaml
 scrape_configs:
   - job_name: saoms
     static_configs: [{targets: ['127.0.0.1:8080']}]
-    authorization: {credentials_file: /etc/prometheus/saoms.token}   # that of `saoms run --token-file`
+    authorization: {credentials_file: /etc/prometheus/saoms.token}   # the file of `saoms run --token-file`
 ```
 
-They are made from what the engine counts anyway when somebody asks for them, at most ten times a second; an execution
-costs the same with and without. Components are named by their paths. What a fleet is about, the components say:
+The metrics come from counters that the engine has anyway. They are computed on request, at most ten times a second, so
+they do not slow down executions. Labels name components by their paths. The metrics of the domain come from the
+components:
 
 | question | expression |
 | --- | --- |

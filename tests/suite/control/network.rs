@@ -21,7 +21,7 @@ fn commands_reach_a_fleet_at_its_address_with_its_token() {
     assert!(refused.contains("--token-file") && refused.contains("SAOMS_TOKEN_FILE"), "{refused}");
     let there = ["--fleet", url, "--token-file", file];
     let sent = running.told(&[&["send", "luggage (0,0) to (1,0)"][..], &there].concat());
-    assert_eq!(sent, "1 event taken\n");
+    assert_eq!(sent, "1 event accepted\n");
     let output = crate::support::command(&["status", "--fleet", url])
         .current_dir(running.folder())
         .env("SAOMS_TOKEN_FILE", file)
@@ -79,7 +79,7 @@ fn an_address_or_token_that_cannot_be_used_starts_nothing() {
         text(&output)
     };
     let outer = refused(&["--serve", "0.0.0.0:0"]);
-    assert!(outer.contains("nothing would be encrypted") && outer.contains("--serve-unencrypted"), "{outer}");
+    assert!(outer.contains("nothing is encrypted") && outer.contains("--serve-unencrypted"), "{outer}");
     assert!(refused(&["--serve", "8080"]).contains("expected an address and a port"));
     assert!(refused(&["--serve", "127.0.0.1:0", "--token-file", "open"]).contains("chmod 600"));
     assert!(refused(&["--serve", "127.0.0.1:0", "--token-file", "none"]).contains("--token-file none"));

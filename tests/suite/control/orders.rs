@@ -30,7 +30,7 @@ fn a_fleet_is_listed_shown_and_ended() {
 fn work_is_sent_and_told_of() {
     let running = Running::start(&fleet(), &["--stay"]);
     running.until("Robot1", |robot| robot["values"]["state"] == "free");
-    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1); luggage (2,2) to (4,2)"]), "2 events taken\n");
+    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1); luggage (2,2) to (4,2)"]), "2 events accepted\n");
     let robot = running.until("Robot1", |robot| robot["values"]["job"].is_string());
     assert_eq!(robot["values"]["job"], "luggage 1000001 from (2,1) to (4,1)");
     running.until("World", |world| world["values"]["delivered"] == 2);
@@ -73,7 +73,7 @@ fn events_of_classes_are_sent() {
     let library = crate::plugins::library("saoms_sprinkler");
     let text = crate::support::project("plugins/sprinkler/fleet.composite");
     let running = Running::start(&text, &["--stay", "--plugin", library.to_str().unwrap()]);
-    assert_eq!(running.told(&["send", "fire at=(7,7) size=1 to Hall2"]), "1 event taken\n");
+    assert_eq!(running.told(&["send", "fire at=(7,7) size=1 to Hall2"]), "1 event accepted\n");
     let wrong = running.refused(&["send", "fire at=(7,7) sise=1 to Hall2"]);
     assert!(wrong.contains("has no field `sise`") && wrong.contains("did you mean `size`?"), "{wrong}");
     running.told(&["down"]);
@@ -131,7 +131,7 @@ fn what_came_from_outside_is_in_the_journal_and_happens_again() {
     let options = ["--stay", "--journal", "first.ndjson", "--events", "events.txt"];
     let mut running = Running::start_beside(folder, &fleet(), &options);
     running.until("Robot1", |robot| robot["values"]["state"] == "free");
-    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event taken\n");
+    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event accepted\n");
     // Work that is left when Robot2 starts could be claimed by it, and waits while it is stopped.
     running.until("World", |world| world["values"]["delivered"] == 2);
     assert_eq!(running.told(&["send", "start Robot2"]), "done\n");

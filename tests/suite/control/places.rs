@@ -47,7 +47,7 @@ fn the_socket_is_the_users_alone_and_replaces_no_file() {
     assert_eq!(running.told(&["ps"]).lines().count(), 2);
     assert!(!folder.join("dead-1.sock").exists());
     let refused = running.refused(&["run", "fleet.composite", "--control", "fleet.composite"]);
-    assert!(refused.contains("there is a file, which is no socket"), "{refused}");
+    assert!(refused.contains("a file that is not a socket is there"), "{refused}");
     assert_eq!(fs::read_to_string(running.folder().join("fleet.composite")).unwrap(), fleet());
     let refused = running.refused(&["run", "fleet.composite", "--control", socket.to_str().unwrap()]);
     assert!(refused.contains("another program listens there"), "{refused}");

@@ -21,7 +21,7 @@ fn a_fleet_in_real_time_pauses_and_goes_on() {
     let shown = running.told(&["status"]);
     assert!(shown.contains("): paused, "), "{shown}");
     // Orders take effect meanwhile.
-    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event taken\n");
+    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event accepted\n");
     assert_eq!(running.told(&["estop", "Robot1"]), "stopped: Robot1\n");
     running.until("Robot1", |robot| robot["values"]["state"] == "stopped");
     running.told(&["release"]);
@@ -29,7 +29,7 @@ fn a_fleet_in_real_time_pauses_and_goes_on() {
     assert!(refused.contains("real time"), "{refused}");
     let refused = running.refused(&["speed", "2"]);
     assert!(refused.contains("real time"), "{refused}");
-    assert_eq!(running.told(&["resume"]), "goes on\n");
+    assert_eq!(running.told(&["resume"]), "resumed\n");
     running.until("World", |world| world["values"]["delivered"] == 1);
     // A paused fleet ends, too.
     running.told(&["pause"]);
@@ -46,7 +46,7 @@ fn a_fleet_in_virtual_time_is_stepped_steered_and_runs_again_with_the_same_trace
         status["status"]["time_s"].as_f64().unwrap()
     };
     assert_eq!(time(&running), 0.0);
-    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event taken\n");
+    assert_eq!(running.told(&["send", "luggage (2,1) to (4,1)"]), "1 event accepted\n");
     assert_eq!(running.told(&["step"]), "advances to 0.000 s\n");
     running.until("Robot1", |robot| robot["executions"] == 1);
     assert_eq!(running.told(&["step", "10s"]), "advances to 10.000 s\n");
@@ -55,9 +55,9 @@ fn a_fleet_in_virtual_time_is_stepped_steered_and_runs_again_with_the_same_trace
     let wrong = running.refused(&["speed", "fast"]);
     assert!(wrong.contains("found `fast`, expected a factor"), "{wrong}");
     assert_eq!(running.told(&["speed", "20"]), "the speed is 20\n");
-    assert_eq!(running.told(&["resume"]), "goes on\n");
+    assert_eq!(running.told(&["resume"]), "resumed\n");
     running.until("Robot2", |robot| robot["executions"].as_u64() > Some(20));
-    assert_eq!(running.told(&["send", "luggage (4,1) to (2,1)"]), "1 event taken\n");
+    assert_eq!(running.told(&["send", "luggage (4,1) to (2,1)"]), "1 event accepted\n");
     running.told(&["stop", "Robot2"]);
     running.until("World", |world| world["values"]["delivered"] == 2);
     running.told(&["speed", "max"]);

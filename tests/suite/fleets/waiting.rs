@@ -53,7 +53,7 @@ fn a_robot_says_once_for_whom_it_waits_and_when_that_ends() {
             assert!(!*is_waiting, "{who} says it twice: {}", run.log());
             assert!(what.contains(" for robot ") && what.contains(" since "), "{what}");
             (*is_waiting, told) = (true, told + 1);
-        } else if what.starts_with("goes on after waiting ") {
+        } else if what.starts_with("continues after waiting ") {
             assert!(*is_waiting, "{who} did not wait: {}", run.log());
             *is_waiting = false;
         }
@@ -124,7 +124,7 @@ fn a_robot_whose_world_does_not_answer_says_so_after_a_minute() {
         waits(Fleet::of_text(&hall).slow("World", Duration::from_millis(1250), seconds(100))),
         [
             "[61.300 s] Robot7: has been waiting for `World`, which is busy, since 1.300 s",
-            "[101.300 s] Robot7: goes on after waiting 100.000 s",
+            "[101.300 s] Robot7: continues after waiting 100.000 s",
         ]
     );
     let slow = hall.replace("value=\"World\"/>", "value=\"World\"/><property name=\"moveTime\" value=\"20s\"/>");

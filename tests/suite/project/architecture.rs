@@ -167,10 +167,8 @@ const DOMAIN: &[&str] =
     &["luggage", "collision", "stranded", "robot", "airport", "charg", "battery", "healer", "scenario"];
 
 /// Examples in messages and helps, and names of the contract, that may say such a word.
-const EXAMPLES: &[&str] = &[
-    "`hall/Robot001`", "`robots > 10", "unibg.robotics.tca", "value_name = \"ROBOT\"", "that the robot did nothing",
-    "no such robot",
-];
+const EXAMPLES: &[&str] =
+    &["`hall/Robot001`", "`robots > 10", "unibg.robotics.tca", "value_name = \"ROBOT\"", "no such robot"];
 
 /// A line of code without comments and without the examples.
 fn without_examples(line: &str) -> String {

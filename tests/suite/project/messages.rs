@@ -21,8 +21,9 @@ const HEAD: &str = "\
 The topics of the classes that ship, under their names before any `topicRename`, and the fields of their messages. A state
 topic keeps the newest message of each publisher, or of each key; an event topic loses none. A plugin in Rust has the same
 messages from `saoms_components::messages`; another one declares them with these names and types. `saoms check --wiring`
-shows the topics of a fleet. Where a field says who speaks, a message from outside in the name of a component of the fleet
-is refused. This page is generated from the declarations of the classes and the docs of the fields.
+shows the topics of a fleet. *Sender* is the field with the number of the component that sends the message: a message from
+outside with the number of a component of the fleet is refused. This page is generated from the declarations of the
+classes and the docs of the fields.
 ";
 
 /// A topic, and the classes and loops at its ends.
@@ -139,14 +140,14 @@ fn plain(doc: &str) -> String {
 fn section(ends: &Ends<'_>, meanings: &Meanings, types: &mut BTreeMap<String, Value>) -> String {
     let Ends { topic, publishers, readers } = ends;
     let list = |names: &BTreeSet<&str>| match names.len() {
-        0 => "nothing that ships".to_owned(),
+        0 => "no class that ships".to_owned(),
         _ => names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
     };
     let key = topic.schema["key"].as_str().map_or_else(String::new, |key| format!(", one for each `{key}`"));
     let speakers: Vec<String> = topic.speakers.iter().map(ToString::to_string).collect();
     let speakers = match &speakers[..] {
         [] => String::new(),
-        all => format!(" Who speaks: {}.", all.join("; ")),
+        all => format!(" Sender: {}.", all.join("; ")),
     };
     format!(
         "\n## {}\n\n{} topic of `{}`{key}. Published by {}; read by {}.{speakers}\n\n{}",

@@ -47,7 +47,7 @@ pub(in crate::boundary) unsafe fn put_findings(sink: FindingSink, findings: &[Fi
 pub(in crate::boundary) unsafe fn take_finding(findings: &mut Findings, view: *const FindingView) {
     if findings.len() >= MOST_FINDINGS {
         findings.truncate(MOST_FINDINGS);
-        let text = format!("found more than {MOST_FINDINGS} faults: the others are not told");
+        let text = format!("found more than {MOST_FINDINGS} faults: the others are not shown");
         return findings.push(Ok(Finding::new(Place::default(), text)));
     }
     // SAFETY: as the caller promises.

@@ -119,16 +119,16 @@ fn word_start(line: &str) -> usize {
 pub(super) fn meaning(word: &str) -> &'static str {
     match word {
         "at" => "once, at a time from the start",
-        "from" => "again and again, from a time on",
+        "from" => "repeatedly, from this time on",
         "then" => "after the event of the line before",
         "every" => "the time from one event to the next",
-        "until" => "the time after which there are no more",
+        "until" => "the time after which the event is not repeated",
         "luggage" => "luggage waits at a block to be brought `to` another one",
-        "landing" => "an airplane lands, and so many pieces are expected",
-        "takeoff" => "an airplane is about to take off, and so many pieces are expected",
+        "landing" => "an airplane lands with this number of pieces of luggage",
+        "takeoff" => "an airplane takes off with this number of pieces of luggage",
         "breakdown" => "a robot breaks down where it is",
-        "gone" => "somebody takes a robot off the floor: its block is free, and its luggage waits again",
-        "end" => "nothing; the run goes on until then",
+        "gone" => "an operator removes a robot from the floor: its block is free, and its luggage waits again",
+        "end" => "nothing happens; the run does not end before this time",
         _ => "",
     }
 }

@@ -21,8 +21,8 @@ pub(super) fn read(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Res
     let name = words.peek().unwrap_or_default();
     let event = match KINDS.contains(&name) {
         true if !vocabulary.plays(name) => {
-            let message = format!("found `{name}`, which this class does not play");
-            return Err(words.fault(name, message).help(format!("it plays {}", vocabulary.expected())));
+            let message = format!("found `{name}`, an event that this class does not support");
+            return Err(words.fault(name, message).help(format!("it supports {}", vocabulary.expected())));
         }
         true => own(words)?,
         false => return of_class(words, vocabulary),

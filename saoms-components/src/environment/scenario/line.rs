@@ -80,9 +80,9 @@ pub(in crate::environment) fn read_outside(
 pub(super) fn read(text: &str, line: &str, before: Before, vocabulary: Vocabulary<'_>) -> Result<Line, TextFault> {
     read_line(text, line, before, vocabulary).map_err(|fault| {
         let Some(site) = site(line) else { return meant::proposed(text, line, (before, vocabulary), fault) };
-        let message = format!("found the site `{site}`, which stands only before events from outside (`--events`)");
+        let message = format!("found the site `{site}`, which is allowed only before events from outside (`--events`)");
         let fault = Tokenizer::of(text, line).fault(site, message);
-        fault.help("remove it: the events of a scenario are for the site in which its environment is")
+        fault.help("remove it: the events of a scenario are for the site of its environment")
     })
 }
 
@@ -115,8 +115,8 @@ pub(super) fn read_line(text: &str, line: &str, before: Before, vocabulary: Voca
         return Err(words.fault(start, message).instead(Some(if is_repeated { "from" } else { "at" })));
     }
     if start == "then" && before == Before::Endless {
-        let message = "the line before has no end, so nothing can follow it";
-        return Err(words.fault(start, message).help("end it: `100 times`, or `until 60s`"));
+        let message = "the line before never ends, so no event can follow it";
+        return Err(words.fault(start, message).help("add an end: `100 times`, or `until 60s`"));
     }
     let time = drawn(&mut words, time)?;
     let every = words.take("every").then(|| every(&mut words)).transpose()?;

@@ -63,7 +63,7 @@ impl Recordable for ClassicCollisionDecision {
                 record!(waits_one_period: "waits one period: robot {robot} has the lower number", robot)
             }
             ClassicCollisionDecision::GoOn => record!(goes_first: "goes first: it has the lower number"),
-            ClassicCollisionDecision::GoOnAgain => record!(goes_on: "goes on"),
+            ClassicCollisionDecision::GoOnAgain => record!(goes_on: "continues"),
         }
     }
 }

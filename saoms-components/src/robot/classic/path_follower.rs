@@ -105,7 +105,7 @@ impl Recordable for ClassicPathDecision {
             ClassicPathDecision::Handle(Action { luggage, .. }) => {
                 record!(deposits_luggage: "deposits luggage {luggage}", luggage)
             }
-            ClassicPathDecision::Go { .. } | ClassicPathDecision::GoCharging { .. } => record!(goes_on: "goes on"),
+            ClassicPathDecision::Go { .. } | ClassicPathDecision::GoCharging { .. } => record!(goes_on: "continues"),
         }
     }
 }

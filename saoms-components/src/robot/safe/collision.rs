@@ -64,7 +64,7 @@ impl Recordable for SafeCollisionDecision {
     fn record(&self) -> Record {
         match *self {
             SafeCollisionDecision::Wait(_, robot) => record!(waits_for_robot: "waits for robot {robot}", robot),
-            SafeCollisionDecision::GoOn => record!(goes_on: "goes on"),
+            SafeCollisionDecision::GoOn => record!(goes_on: "continues"),
         }
     }
 }

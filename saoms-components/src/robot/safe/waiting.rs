@@ -62,7 +62,7 @@ impl Waiting {
     pub(super) fn end(&mut self, context: &mut Context<'_>) {
         if let Some(Progress { since, is_told: true, .. }) = self.way.take() {
             let waited = Time::from_nanos(context.now().as_nanos() - since.as_nanos());
-            info!(context, "goes on after waiting {waited}");
+            info!(context, "continues after waiting {waited}");
         }
     }
 }

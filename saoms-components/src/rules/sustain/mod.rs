@@ -34,8 +34,9 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5006",
         name: "unsustainable",
-        meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or all \
-            of it from that of one robot, or it comes, without end, faster than the robots can deliver it and charge.",
+        meaning: "The batteries of the robots do not last for the work: luggage is too far from every charger, or one \
+            robot's charger is too far from all of it, or luggage without an end comes faster than the robots \
+            can deliver it and charge.",
         severity: Severity::Error,
         rule: None,
     },

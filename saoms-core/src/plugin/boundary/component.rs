@@ -101,7 +101,7 @@ pub(super) unsafe fn construct(
     match result {
         Ok(()) if is_content => Ok((instance, Ok(()))),
         Ok(()) => {
-            Ok((instance, Err(with_findings("the constructor found something, and returned no failure".to_owned()))))
+            Ok((instance, Err(with_findings("the constructor reported a finding, but returned no failure".to_owned()))))
         }
         Err(failure) => Err(with_findings(failure.message().to_owned())),
     }
@@ -199,8 +199,8 @@ impl DynComponent for ImportedComponent {
         let _entered = enter(self.owner, Function::WaitsFor);
         // SAFETY: as in `save`.
         call_for_bytes(&mut bytes, |text, error| unsafe { waits_for(instance, text, error) })?;
-        let text =
-            String::from_utf8(bytes).map_err(|_| Failure::new("the text that says what it waits for is not UTF-8"))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| Failure::new("the text that it returned as the reason for its wait is not UTF-8"))?;
         Ok(Some(text).filter(|text| !text.is_empty()))
     }
 

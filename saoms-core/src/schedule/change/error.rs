@@ -82,7 +82,7 @@ impl fmt::Display for StartError {
             StartError::Realtime(error) => error.fmt(formatter),
             StartError::Observer(failure) => failure.fmt(formatter),
             StartError::Thread(error) => {
-                write!(formatter, "the system gives no thread to run the fleet on: {error}")
+                write!(formatter, "the system cannot create a thread for the fleet: {error}")
             }
         }
     }

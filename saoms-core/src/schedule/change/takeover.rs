@@ -135,7 +135,7 @@ impl Body {
         thread::Builder::new()
             .name("saoms-change".to_owned())
             .spawn(run)
-            .map_err(|error| Failure::new(format!("the system gives no thread: {error}")))?;
+            .map_err(|error| Failure::new(format!("the system cannot create a thread: {error}")))?;
         let limit = shared.settings.grace;
         match receiver.recv_timeout(limit) {
             Ok((body, Ok(()))) => Ok(body),

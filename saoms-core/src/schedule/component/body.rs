@@ -360,9 +360,9 @@ pub(crate) fn subject(name: &str) -> String {
 #[cold]
 fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
     match fault {
-        TaskFaultKind::Fails => Err(Failure::new("a fault was put into this execution")),
+        TaskFaultKind::Fails => Err(Failure::new("this execution fails by fault injection")),
         #[expect(clippy::panic, reason = "a panic is asked for")]
-        TaskFaultKind::Panics => panic!("a fault was put into this execution"),
+        TaskFaultKind::Panics => panic!("this execution fails by fault injection"),
         TaskFaultKind::Stalls(time) => {
             std::thread::sleep(time);
             Ok(())

@@ -108,7 +108,7 @@ impl ComponentHost<'_> {
         }
         let reserved = Sections::is_reserved(path);
         if reserved {
-            self.log(Level::Warning, format_args!("`{path}` of the report is the program's own, and stays as it is"));
+            self.log(Level::Warning, format_args!("`{path}` of the report belongs to the program, and is not changed"));
         }
         !reserved
     }

@@ -246,7 +246,7 @@ impl Host for ComponentHost<'_> {
             self.part.has_raised = true;
             self.part.recorder.acted();
         } else if self.part.spent.has_line() {
-            let text = format!("the event `{event}` reaches nobody: no component that takes it runs in this site");
+            let text = format!("the event `{event}` has no receiver: no component that takes it runs in this site");
             self.emit(Occurrence::Log { level: Level::Warning, text });
         }
         Ok(())

@@ -148,7 +148,7 @@ impl Body {
             return Ok(());
         };
         let restored = contained(|| instance.restore(&saved)).and_then(|restored| restored);
-        restored.map_err(|failure| Failure::new(format!("could not go on from its saved state: {failure}")))?;
+        restored.map_err(|failure| Failure::new(format!("could not continue with its saved state: {failure}")))?;
         (lasting.saved, lasting.continued) = (Some(saved), true);
         lasting.counted.clear();
         Ok(())

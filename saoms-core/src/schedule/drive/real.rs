@@ -122,8 +122,7 @@ impl Load {
             let _ = sys::set_normal(sys::thread_id());
         }
         if !std::mem::replace(&mut self.warned, true) {
-            let text =
-                "the executions of this fleet take more time than there is: they are late, and some will be missed";
+            let text = "the executions of this fleet need more processor time than is available: they start late, and some will be missed";
             shared.note(Level::Warning, text.to_owned());
         }
     }

@@ -49,7 +49,10 @@ pub(crate) fn wait_until(shared: &Arc<Shared>, reached: impl Fn(&Engine) -> bool
             && let Err(error) = spawn_timer(shared, role)
         {
             // Without a thread no component can shut down.
-            shared.note(Level::Error, format!("components could not shut down: the system gives no thread: {error}"));
+            shared.note(
+                Level::Error,
+                format!("components could not shut down: the system cannot create a thread: {error}"),
+            );
             shared.lock().phase = RunPhase::Ended;
             return announce_end(shared);
         }

@@ -123,7 +123,7 @@ fn sleep<'a>(shared: &'a Shared, mut engine: std::sync::MutexGuard<'a, Engine>) 
 fn endless_warning() -> String {
     let voters: String = RunSummary::linked().iter().map(|summary| format!(", or {}", summary.voters)).collect();
     format!(
-        "no component says when its work is done, so virtual time goes on until Ctrl-C: \
+        "no component says when its work is done, so virtual time continues until Ctrl-C: \
          give the run an end with `--for`{voters}"
     )
 }

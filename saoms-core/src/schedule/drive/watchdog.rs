@@ -75,7 +75,7 @@ fn take_over(shared: &Arc<Shared>, mut engine: std::sync::MutexGuard<'_, Engine>
     if let Err(error) = spawn(shared) {
         shared.note(
             Level::Warning,
-            format!("slow executions are not detected any more: the system gives no thread: {error}"),
+            format!("slow executions are not detected any more: the system cannot create a thread: {error}"),
         );
     }
     real::run(shared, role);

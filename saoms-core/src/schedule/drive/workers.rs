@@ -89,7 +89,8 @@ pub(super) fn hand_over<'a>(shared: &'a Arc<Shared>, mut engine: MutexGuard<'a, 
                 engine.enqueue(index, 0);
             }
         }
-        shared.note(Level::Warning, format!("slow components have to wait: the system gives no thread: {error}"));
+        shared
+            .note(Level::Warning, format!("slow components have to wait: the system cannot create a thread: {error}"));
     }
     engine
 }

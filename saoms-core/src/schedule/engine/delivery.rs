@@ -98,8 +98,7 @@ impl Engine {
     fn unkept(&mut self, sender: u32, topic: TopicId, now: u64) {
         let topic = Arc::clone(self.bus.name(topic));
         let keys = format!(
-            "has published {MOST_KEYS} keys on topic `{topic}`, which is the most: messages of further keys are lost; use the \
-             keys again, or an event topic"
+            "has published {MOST_KEYS} keys on topic `{topic}`, the maximum: messages with other keys are lost; reuse keys, or use an event topic"
         );
         let Some(slot) = self.slots.get_mut(sender as usize) else {
             let reason = format!("`{OUTSIDE_NAME}` {keys}");

@@ -44,7 +44,7 @@ pub enum Order {
         /// Its path.
         component: String,
     },
-    /// Gives a property that is declared `live` another value.
+    /// Changes a property that is declared `live`.
     Set {
         /// The path of the component.
         component: String,

@@ -42,7 +42,9 @@ impl Order {
 
 fn read(line: &str, word: &str, mut words: Words<'_>, time: Option<&str>) -> Result<TimedOrder, LineFault> {
     if line.trim_start().starts_with("from") {
-        return Err(LineFault::new(words.bytes(line.trim_start().split_at(4).0), "an order happens once").instead("at"));
+        return Err(
+            LineFault::new(words.bytes(line.trim_start().split_at(4).0), "an order is carried out once").instead("at")
+        );
     }
     let at = time.map(|time| {
         let after = parse_duration(time).map_err(|message| LineFault::new(words.bytes(time), message))?;
@@ -73,7 +75,7 @@ fn read(line: &str, word: &str, mut words: Words<'_>, time: Option<&str>) -> Res
             let topic = words.expected("a topic")?.to_owned();
             Order::Publish { topic, message: words.json("a message in JSON")? }
         }
-        _ => return Err(LineFault::new(words.bytes(word), format!("found `{word}`, which is no order"))),
+        _ => return Err(LineFault::new(words.bytes(word), format!("`{word}` is not an order"))),
     };
     words.end()?;
     Ok(TimedOrder { at: at.transpose()?, order })
@@ -124,7 +126,7 @@ impl<'l> Words<'l> {
         let word = self.expected(COMPONENT)?;
         match word.trim_end_matches(';') {
             path if path == word => Ok(word.to_owned()),
-            _ => Err(LineFault::new(self.bytes(word), "an order has a line of its own: found `;`")),
+            _ => Err(LineFault::new(self.bytes(word), "found `;`: write each order on a line of its own")),
         }
     }
 
@@ -158,7 +160,7 @@ impl<'l> Words<'l> {
         let mut components = Vec::new();
         while !self.is_over() {
             if self.take("by") {
-                return Ok((components, Some(self.expected("the name of somebody")?.to_owned())));
+                return Ok((components, Some(self.expected("a name after `by`")?.to_owned())));
             }
             components.push(self.component()?);
         }
@@ -228,7 +230,7 @@ impl<'l> Words<'l> {
         }
         let rest = self.rest().trim_end();
         let message = match rest.starts_with(';') {
-            true => "an order has a line of its own: found `;`".to_owned(),
+            true => "found `;`: write each order on a line of its own".to_owned(),
             false => format!("found `{rest}`, expected the end of the line"),
         };
         Err(LineFault::new(self.bytes(rest), message))

@@ -137,7 +137,7 @@ impl Engine {
         let names: Vec<&str> = components.iter().map(|index| &*self.slots[*index as usize].name).collect();
         let by = by.map(|name| format!(" by {name}")).unwrap_or_default();
         let whom = match names[..] {
-            [] if is_stopped => "no component moves anything".to_owned(),
+            [] if is_stopped => "no component controls hardware".to_owned(),
             [] => "no component was stopped".to_owned(),
             _ => names.join(", "),
         };

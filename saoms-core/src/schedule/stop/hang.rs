@@ -33,7 +33,8 @@ pub(super) fn watch(fleet: &Arc<Shared>) {
         }
     };
     if let Err(error) = thread::Builder::new().name("saoms-hardware".to_owned()).spawn(watch) {
-        let text = format!("hardware of components that hang is not stopped: the system gives no thread: {error}");
+        let text =
+            format!("hardware of components that hang is not stopped: the system cannot create a thread: {error}");
         fleet.note(Level::Warning, text);
     }
 }

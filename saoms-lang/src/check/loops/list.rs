@@ -140,7 +140,7 @@ fn fits_together(one: &LoopElement, report: &mut Report<'_>) -> bool {
         return false;
     }
     if let (Some(before), Some(after)) = (&one.before, &one.after) {
-        let message = format!("the loop {} has two places", quoted(&one.name));
+        let message = format!("the loop {} has both `before` and `after`", quoted(&one.name));
         let one = Diagnostic::new(code, after.location, message).label(before.location, "the `before`");
         report.push(one.help("keep either `before` or `after`"));
         return false;
@@ -154,7 +154,8 @@ fn unchanged(one: &LoopElement, report: &mut Report<'_>) {
     if says_something || !one.properties.is_empty() || one.is_misread {
         return;
     }
-    let message = format!("this has no effect: the class of the component has the loop {}", quoted(&one.name));
+    let message =
+        format!("this element has no effect: the component's class has the loop {} already", quoted(&one.name));
     let one = Diagnostic::new(&codes::LOOP_UNCHANGED, one.tag(), message);
     report.push(one.help("remove it, or write what to change: `class`, `before`, `after`, `remove` or properties"));
 }

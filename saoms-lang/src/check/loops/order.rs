@@ -43,7 +43,7 @@ pub(super) fn sort<'a>(
                 format!("the loop {} is placed beside {}, which is removed", quoted(&one.name), quoted(target));
             let one = Diagnostic::new(&codes::LOOP_ORDER, target.location, message);
             let one = one.label(removal.name.location, "removed here");
-            report.push(one.help("place it beside another loop, or keep that one"));
+            report.push(one.help("place it before or after another loop, or keep the removed loop"));
             is_sound = false;
         } else if !known.contains(target.as_str()) {
             // One that is given and wrong is reported already.

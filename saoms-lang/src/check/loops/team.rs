@@ -75,8 +75,7 @@ impl TeamDiagnostics<'_, '_> {
         };
         let from = origin(self.loops[at].class.and_then(|one| one.origin()));
         let message = format!(
-            "the loop {} of {from} works on the struct of its knowledge, but that of component {component} is built \
-             into {}",
+            "the loop {} of {from} needs the Rust struct of its knowledge, but that of component {component} is built into {}",
             self.name(at),
             origin(class.origin())
         );
@@ -137,7 +136,7 @@ impl TeamDiagnostics<'_, '_> {
         match by.map(|by| (self.place(by), self.name(by))) {
             Some((Some(place), name)) => one.label(place, format!("{name} {what}")).help("keep one of them"),
             Some((None, name)) => one.help(format!("the loop {name} of class {class} {what}")),
-            None => one.help(format!("class {class} has {it} itself")),
+            None => one.help(format!("class {class} declares {it}")),
         }
     }
 

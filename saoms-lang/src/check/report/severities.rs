@@ -210,7 +210,7 @@ impl Severities {
             if one.severity == Severity::Error && is_lowered && is_fixed {
                 let label = format!("not set to `{}`", rule.set.level.name());
                 one.labels.push(Label { location: rule.set.at, text: label });
-                one.help.push("its severity cannot be lowered: nothing can run with it".to_owned());
+                one.help.push("its severity cannot be lowered: no fleet can run with this error".to_owned());
                 return;
             }
             if let SeverityLevel::Set(severity) = rule.set.level {

@@ -123,13 +123,13 @@ impl<'f, 'a> Languages<'f, 'a> {
                 (false, true) => "outside of sites".to_owned(),
                 (false, false) => format!("of the site `{}`", member.site),
             };
-            let message = format!("no component {place} takes the event `{name}`: it has no effect");
+            let message = format!("no component {place} takes the event `{name}`, so the event has no effect");
             let classes = self.events().get(name).map_or(&[][..], |event| &event.classes);
             let classes: Vec<String> = classes.iter().take(3).map(|class| format!("`{class}`")).collect();
             let finding = Finding::new(Place::property(property).part(text, call.name.bytes.clone()), message);
             let finding = finding.help(match elsewhere.is_empty() {
                 true => format!("add a component of a class that takes it, such as {}", classes.join(", ")),
-                false => format!("it is taken {}: play it there", elsewhere.join(", ")),
+                false => format!("components {} take it: move the event there", elsewhere.join(", ")),
             });
             let one = diagnostic(&codes::EVENT_UNTAKEN, Severity::Warning, &finding, subject, &|_| None, report);
             one.into_iter().for_each(|one| report.push(one));

@@ -181,8 +181,8 @@ impl All<'_> {
         users.sort_by_key(|end| end.component);
         users.dedup_by_key(|end| end.component);
         let hear = match users.len() {
-            1 => "hears only itself",
-            _ => "hear only each other",
+            1 => "receives only its own messages",
+            _ => "receive only their own messages",
         };
         let message =
             format!("{} {hear} on topic {}: others use {}", self.who(&users), quoted(&topic.name), quoted(&meant.name));

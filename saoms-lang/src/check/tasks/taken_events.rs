@@ -42,7 +42,7 @@ impl<'a> TakenEvents<'a> {
             let taken = format!("component {component} takes the event {}", quoted(&event.name));
             let word = |language: &&PropertyLanguage| language.words.contains(&event.name.as_str());
             if let Some(language) = PropertyLanguage::linked().find(word) {
-                let message = format!("{taken}, which is a word of the language {}", quoted(language.name));
+                let message = format!("{taken}, which is a reserved word of the {} language", quoted(language.name));
                 let one = Diagnostic::new(&codes::EVENT_MISMATCH, place, message);
                 let class = quoted(&declaration.name);
                 report

@@ -149,7 +149,7 @@ fn without_site([one, two]: [&Member<'_>; 2], value: &str, severity: Severity) -
     // What they are both wired to would be in another site than one of them.
     let help = match targets(one).is_disjoint(&targets(two)) {
         true => format!(
-            "give each its own site, as in `saoms:site=\"{name}\"`: IDs need to differ only within a site; to let them \
+            "give each its own site, such as `saoms:site=\"{name}\"`: IDs need to differ only within a site; to let them \
              work together, {own}"
         ),
         false => format!("both are wired to one component, so they work together: {own}"),

@@ -132,7 +132,7 @@ impl<'a> Unfolding<'a, '_, '_> {
         let here = self.open.last().map(|open| component.origin.element(&open.composite.document));
         let there = first.component.origin.element(&first.composite.document);
         if by.is_none() && self.open.len() == 1 && first.composite.file() != component.origin.file() {
-            one = one.help("files that are given together are one fleet: if they are two, give each of them alone");
+            one = one.help("files given together form one fleet: for two fleets, run the command once for each file");
         }
         self.report.push(match here {
             Some(here) if !first.is_copy && is_same(here, there) => {

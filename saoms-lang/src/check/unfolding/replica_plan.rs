@@ -176,7 +176,7 @@ impl<'a> Plan<'a> {
                 }
                 Some(first) => {
                     report.line(row.key.location);
-                    let message = format!("two rows are about the replica {}", quoted(&row.key));
+                    let message = format!("two rows are for the replica {}", quoted(&row.key));
                     let one = Diagnostic::new(&codes::OVERRIDES, row.key.location, message);
                     report.push(one.label(table.rows[*first].key.location, "the first").help("merge them"));
                 }

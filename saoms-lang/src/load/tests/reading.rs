@@ -48,13 +48,12 @@ fn a_file_that_is_no_text_is_told_what_it_is() {
     says(
         b"<?xml version='1.0' encoding = \"ISO-8859-1\"?>\n<a>caf\xe9</a>",
         "2:7 [\u{fffd}] error S0007 the XML declaration says `ISO-8859-1`, expected UTF-8\n\
-         convert it: `iconv -f ISO-8859-1 -t UTF-8 DIR/f.composite`; the file cannot be checked before",
+         convert it: `iconv -f ISO-8859-1 -t UTF-8 DIR/f.composite`; until then the file cannot be checked",
     );
     says(
         b"<a>caf\xe9</a>",
         "1:7 [\u{fffd}] error S0007 the byte 0xE9 is not valid UTF-8\n\
-         if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 DIR/f.composite`; \
-         the file cannot be checked before",
+         if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 DIR/f.composite`; until then the file cannot be checked",
     );
 }
 
@@ -86,12 +85,12 @@ fn a_file_that_is_not_there_has_neighbours() {
     );
     assert_eq!(shown("notes"), format!("{missing}there is `DIR/notes.txt`"));
     assert_eq!(shown("airport.xml"), format!("{missing}there is `DIR/airport.composite`"));
-    assert_eq!(shown("xyz"), format!("{missing}the folder has `DIR/airport.composite`, `DIR/airport2.composite`"));
+    assert_eq!(shown("xyz"), format!("{missing}the folder contains `DIR/airport.composite`, `DIR/airport2.composite`"));
     assert_eq!(shown("sup/a"), format!("{missing}there is no folder `DIR/sup`"));
     assert_eq!(shown("notes.txt/a"), format!("{missing}a part of its path is a file, not a folder"));
     let directory = "1:1 [] error S0002 found a folder, expected a file\n";
     assert_eq!(shown("sub"), directory);
-    assert_eq!(shown(""), format!("{directory}it has `DIR/airport.composite`, `DIR/airport2.composite`"));
+    assert_eq!(shown(""), format!("{directory}the folder contains `DIR/airport.composite`, `DIR/airport2.composite`"));
 }
 
 #[test]

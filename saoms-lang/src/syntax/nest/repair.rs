@@ -110,7 +110,7 @@ impl<'a> Nest<'_, 'a> {
                 if is_early {
                     let end = sibling.start_tag.end;
                     let slash = input.at(end - 2, end - 1);
-                    let one = fault().label(place, format!("this {} ends with `/>`", quoted(found)));
+                    let one = fault().label(place, format!("this {} is closed by `/>`", quoted(found)));
                     return one.suggest("remove its `/`", slash, "");
                 }
                 let one = fault().label(place, format!("this {} is closed", quoted(found)));

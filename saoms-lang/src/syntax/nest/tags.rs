@@ -108,7 +108,7 @@ pub(super) fn not_closed(input: Input<'_>, outer: Named<'_>, inner: Named<'_>) -
     let close = format!("</{}>", outer.name);
     let message = without_end_tag(input, outer);
     let one = input.fault(&codes::XML_UNCLOSED, outer.at.start, outer.at.end, message);
-    let one = one.label(inner.at.in_file(input.file), "this element belongs after it, not in it");
+    let one = one.label(inner.at.in_file(input.file), "this element belongs after it, not inside it");
     let text = input.text;
     let inside = input.slice(outer.start_tag.end, inner.start_tag.start);
     if inside.trim().is_empty() && !ends_with_slash(input, outer) {
@@ -145,7 +145,7 @@ pub(super) fn second_root(input: Input<'_>, second: Named<'_>, root: Named<'_>, 
 /// The fault of the end tag of the root, at `end`, which has another one behind this element.
 pub(super) fn too_early(input: Input<'_>, end: Span, next: Named<'_>, root: Named<'_>) -> Diagnostic {
     let tag = quoted(input.piece(end));
-    let message = format!("{tag} is too early: more elements of {} follow, and its end", quoted(root.name));
+    let message = format!("{tag} is too early: more elements of {} and another {tag} follow", quoted(root.name));
     let one = input.fault(&codes::XML_OUTSIDE_ROOT, end.start, end.end, message);
-    one.label(next.at.in_file(input.file), "the first that follows").mend("remove it", "")
+    one.label(next.at.in_file(input.file), "the first element that follows").mend("remove it", "")
 }

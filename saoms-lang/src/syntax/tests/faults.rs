@@ -165,7 +165,7 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         <a></a><b></b>
             1:9 [b] S0104 a second root element: a file has exactly one
         <a></a><b></b></a>
-            1:4 [</a>] S0104 `</a>` is too early: more elements of `a` follow, and its end | remove it
+            1:4 [</a>] S0104 `</a>` is too early: more elements of `a` and another `</a>` follow | remove it
         <a =''/>
             1:4 [=] S0101 `=` is misplaced in the start tag of `a`
         <a <b/></a>
@@ -291,8 +291,7 @@ fn where_reading_stops_is_said() {
         let faults = super::parse(super::FileId(0), &super::Arc::new(text.into())).faults;
         assert_eq!(
             faults[0].help,
-            ["end it; until then, the rest of the file is part of it and is not \
-            checked"],
+            ["close it: until then, the rest of the file belongs to it and is not checked"],
             "{text}"
         );
     }

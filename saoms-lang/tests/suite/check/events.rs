@@ -155,7 +155,7 @@ fn an_event_is_for_components_of_the_site_that_take_it() {
     "#]]
     .assert_eq(&faults(&(player(&lines) + &halls)));
     expect_test::expect![[r#"
-        3:8-12 warning S4018: component `Player`: property `lines`: no component of the fleet takes the event `fire`: it has no effect
+        3:8-12 warning S4018: component `Player`: property `lines`: no component of the fleet takes the event `fire`, so the event has no effect
           help: add a component of a class that takes it, such as `example.Hall`
     "#]].assert_eq(&faults(&player(&["fire size=1"])));
     let around = fleet(
@@ -163,8 +163,8 @@ fn an_event_is_for_components_of_the_site_that_take_it() {
             + "<component name=\"Plant\" xmlns:t=\"urn:t\" xmlns:saoms=\"urn:saoms:1\" saoms:site=\"Plant\"><implementation.composite name=\"t:plant\"/></component>"),
     );
     expect_test::expect![[r#"
-        3:8-12 warning S4018: component `Player`: property `lines`: no component outside of sites takes the event `fire`: it has no effect
-          help: it is taken in the site `Plant`: play it there
+        3:8-12 warning S4018: component `Player`: property `lines`: no component outside of sites takes the event `fire`, so the event has no effect
+          help: components in the site `Plant` take it: move the event there
         Player (example.Player) lines=Many([Text("fire size=1")])
         Plant/Hall1 (example.Hall)
         Plant/Hall2 (example.Hall)
@@ -187,7 +187,7 @@ fn an_event_has_the_same_fields_for_all_and_is_no_word_of_a_language() {
         3:18-19 error S4017: component `B` takes the event `fire` with the fields `height=0.5`, and class `example.Hall` with the fields `size=1`, `cause="text"`
           2:18-19 a component of that class
           help: an event has the same fields for all classes; give it another name under `takes` in one of them
-        5:18-19 error S4017: component `D` takes the event `halt`, which is a word of the language `example`
+        5:18-19 error S4017: component `D` takes the event `halt`, which is a reserved word of the `example` language
           help: give it another name under `takes` in the declaration of class `example.Halt`
     "#]].assert_eq(&faults(&(all + &component("D", "Halt", ""))));
 }

@@ -73,9 +73,9 @@ fn a_composite_adds_replaces_removes_moves_and_parametrises_loops() {
 fn a_loop_of_which_nothing_changes_is_told() {
     assert_eq!(
         faults("<saoms:loop name=\"BatteryMS\"/>\n<saoms:loop name=\"PathMS\" remove=\"false\"/>"),
-        "3:2-12 warning S4510: this has no effect: the class of the component has the loop `BatteryMS`
+        "3:2-12 warning S4510: this element has no effect: the component's class has the loop `BatteryMS` already
   help: remove it, or write what to change: `class`, `before`, `after`, `remove` or properties
-4:2-12 warning S4510: this has no effect: the class of the component has the loop `PathMS`
+4:2-12 warning S4510: this element has no effect: the component's class has the loop `PathMS` already
   help: remove it, or write what to change: `class`, `before`, `after`, `remove` or properties
 "
     );
@@ -133,7 +133,7 @@ fn what_is_said_of_a_loop_makes_sense() {
 4:49-58 error S4502: the loop `BatteryMS` is given twice
   4:19-28 first given here
   help: write everything about a loop in one element; two loops of the same class need different names
-5:58-67 error S4503: the loop `CollisionMS` has two places
+5:58-67 error S4503: the loop `CollisionMS` has both `before` and `after`
   5:40-49 the `before`
   help: keep either `before` or `after`
 "
@@ -159,7 +159,7 @@ fn orders_lead_somewhere() {
         faults("<saoms:loop name=\"PathMS\" after=\"BatteryMS\"/>\n<saoms:loop name=\"BatteryMS\" remove=\"true\"/>"),
         "3:34-43 error S4504: the loop `PathMS` is placed beside `BatteryMS`, which is removed
   4:19-28 removed here
-  help: place it beside another loop, or keep that one
+  help: place it before or after another loop, or keep the removed loop
 "
     );
 }
@@ -242,9 +242,9 @@ fn loops_fit_the_component() {
             "<saoms:loop name=\"Twin\" class=\"example.Twin\"/>\n<saoms:loop name=\"Radio\" class=\"example.Radio\"/>"
         ),
         "3:32-44 error S4508: the loop `Twin` adds the entry `busy`, which is there already
-  help: class `example.Cart` has it itself
+  help: class `example.Cart` declares it
 4:33-46 error S4509: the loop `Radio` has the reference `wheels` with another interface
-  help: class `example.Cart` has the reference itself
+  help: class `example.Cart` declares the reference
 "
     );
     let two =
@@ -365,8 +365,7 @@ fn a_loop_that_needs_the_struct_of_a_knowledge_does_not_work_in_components_of_an
     };
     assert_eq!(
         found(r#","direct":true"#),
-        "S4505 the loop `PathMS` of the library `libcarts.so` works on the struct of its knowledge, but that of component \
-         `Cart` is built into the program a loop for components of other libraries has `type Knowledge = dyn \
+        "S4505 the loop `PathMS` of the library `libcarts.so` needs the Rust struct of its knowledge, but that of component `Cart` is built into the program a loop for components of other libraries has `type Knowledge = dyn \
          Knowledge`, and reaches entries by name\n"
     );
     assert!(!found("").contains("S4505"), "entry by entry it works");

@@ -22,7 +22,7 @@ fn names_are_unique_across_files() {
     expect![[r#"
         more.composite:2:18-19 error S2002: there are two components `G`
           2:18-19 the first
-          help: files that are given together are one fleet: if they are two, give each of them alone
+          help: files given together form one fleet: for two fleets, run the command once for each file
           fix: remove the second: both are the same, word for word [more.composite:2:1-75 ""]
     "#]]
     .assert_eq(&faults_of(&[&one, &other], &[]));

@@ -55,7 +55,7 @@ fn composites_that_run_together_have_one_decision() {
     let (policy, faults) = fleets(SETTINGS, SETTINGS);
     assert_eq!((policy.unwrap().hangup, faults.as_str()), (Hangup::Hold, ""));
     for (other, what) in [
-        ("s:hangup=\"end\"", "what a lost terminal leads to"),
+        ("s:hangup=\"end\"", "the effect of a lost terminal"),
         ("s:alertUrl=\"http://page.example/\"", "the address of alerts, or its token"),
         ("s:alertUrl=\"http://page.example:8080/hall?a=1&amp;b\"", "the address of alerts, or its token"),
         ("s:alertCommand=\"./page.sh\"", "the command for alerts"),

@@ -159,8 +159,8 @@ fn loops_that_a_composite_adds_are_renamed_and_those_of_the_class_are_not() {
     };
     let marked = text("mine").replacen("before=\"mine", "before=\"mi|ne", 1);
     assert_eq!(renamed(&marked, &[], "ours").unwrap(), [text("ours")]);
-    assert_eq!(renamed(&marked, &[], "z").unwrap_err(), "`z` is taken");
-    assert_eq!(renamed(&marked, &[], "BatteryMS").unwrap_err(), "`BatteryMS` is taken");
+    assert_eq!(renamed(&marked, &[], "z").unwrap_err(), "the name `z` is already used");
+    assert_eq!(renamed(&marked, &[], "BatteryMS").unwrap_err(), "the name `BatteryMS` is already used");
     let own = text("mine").replacen("name=\"BatteryMS", "name=\"BatteryMS|", 1);
-    assert!(renamed(&own, &[], "x").unwrap_err().contains("has its name from the class"));
+    assert!(renamed(&own, &[], "x").unwrap_err().contains("is named in the code of the component's class"));
 }

@@ -183,12 +183,12 @@ fn names_in_files_beside_composites_lead_to_what_they_mean() {
 fn what_cannot_be_renamed_says_why() {
     let text = composite(r#"<component name="A|"/><component name="B"/>"#);
     let refused = |marked: &str, name: &str| renamed(marked, &[], name).unwrap_err();
-    assert_eq!(refused(&text, "B"), "`B` is taken");
+    assert_eq!(refused(&text, "B"), "the name `B` is already used");
     assert!(refused(&text, "").contains("cannot be a name"));
     assert!(refused(&text, "a/b").contains("cannot be a name"));
     assert!(refused(&text, "a<b").contains("cannot be a name"));
     let class = composite(r#"<component name="A"><implementation.java class="x.|Y"/></component>"#);
-    assert_eq!(refused(&class, "z"), "the class `x.Y` has its name from its author");
+    assert_eq!(refused(&class, "z"), "the name of the class `x.Y` is defined in its code");
     assert_eq!(refused(&composite("<|component/>"), "z"), "there is no name here");
     let lost = composite(r#"<wire source="A|" target="B"/>"#);
     assert!(refused(&lost, "z").contains("not defined"));

@@ -42,9 +42,9 @@ fn a_topic_that_is_published_and_read_is_at_one_place() {
 fn a_topic_is_renamed_where_it_gets_its_name() {
     let marked = fleet("quiet").replacen(",quiet", ",qui|et", 1);
     assert_eq!(renamed(&marked, &[], "loud").unwrap(), [fleet("loud").replace(",quiet", ",loud")]);
-    assert_eq!(renamed(&marked, &[], "COLLISIONTOPIC").unwrap_err(), "`COLLISIONTOPIC` is taken");
+    assert_eq!(renamed(&marked, &[], "COLLISIONTOPIC").unwrap_err(), "the name `COLLISIONTOPIC` is already used");
     assert!(renamed(&marked, &[], "a,b").unwrap_err().contains("separate topics"));
     let own = fleet("quiet").replacen(",quiet", ",COLLISION|TOPIC", 1);
     let refused = renamed(&own, &[], "loud").unwrap_err();
-    assert!(refused.contains("that the class of"), "{refused}");
+    assert!(refused.contains("name in the class of"), "{refused}");
 }

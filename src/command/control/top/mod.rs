@@ -29,7 +29,7 @@ Exit codes:
 /// The shortest time between two refreshes: the answers of a fleet are up to so old.
 const SHORTEST: Duration = Duration::from_millis(100);
 
-/// Show what the components of a running fleet do as a table, again and again; `q` ends it
+/// Show a table of what the components of a running fleet do, and refresh it until `q` is pressed
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct TopArguments {
@@ -37,7 +37,7 @@ pub(crate) struct TopArguments {
     #[arg(long, value_name = "DURATION", default_value = "1s", value_parser = interval)]
     every: Duration,
 
-    /// End after so many refreshes
+    /// End after this number of refreshes
     #[arg(long = "number", short = 'n', value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     number: Option<u64>,
 
@@ -53,9 +53,9 @@ pub(crate) struct TopArguments {
 /// Orders of the components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Sort {
-    /// Those that start latest first (the longest of 99 of 100 executions)
+    /// By the lateness that 99 % of the executions keep (p99), the greatest first
     Late,
-    /// Those that missed most executions first
+    /// By missed executions, the most first
     Missed,
     /// By name
     Name,

@@ -5,8 +5,7 @@ use super::super::table::Table;
 use saoms_api::host::one_line;
 
 const HEAD: [&str; 11] = [
-    "COMPONENT", "STATE", "EXECUTIONS", "LATE P50", "P99", "MAX", "MISSED", "DROPPED", "RESTARTS", "IN CODE",
-    "WHAT IT SAYS",
+    "COMPONENT", "STATE", "EXECUTIONS", "LATE P50", "P99", "MAX", "MISSED", "DROPPED", "RESTARTS", "IN CODE", "DETAILS",
 ];
 
 /// What a refresh shows.

@@ -19,7 +19,8 @@ pub(super) fn is_head(start: &[u8]) -> bool {
 /// # Errors
 /// It is no line of a journal.
 pub(super) fn event(line: &str) -> Result<Option<String>, String> {
-    let record: Value = serde_json::from_str(line).map_err(|error| format!("it is no record of a journal: {error}"))?;
+    let record: Value =
+        serde_json::from_str(line).map_err(|error| format!("it is not a record of a journal: {error}"))?;
     let (Some(component), Some(text)) = (record["component"].as_str(), record["text"].as_str()) else {
         return Ok(None);
     };

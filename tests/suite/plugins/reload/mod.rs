@@ -130,7 +130,7 @@ fn a_build_that_hangs_leaves_the_earlier_one_running() {
     let mut run = Run::start(&["-DBUILD=1", "-DHANGS_AT_END"]);
     run.wait_for("build 1 counts 100");
     run.build(&["-DBUILD=2", "-DHANGS"]);
-    run.wait_for("is not replaced, the earlier one goes on: `initialize` or `restore` has not returned within 2s");
+    run.wait_for("is not replaced, the earlier one continues: `initialize` or `restore` has not returned within 2s");
     let before = counted(&run.wait_for("build 1 counts"));
     assert!(counted(&run.wait_for("build 1 counts")) > before);
     // Nobody waits for the destructor of the earlier one.
@@ -180,13 +180,13 @@ fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.wait_for("build 1 counts 100");
     run.build(&["-DBUILD=2", "-DSTUMBLES"]);
-    run.wait_for("is not replaced, the earlier one goes on: this build cannot initialize");
+    run.wait_for("is not replaced, the earlier one continues: this build cannot initialize");
     run.wait_for("build 1 counts");
     fs::write(library(run.folder.path()), "no library at all").unwrap();
-    run.wait_for("the fleet goes on with the earlier build");
+    run.wait_for("the fleet continues with the earlier build");
     run.wait_for("build 1 counts");
     run.build(&["-DBUILD=3", "-DREFUSES"]);
-    run.wait_for("the fleet goes on with the earlier build");
+    run.wait_for("the fleet continues with the earlier build");
     run.wait_for("build 1 counts");
     run.build(&["-DBUILD=4", "-DFORGETS"]);
     run.wait_for("build 4 counts");

@@ -469,7 +469,7 @@ fn what_belongs_elsewhere_is_told_where() {
         2:17-22 warning S2026: no component uses the property `speed` of the composite
           help: remove it, or use its value in a component with `source="$speed"`
         2:24-28 error S1007: `property` has no attribute `file`
-          help: only a property of a component has it: write the value here
+          help: only a property of a component has this attribute: write the value here
         2:17-22 warning S2026: no component uses the property `speed` of the composite
           help: remove it, or use its value in a component with `source="$speed"`
         2:35-41 error S1011: `$SPEED` is not a name of an environment variable: use letters, digits and `_`, and no digit first
@@ -479,7 +479,7 @@ fn what_belongs_elsewhere_is_told_where() {
         2:24-27 error S1007: `property` has no attribute `val`
           fix: replace `val` with `value` [2:24-27 "value"]
         3:25-34 error S1007: `property` has no attribute `saoms:env`
-          help: only a property of the composite has it: take that with `source`
+          help: only a property of the composite has this attribute: take the value of such a property with `source`
         3:34-42 error S2021: component `G` has no reference `position`
           help: its references are `other`
           help: `position` is a service: promote it with `<service ...>`

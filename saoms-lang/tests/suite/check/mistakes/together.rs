@@ -267,7 +267,7 @@ fn a_file_that_is_given_twice_is_told_once() {
           help: give each its own name; was one file given twice?
         more.composite:3:18-19 error S2002: there are two components `R`
           3:18-19 the first
-          help: files that are given together are one fleet: if they are two, give each of them alone
+          help: files given together form one fleet: for two fleets, run the command once for each file
           fix: remove the second: both are the same, word for word [more.composite:3:1-78 ""]
         more.composite:3:49-63 error S3001: there is no class `example.Robott`
           help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin

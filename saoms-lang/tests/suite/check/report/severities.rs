@@ -203,7 +203,7 @@ fn errors_that_make_a_fleet_impossible_stay() {
         2:110-121 error S3001: there is no class `example.Gsp`
           2:146-151 not set to `warning`
           help: `saoms components` lists the 25 classes of this program and its plugins; `--plugin PATH` adds the classes of a plugin
-          help: its severity cannot be lowered: nothing can run with it
+          help: its severity cannot be lowered: no fleet can run with this error
           fix: replace `example.Gsp` with `example.Gps` [2:110-121 "example.Gps"]
     "#]]
     .assert_eq(&found.told);

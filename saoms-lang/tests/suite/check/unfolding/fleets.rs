@@ -322,7 +322,7 @@ fn tables_say_what_differs() {
           fix: replace `rde` with `red` [robots.csv:2:3-6 "red"]
         robots.csv:3:1-2 warning S2047: there is no replica `5`
           help: use an index from 1 to 4
-        robots.csv:4:1-2 error S2047: two rows are about the replica `1`
+        robots.csv:4:1-2 error S2047: two rows are for the replica `1`
           robots.csv:2:1-2 the first
           help: merge them
         robots.csv:4:9-10 error S2047: this line has 4 values, but the table has 3 columns

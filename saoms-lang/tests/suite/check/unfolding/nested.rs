@@ -91,7 +91,7 @@ fn includes_that_cannot_be_say_so() {
           help: remove one of these: a composite cannot contain itself
         7:18-19 error S2002: there are two components `A`
           more:2:18-19 the first
-          help: files that are given together are one fleet: if they are two, give each of them alone
+          help: files given together form one fleet: for two fleets, run the command once for each file
           fix: remove the second: both are the same, word for word [7:1-75 ""]
         more:2:90-95 warning S2030: `fleet` without a prefix is in the default namespace, which is that of SCA: the composite in `urn:t` is used
           1:115-120 this composite is used

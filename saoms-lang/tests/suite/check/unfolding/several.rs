@@ -157,7 +157,7 @@ fn lines_of_tables_about_replicas_that_a_condition_leaves_out_are_told() {
         table.csv:2:1-3 warning S2047: the condition leaves out the replica `R2`
           hall.composite:3:55-67 false for it
           help: change the condition, or remove the row
-        table.csv:3:1-3 error S2047: two rows are about the replica `R2`
+        table.csv:3:1-3 error S2047: two rows are for the replica `R2`
           table.csv:2:1-3 the first
           help: merge them
     "#]]

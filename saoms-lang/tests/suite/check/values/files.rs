@@ -91,7 +91,7 @@ fn files_that_cannot_be_read_are_reported_where_they_are_named() {
           help: there is `speed.txt`
         4:30-35 error S0002: found a folder, expected a file
         5:31-37 error S0007: the byte 0xE9 is not valid UTF-8
-          help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`; the file cannot be checked before
+          help: if the file is in Windows-1252 or Latin-1, convert it: `iconv -f WINDOWS-1252 -t UTF-8 colour`; until then the file cannot be checked
           help: it is in line 1, column 2 of `colour`
         6:30-35 error S0006: the file is a program or library, not text
           help: the value of a property is a text in UTF-8; save a spreadsheet as CSV

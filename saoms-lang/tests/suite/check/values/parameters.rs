@@ -197,7 +197,7 @@ fn values_from_outside_are_of_the_type_of_the_property() {
           help: change the value, or the type
         3:18-19 error S3013: `A` and `B` are uses of one composite in one site, and both have a component `R`
           2:54-55 the first
-          help: give each its own site, as in `saoms:site="B"`: IDs need to differ only within a site; to let them work together, give their components IDs of their own by a property of the composite
+          help: give each its own site, such as `saoms:site="B"`: IDs need to differ only within a site; to let them work together, give their components IDs of their own by a property of the composite
     "#]]
     .assert_eq(&outcome(&[&outer, &part("inner", "", &typed)], &[]));
 }

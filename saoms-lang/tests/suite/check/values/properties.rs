@@ -69,7 +69,7 @@ fn what_cannot_run_says_so() {
           help: name the file of that composite in the command as well
         3:22-41 error S3002: this program cannot run `implementation.bpel`
           help: name the class of the component: `implementation.java class="..."` or `implementation.rust class="..."`
-        4:71-80 error S3015: the library `libgps.so` was not looked for
+        4:71-80 error S3015: the library `libgps.so` was not searched for
         5:16-21 error S2030: there is no composite `other` in the namespace `urn:t`
           help: name the file of that composite in the command as well
         6:22-45 error S3002: this program cannot run `implementation.script`

@@ -89,7 +89,7 @@ fn who_talks_to_itself_on_nearly_the_topic_of_others_is_told() {
         found(&fleet(&all))
     };
     expect![[r#"
-        2:210-219 warning S4012: component `A` hears only itself on topic `postopics`: others use `POSTOPIC`
+        2:210-219 warning S4012: component `A` receives only its own messages on topic `postopics`: others use `POSTOPIC`
           3:18-19 uses `POSTOPIC`
           help: correct `topicRename`: remove a pair, or change its new name
     "#]]
@@ -112,7 +112,7 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
         found(&fleet(&all))
     };
     expect![[r#"
-        2:212-219 warning S4012: component `R0` hears only itself on topic `POSTOPC`: others use `POSTOPIC`
+        2:212-219 warning S4012: component `R0` receives only its own messages on topic `POSTOPC`: others use `POSTOPIC`
           3:18-20 uses `POSTOPIC`
           help: correct `topicRename`: remove a pair, or change its new name
     "#]]
@@ -120,12 +120,12 @@ fn parts_of_a_fleet_that_a_slip_keeps_apart_are_told() {
     expect![""].assert_eq(&found(&["HALL_1", "HALL_1", "HALL_2"]));
     expect![""].assert_eq(&found(&["HALL_1", "HALL_2", "HALL_2"]));
     expect![[r#"
-        2:212-219 warning S4012: component `R0` and another one hear only each other on topic `POSTOPC`: others use `POSTOPIC`
+        2:212-219 warning S4012: component `R0` and another one receive only their own messages on topic `POSTOPC`: others use `POSTOPIC`
           4:18-20 uses `POSTOPIC`
           help: correct `topicRename`: remove a pair, or change its new name
     "#]].assert_eq(&found(&["POSTOPC", "POSTOPC", "", ""]));
     expect![[r#"
-        2:212-220 warning S4012: component `R0` and another one hear only each other on topic `postopic`: others use `POSTOPIC`
+        2:212-220 warning S4012: component `R0` and another one receive only their own messages on topic `postopic`: others use `POSTOPIC`
           4:18-20 uses `POSTOPIC`
           help: correct `topicRename`: remove a pair, or change its new name
     "#]].assert_eq(&found(&["postopic", "postopic", "", ""]));
