@@ -86,7 +86,7 @@ const PARTS: [Part; 5] = [
 ];
 
 /// The loop of the policy `classic` that also moves the gripper.
-const CLASSIC_PATH_FOLLOWER: &str = "saoms.classic.PathFollowerMS";
+pub(super) const CLASSIC_PATH_FOLLOWER: &str = "saoms.classic.PathFollowerMS";
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let robots: Vec<usize> = fleet.indices::<Robot>().collect();

@@ -6,6 +6,7 @@
 mod apart;
 mod budget;
 mod charger;
+mod classic_walls;
 mod divided;
 mod environments;
 mod hearing;
@@ -43,4 +44,5 @@ saoms_api::fleet_rules!(
     scenario::no_work::RULE,
     scenario::early_end::RULE,
     unlikely::RULE,
+    classic_walls::RULE,
 );

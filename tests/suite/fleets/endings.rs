@@ -147,3 +147,16 @@ fn every_fleet_comes_to_an_end() {
     }
     assert!(runs * 2 > seeds, "only {runs} of {seeds} fleets could run");
 }
+
+#[test]
+fn a_classic_robot_before_a_wall_breaks_down() {
+    let components = component("World", "World", 100, &property("map", "\n.....\n.@@@.\n....."))
+        + &component("Master", "MasterEnvironment", 100, "")
+        + &component("Environment", "Environment", 100, &property("scenario", "at 1s luggage (0,1) to (4,1)"))
+        + &component("Robot1", "Robot", 100, &format!("{}{WIRE}", property("policy", "classic")))
+        + &component("Robot2", "Robot", 100, &format!("{}{WIRE}", property("policy", "classic")));
+    let run = composite(&components).run(1, LIMIT);
+    assert_eq!(run.outcome.status, RunStatus::Incomplete, "{:?}", run.outcome);
+    assert_eq!((luggage(&run, "open"), luggage(&run, "given_up")), (1, 1), "{}", run.log());
+    assert!(run.log().contains("hardware keeps failing at (0,1): asks for help"), "{}", run.log());
+}

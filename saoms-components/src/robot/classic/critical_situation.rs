@@ -9,7 +9,7 @@ use crate::messages::{
     LuggageStage, POSITION, Position, ROBOT_LIST, ROBOT_STATE, RobotList, RobotState,
 };
 use crate::robot::lasting::lasting;
-use crate::robot::{ASSISTANCE, Help, RobotKnowledge};
+use crate::robot::{ASSISTANCE, Help, RobotKnowledge, Trouble};
 
 /// Asks for help when the robot cannot go on, and heals other robots (listings 6.7 to 6.10).
 ///
@@ -129,6 +129,11 @@ impl Loop for ClassicCriticalSituation {
                 self.cause = header.cause;
             }
         }
+        // Hardware that fails again and again, as it does before a blocked block, is a breakdown, too.
+        if knowledge.trouble.is_some() && !knowledge.variables.critical {
+            knowledge.variables.critical = true;
+            self.cause = context.cause();
+        }
         Ok(())
     }
 
@@ -211,7 +216,8 @@ impl ClassicCriticalSituation {
         knowledge.retire(context)?;
         context.send(&self.situations, knowledge.situation(kind))?;
         let block = knowledge.block;
-        context.alert(ASSISTANCE, "", format_args!("breaks down at {block}: asks for help, and for human assistance"));
+        let what = knowledge.trouble.map_or("breaks down", Trouble::words);
+        context.alert(ASSISTANCE, "", format_args!("{what} at {block}: asks for help, and for human assistance"));
         // The luggage that the robot was interested in waits again, for robots that dropped it because of that.
         if let Some(request) = knowledge.lists.requests.settle() {
             let job = request.job;

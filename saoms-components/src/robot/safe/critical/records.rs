@@ -270,7 +270,7 @@ impl Trouble {
         }
     }
 
-    pub(super) const fn words(self) -> &'static str {
+    pub(in crate::robot) const fn words(self) -> &'static str {
         match self {
             Trouble::Breakdown => "breaks down",
             Trouble::Hardware => "hardware keeps failing",
