@@ -170,8 +170,8 @@ impl Watcher {
                     self.waiting.push(next);
                 }
                 Err(error) => {
-                    let why = match error {
-                        ChangeError::Failed { failure, .. } => failure.to_string(),
+                    let why = match &error {
+                        ChangeError::Failed { component, .. } if *component == path => error.reason(),
                         other => other.to_string(),
                     };
                     self.note(

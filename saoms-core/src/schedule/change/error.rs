@@ -33,13 +33,26 @@ pub enum ChangeError {
     Ending,
 }
 
+impl ChangeError {
+    /// The reason without the component, for a message that names it. It ends with the library of the code that failed.
+    pub fn reason(&self) -> String {
+        match self {
+            ChangeError::NotNow { why, .. } => why.clone(),
+            ChangeError::Failed { library, failure, .. } => {
+                format!("{failure}{}", library.as_deref().map(in_library).unwrap_or_default())
+            }
+            ChangeError::Unknown(_) | ChangeError::Ending => self.to_string(),
+        }
+    }
+}
+
 impl fmt::Display for ChangeError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ChangeError::NotNow { component, why } => write!(formatter, "component `{component}`: {why}"),
-            ChangeError::Failed { component, class, library, failure } => {
-                let library = library.as_deref().map(in_library).unwrap_or_default();
-                write!(formatter, "component `{component}` of class `{class}` could not start: {failure}{library}")
+            ChangeError::Failed { component, class, .. } => {
+                let reason = self.reason();
+                write!(formatter, "component `{component}` of class `{class}` could not start: {reason}")
             }
             ChangeError::Unknown(component) => write!(formatter, "the fleet has no component `{component}`"),
             ChangeError::Ending => formatter.write_str("the run ends"),

@@ -10,6 +10,7 @@ use crate::bus::{Bus, TopicId, TopicReader};
 use crate::journal::Recorder;
 use crate::schedule::component::body::{Body, Part};
 use crate::schedule::component::lasting::Lasting;
+use crate::schedule::component::library::with_library;
 use crate::schedule::shared::Shared;
 use crate::schedule::stop::RegisteredStop;
 
@@ -86,7 +87,8 @@ impl Body {
             refused => {
                 successor.withdraw(shared);
                 return Err(refused.map_or_else(Refusal::Failed, |not_now| {
-                    Refusal::NotNow(not_now.err().map(|failure| failure.to_string()).unwrap_or_default())
+                    let spec = &self.part.spec;
+                    Refusal::NotNow(not_now.err().map(|failure| with_library(spec, failure)).unwrap_or_default())
                 }));
             }
         };

@@ -100,6 +100,11 @@ impl Run {
     }
 }
 
+/// What is told of code of the library, with its name.
+fn of_library(run: &Run, told: &str) -> String {
+    format!("{told} (library `{}`)", library(run.folder.path()).display())
+}
+
 /// The number that a line says last.
 fn counted(line: &str) -> u64 {
     line.rsplit(' ').next().unwrap().parse().unwrap()
@@ -109,7 +114,7 @@ fn counted(line: &str) -> u64 {
 fn a_new_build_goes_on_where_the_earlier_one_was() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.build(&["-DBUILD=2", "-DDOC=\"Counts on.\""]);
-    run.wait_for("is replaced later: it has not counted to 100 yet");
+    run.wait_for(&of_library(&run, "is replaced later: it has not counted to 100 yet"));
     run.wait_for("is replaced by its new build, and continues with the earlier state");
     let first = counted(&run.wait_for("build 2 counts"));
     run.build(&["-DBUILD=3"]);
@@ -130,7 +135,8 @@ fn a_build_that_hangs_leaves_the_earlier_one_running() {
     let mut run = Run::start(&["-DBUILD=1", "-DHANGS_AT_END"]);
     run.wait_for("build 1 counts 100");
     run.build(&["-DBUILD=2", "-DHANGS"]);
-    run.wait_for("is not replaced, the earlier one continues: `initialize` or `restore` has not returned within 2s");
+    let told = "is not replaced, the earlier one continues: `initialize` or `restore` has not returned within 2s";
+    run.wait_for(&of_library(&run, told));
     let before = counted(&run.wait_for("build 1 counts"));
     assert!(counted(&run.wait_for("build 1 counts")) > before);
     // Nobody waits for the destructor of the earlier one.
@@ -180,7 +186,7 @@ fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     let mut run = Run::start(&["-DBUILD=1"]);
     run.wait_for("build 1 counts 100");
     run.build(&["-DBUILD=2", "-DSTUMBLES"]);
-    run.wait_for("is not replaced, the earlier one continues: this build cannot initialize");
+    run.wait_for(&of_library(&run, "is not replaced, the earlier one continues: this build cannot initialize"));
     run.wait_for("build 1 counts");
     fs::write(library(run.folder.path()), "no library at all").unwrap();
     run.wait_for("the fleet continues with the earlier build");
