@@ -238,3 +238,20 @@ fn an_event_that_nobody_takes_is_a_warning() {
         )
     );
 }
+
+#[test]
+fn events_that_nobody_takes_are_told_once_in_an_execution_and_counted() {
+    let names: Vec<String> = (0..20).map(|number| format!("flood{number}")).collect();
+    let storms = vec!["storm size=1"; 50_000].join("; ");
+    let (told, _) =
+        told(&format!("Player player period=10 lines=[fire; {storms}; storm size=2; {}]", names.join("; ")));
+    let lines: Vec<&str> = told.lines().collect();
+    let nobody = "has no receiver: no component that takes it runs in this site";
+    assert_eq!(lines[0], format!("[0.010 s] Player: the event `fire` {nobody}"));
+    assert_eq!(lines[1], format!("[0.010 s] Player: the event `storm size=1` {nobody}"));
+    assert_eq!(lines[15], format!("[0.010 s] Player: the event `flood13` {nobody}"));
+    let counted = "\
+[0.010 s] Player: 50000 more events `storm` have no receiver
+[0.010 s] Player: 6 more events of other names have no receiver";
+    assert_eq!(lines[16..].join("\n"), counted);
+}

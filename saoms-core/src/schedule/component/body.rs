@@ -8,6 +8,7 @@ use saoms_api::{CallError, Cause, Chance, Context, Departed, Failure, Time};
 use super::host::ComponentHost;
 use super::lasting::Lasting;
 use super::spent::Spent;
+use super::unheard::Unheard;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
@@ -61,6 +62,7 @@ pub(crate) struct Part {
     pub(crate) sent_bytes: usize,
     /// What the present code has written.
     pub(crate) spent: Spent,
+    pub(crate) unheard: Unheard,
     /// True once the report had no room for what it contributes.
     pub(crate) is_report_full: bool,
     /// Number of calls within which its code runs.
@@ -160,6 +162,7 @@ impl Body {
             lasting: Lasting::default(),
             sent_bytes: 0,
             spent: Spent::default(),
+            unheard: Unheard::default(),
             is_report_full: false,
             call_depth: 0,
             chance: Chance::new(0),
@@ -348,7 +351,11 @@ fn call<T>(
     if has_departed {
         context = context.with_departed();
     }
-    contained(|| code(instance.as_mut(), &mut context)).map_err(|panic| part.of_loop(panic))
+    let result = contained(|| code(instance.as_mut(), &mut context));
+    if !host.part.unheard.is_empty() {
+        host.tell_unheard();
+    }
+    result.map_err(|panic| part.of_loop(panic))
 }
 
 /// What is constructed, by the name of its component.

@@ -245,9 +245,8 @@ impl Host for ComponentHost<'_> {
         if cause.is_some() {
             self.part.has_raised = true;
             self.part.recorder.acted();
-        } else if self.part.spent.has_line() {
-            let text = format!("the event `{event}` has no receiver: no component that takes it runs in this site");
-            self.emit(Occurrence::Log { level: Level::Warning, text });
+        } else {
+            self.has_no_receiver(&call.name.text, event);
         }
         Ok(())
     }
@@ -451,7 +450,7 @@ impl Host for ComponentHost<'_> {
 }
 
 impl ComponentHost<'_> {
-    fn emit(&self, what: Occurrence) {
+    pub(super) fn emit(&self, what: Occurrence) {
         self.shared.events.put(RunEvent { time: self.now(), component: Some(Arc::clone(&self.part.name)), what });
     }
 }

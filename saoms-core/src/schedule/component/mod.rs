@@ -7,3 +7,4 @@ mod host;
 pub(super) mod lasting;
 pub(super) mod library;
 pub(super) mod spent;
+mod unheard;
