@@ -25,24 +25,25 @@ pub(super) fn install() {
 
 /// Ends the process, and says whose code did so by which function, unless it is the program itself or a child.
 fn end(code: c_int, by: &str) -> ! {
-    let top = 0_u8;
     if ENDS.load(Ordering::SeqCst) || !is_program() {
         leave(code);
     }
+    end_after(" ended the whole process, by `", by, "")
+}
+
+/// Ends the process after what code of a library did by a function, and says whose it is.
+pub(super) fn end_after(did: &str, by: &str, why: &str) -> ! {
+    let top = 0_u8;
     let top = ptr::from_ref(&top) as usize;
     match blame(top) {
         Blame::Call(owner, function) => {
-            write(&["error: ", &owner.text, " ended the whole process, by `", by, "` ", function.place(), "\n"]);
+            write(&["error: ", &owner.text, did, by, "` ", function.place(), why, "\n"]);
         }
-        Blame::Thread(library) => {
-            write(&["error: a thread of library `", library, "` ended the whole process, by `", by, "`\n"]);
-        }
+        Blame::Thread(library) => write(&["error: a thread of library `", library, "`", did, by, "`", why, "\n"]),
         // Code that a thread of the program calls by itself, such as the destructor of a key.
         Blame::Nobody => match library_above(top) {
-            Some(library) => {
-                write(&["error: code of library `", library, "` ended the whole process, by `", by, "`\n"])
-            }
-            None => write(&["error: code of a library ended the whole process, by `", by, "`\n"]),
+            Some(library) => write(&["error: code of library `", library, "`", did, by, "`", why, "\n"]),
+            None => write(&["error: code of a library", did, by, "`", why, "\n"]),
         },
     }
     hardware::stop();

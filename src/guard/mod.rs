@@ -6,6 +6,8 @@ mod end;
 mod floats;
 mod hang;
 mod hardware;
+#[cfg(target_arch = "x86_64")]
+mod jump;
 mod limits;
 mod own_end;
 mod signals;
@@ -43,6 +45,8 @@ pub(crate) fn install() {
         floats::keep();
         limits::keep();
         thread_end::prepare();
+        #[cfg(target_arch = "x86_64")]
+        jump::prepare();
         blame::keep_process();
         crash::install();
         end::install();

@@ -3,6 +3,7 @@ use std::any::Any;
 use saoms_abi::Sink;
 
 use crate::CallError;
+use crate::host::present::{Function, Owner, enter, here};
 use crate::host::{Operation, ServiceCall};
 
 /// A call that came across the boundary: its arguments and its reply are bytes.
@@ -10,13 +11,15 @@ pub(super) struct BytesCall<'a> {
     operation: Operation,
     arguments: &'a [u8],
     reply: Sink,
+    /// The code that calls, and takes the reply.
+    caller: Option<(&'static Owner, Function)>,
 }
 
 impl BytesCall<'_> {
     /// # Safety
     /// The sink's owner waits for as long as the call is used.
     pub(super) unsafe fn new(operation: Operation, arguments: &[u8], reply: Sink) -> BytesCall<'_> {
-        BytesCall { operation, arguments, reply }
+        BytesCall { operation, arguments, reply, caller: here() }
     }
 }
 
@@ -34,6 +37,7 @@ impl ServiceCall for BytesCall<'_> {
     }
 
     fn reply(&mut self, bytes: &[u8]) -> Result<(), CallError> {
+        let _entered = self.caller.map(|(owner, function)| enter(owner, function));
         // SAFETY: `new`'s caller promised that the owner waits.
         unsafe { self.reply.put(bytes) };
         Ok(())

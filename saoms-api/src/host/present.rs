@@ -133,7 +133,12 @@ struct ThreadCall {
     function: AtomicU8,
     /// Counts beginnings and ends, so that another thread can distinguish two calls.
     changes: AtomicU64,
+    /// The value of `changes` when the present call began; 0 if there is none.
+    number: AtomicU64,
 }
+
+/// The number of bits that count the changes of one thread; those above are the number of its entry.
+const COUNTED: u32 = 44;
 
 /// The entries of all threads that ever called a library, and those whose thread has ended.
 static ALL: Mutex<Vec<&'static ThreadCall>> = Mutex::new(Vec::new());
@@ -190,12 +195,14 @@ fn register() -> &'static ThreadCall {
     end_forked();
     let free = FREE.lock().unwrap_or_else(PoisonError::into_inner).pop();
     let call = free.unwrap_or_else(|| {
+        let mut all = ALL.lock().unwrap_or_else(PoisonError::into_inner);
         let new: &'static ThreadCall = Box::leak(Box::new(ThreadCall {
             owner: AtomicPtr::default(),
             function: AtomicU8::new(0),
-            changes: AtomicU64::new(0),
+            changes: AtomicU64::new((all.len() as u64) << COUNTED),
+            number: AtomicU64::new(0),
         }));
-        ALL.lock().unwrap_or_else(PoisonError::into_inner).push(new);
+        all.push(new);
         new
     });
     HERE.set(Some(call));
@@ -210,14 +217,20 @@ fn register() -> &'static ThreadCall {
 pub struct Entered {
     owner: *mut Owner,
     function: u8,
+    number: u64,
 }
 
 /// Writes down that code of a library runs on this thread from now on.
 #[inline]
 pub fn enter(owner: &'static Owner, function: Function) -> Entered {
     let call = HERE.get().unwrap_or_else(register);
-    let outer = Entered { owner: call.owner.load(Ordering::Relaxed), function: call.function.load(Ordering::Relaxed) };
-    call.set(ptr::from_ref(owner).cast_mut(), function as u8);
+    let outer = Entered {
+        owner: call.owner.load(Ordering::Relaxed),
+        function: call.function.load(Ordering::Relaxed),
+        number: call.number.load(Ordering::Relaxed),
+    };
+    let number = call.set(ptr::from_ref(owner).cast_mut(), function as u8);
+    call.number.store(number, Ordering::Relaxed);
     outer
 }
 
@@ -225,19 +238,25 @@ impl Drop for Entered {
     #[inline]
     fn drop(&mut self) {
         match HERE.get() {
-            Some(call) => call.set(self.owner, self.function),
+            Some(call) => {
+                call.set(self.owner, self.function);
+                call.number.store(self.number, Ordering::Relaxed);
+            }
             None => end_forked(),
         }
     }
 }
 
 impl ThreadCall {
+    /// Writes a beginning or an end down, and gives its number.
     #[inline]
-    fn set(&self, owner: *mut Owner, function: u8) {
+    fn set(&self, owner: *mut Owner, function: u8) -> u64 {
         // This thread alone writes.
-        self.changes.store(self.changes.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+        let number = self.changes.load(Ordering::Relaxed).wrapping_add(1);
+        self.changes.store(number, Ordering::Relaxed);
         self.function.store(function, Ordering::Relaxed);
         self.owner.store(owner, Ordering::Release);
+        number
     }
 
     fn read(&self) -> Option<(&'static Owner, Function)> {
@@ -250,6 +269,11 @@ impl ThreadCall {
 /// The code of a library that runs on this thread. A signal handler may ask.
 pub fn here() -> Option<(&'static Owner, Function)> {
     HERE.get().and_then(ThreadCall::read)
+}
+
+/// A number that only the present call into a library has, of all calls of all threads; 0 outside of calls.
+pub fn call_number() -> u64 {
+    HERE.get().map_or(0, |call| call.number.load(Ordering::Relaxed))
 }
 
 /// The code of libraries that runs on all threads, each with a number that is another one at each call of the thread.

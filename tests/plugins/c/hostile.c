@@ -128,6 +128,10 @@ static SaomsStatus initialize(void *component, const SaomsHostHandle *host, Saom
     uint32_t count = does(actor, "subscribes without end") ? 1000000 : 1;
     if (strncmp(actor->does, "begins: ", 8) == 0) {
         act_on_process(actor->does + 8);
+    } else if (does(actor, "jumps to an earlier call")) {
+        act_on_process("marks a place");
+    } else if (does(actor, "continues a part")) {
+        act_on_process("begins a part");
     }
     SaomsStatus status;
     if (does(actor, "another schema")) {
@@ -160,6 +164,11 @@ static void *crash(void *nothing) {
     (void)nothing;
     *nowhere = 1;
     return NULL;
+}
+
+static void leave(void *state, SaomsBytes bytes) {
+    (void)state, (void)bytes;
+    longjmp(earlier, 1);
 }
 
 static void nothing(void *state, SaomsBytes bytes) { (void)state, (void)bytes; }
@@ -263,6 +272,16 @@ static SaomsStatus execute(void *component, const SaomsHostHandle *host, SaomsSi
     } else if (does(actor, "calls")) {
         /* As a component in C passes a failed call on. */
         return functions->call(host->state, actor->callee, 0, saoms_text(""), reply, error);
+    } else if (does(actor, "calls and is left")) {
+        if (setjmp(earlier) == 0) {
+            return functions->call(host->state, actor->callee, 0, saoms_text(""), reply, error);
+        }
+        fprintf(stderr, "is left by the component that it called\n");
+    } else if (does(actor, "leaves a reply")) {
+        SaomsSink left = {NULL, leave};
+        if (setjmp(earlier) == 0) {
+            return functions->call(host->state, actor->callee, 0, saoms_text(""), left, error);
+        }
     } else if (does(actor, "keeps null")) {
         return functions->keep(host->state, null, &number, error);
     } else if (does(actor, "a region without a block")) {
@@ -302,7 +321,15 @@ static SaomsStatus shutdown(void *component, const SaomsHostHandle *host, SaomsS
 
 static SaomsStatus serve(void *component, const SaomsHostHandle *host, SaomsBytes service, uint32_t operation,
                          SaomsBytes arguments, SaomsSink reply, SaomsSink error) {
-    (void)component, (void)host, (void)service, (void)operation, (void)arguments, (void)reply;
+    (void)host, (void)service, (void)operation, (void)arguments, (void)reply;
+    if (does(component, "leaves its caller")) {
+        longjmp(earlier, 1);
+    } else if (does(component, "replies")) {
+        static const uint8_t four[] = {4, 0, 0, 0};
+        SaomsBytes bytes = {four, sizeof four};
+        reply.put(reply.state, bytes);
+        return SaomsStatus_OK;
+    }
     return saoms_fail(error, "serves nobody");
 }
 

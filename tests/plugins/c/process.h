@@ -2,12 +2,14 @@
 #include <dlfcn.h>
 #include <fenv.h>
 #include <pthread.h>
+#include <setjmp.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <ucontext.h>
 #include <unistd.h>
 #include <unwind.h>
 
@@ -55,6 +57,43 @@ static void limit(int resource) {
     getrlimit(resource, &none);
     none.rlim_cur = 0;
     setrlimit(resource, &none);
+}
+
+/* Where code of this library jumps to: from another call of it, and within one. */
+static jmp_buf earlier, within;
+
+/* A part of the library with a stack of its own, which each call continues, as coroutines do. */
+static jmp_buf part, rest;
+static ucontext_t beginner, begun;
+
+static void run_part(void) {
+    if (setjmp(part) == 0) {
+        swapcontext(&begun, &beginner);
+    }
+    fprintf(stderr, "the part with its own stack continues\n");
+    longjmp(rest, 1);
+}
+
+static void begin_part(void) {
+    static char stack[1 << 16];
+    getcontext(&begun);
+    begun.uc_stack.ss_sp = stack;
+    begun.uc_stack.ss_size = sizeof stack;
+    makecontext(&begun, run_part, 0);
+    swapcontext(&beginner, &begun);
+}
+
+static void continue_part(void) {
+    if (setjmp(rest) == 0) {
+        longjmp(part, 1);
+    }
+}
+
+static void jump_within(void) {
+    if (setjmp(within) == 0) {
+        longjmp(within, 1);
+    }
+    fprintf(stderr, "has jumped within its call\n");
 }
 
 /* Does it, if it is one of these. */
@@ -176,6 +215,18 @@ static void act_on_process(const char *does) {
     } else if (strcmp(does, "aborts later") == 0) {
         kill(getpid(), SIGABRT);
         sleep(1);
+    } else if (strcmp(does, "marks a place") == 0) {
+        if (setjmp(earlier) != 0) {
+            fprintf(stderr, "is in a call that has returned\n");
+        }
+    } else if (strcmp(does, "jumps to an earlier call") == 0) {
+        longjmp(earlier, 1);
+    } else if (strcmp(does, "jumps within its call") == 0) {
+        jump_within();
+    } else if (strcmp(does, "begins a part") == 0) {
+        begin_part();
+    } else if (strcmp(does, "continues a part") == 0) {
+        continue_part();
     } else if (strcmp(does, "ends its thread") == 0) {
         pthread_exit(NULL);
     }

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use super::build::c_library_of;
 use super::hostile::{bad, ended, ended_with};
-use super::run::{component, in_folder};
+use super::run::{component, in_folder, property};
 use crate::support::{PROGRAM, command, stderr, stdout, text};
 
 /// The beginning of what is told of component `Bad`.
@@ -281,5 +281,39 @@ fn hardware_stops_before_code_of_a_library_ends_the_process() {
         let expected = "error: the hardware of component `Bad` may still move: its stop function has not returned";
         assert!(stderr(&output).contains(expected), "{does}: {}", text(&output));
         assert_eq!((output.status.signal(), output.status.code() == Some(1)), (signal, signal.is_none()), "{does}");
+    }
+}
+
+#[test]
+fn a_jump_out_of_a_call_is_told_with_component_and_library() {
+    for definitions in [&[][..], &["_FORTIFY_SOURCE=2"]] {
+        let output = ended_with(&bad("h.Actor", "jumps to an earlier call", ""), definitions);
+        assert_jumps(&output, "jumped out of its call, by `longjmp` in `execute`: it may only jump within one call");
+        let caller = "<reference name=\"callee\" target=\"Bad/callee\"/>";
+        let caller = component("Caller", "h.Actor", &(property("does", "calls and is left") + caller));
+        let output = ended_with(&(bad("h.Actor", "leaves its caller", "") + &caller), definitions);
+        assert_jumps(&output, "jumped out of its call, by `longjmp` in a service: it may only jump within one call");
+        let caller = bad("h.Actor", "leaves a reply", "<reference name=\"callee\" target=\"Callee/callee\"/>");
+        let output = ended_with(&(caller + &component("Callee", "h.Actor", &property("does", "replies"))), definitions);
+        assert_jumps(&output, "jumped out of its call, by `longjmp` in `execute`: it may only jump within one call");
+    }
+}
+
+fn assert_jumps(output: &std::process::Output, expected: &str) {
+    let told = stderr(output);
+    let line = told.lines().find(|line| line.starts_with("error: component `Bad` of library `"));
+    assert!(line.is_some_and(|line| line.ends_with(&format!("libhostile.so` {expected}"))), "{}", text(output));
+    assert_eq!((output.status.signal(), output.status.code()), (None, Some(1)), "{}", text(output));
+}
+
+#[test]
+fn a_jump_within_a_call_and_between_stacks_of_a_library_goes_on() {
+    for (does, expected) in [
+        ("jumps within its call", "has jumped within its call\n"),
+        ("continues a part", "the part with its own stack continues\n"),
+    ] {
+        let output = ended(does);
+        assert_eq!((output.status.signal(), output.status.code()), (None, Some(0)), "{does}: {}", text(&output));
+        assert!(stderr(&output).contains(expected), "{does}: {}", text(&output));
     }
 }
