@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, nearest, quoted};
 use crate::load::renaming;
 use crate::model::{ValueDocument, Version};
-use crate::source::{FileId, Sources, Text};
+use crate::source::{FileId, Sources, Span, Text};
 use crate::syntax::{self, Element, Parse};
 
 /// The element of SCA that holds the values of a file.
@@ -20,17 +20,27 @@ pub(super) struct FileValue {
     pub(super) document: Option<ValueDocument>,
 }
 
-/// Reads the `text` of a file (SCA Assembly 1.1, 4.1.3; ASM50046): XML with the root `values` of SCA holds a `value`
-/// for each value, or elements; other XML is one value as a whole, with the root as its name; all else is a text.
-/// Faults are reported in the file.
-pub(super) fn read(file: FileId, text: Text, sources: &Sources, diagnostics: &mut Diagnostics) -> FileValue {
+/// Reads a file (SCA Assembly 1.1, 4.1.3; ASM50046): XML with the root `values` of SCA holds a `value` for each value,
+/// or elements; other XML is one value as a whole, with the root as its name; all else is a text. Faults are reported
+/// in the file.
+pub(super) fn read(file: FileId, sources: &Sources, diagnostics: &mut Diagnostics) -> FileValue {
+    let whole = sources.get(file).text();
+    let content = whole.trim_start_matches('\u{feff}');
+    let text = Text::part_of(file, whole, content);
+    // The blanks of a text of several lines may mean something: a map may have rows of blanks.
+    let plain = || {
+        let span = Span::new((whole.len() - content.len()) as u32, whole.len() as u32);
+        let has_lines = text.contains('\n');
+        let text = if has_lines { Text::new(content.into(), span.in_file(file)) } else { text.clone() };
+        FileValue { text: Some(text), document: None }
+    };
     if !text.starts_with('<') {
-        return FileValue { text: Some(text), document: None };
+        return plain();
     }
-    let Parse { document, faults } = syntax::parse(file, sources.get(file).text());
+    let Parse { document, faults } = syntax::parse(file, whole);
     if !faults.is_empty() && !is_meant_as_values(&text) {
         // A text that begins like XML and is none is a text.
-        return FileValue { text: Some(text), document: None };
+        return plain();
     }
     let is_damaged = !faults.is_empty();
     faults.into_iter().for_each(|fault| diagnostics.push(fault));

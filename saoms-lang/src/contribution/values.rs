@@ -19,7 +19,7 @@ use crate::source::{FileId, Location, Sources, Text};
 /// `max_size` bytes. A name is a URI (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the
 /// composite; files are read from disk alone.
 ///
-/// The content of the file, without white space at its ends, is the value; its place is in that file. XML with the root
+/// The content of the file is the value, without white space at its ends if it is one line; its place is in that file. XML with the root
 /// `values` of SCA holds values in elements (ASM50046). A file that cannot be read is reported where it is named. So
 /// are the tables that replicated components name with `overrides`.
 pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) {
@@ -45,9 +45,7 @@ pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sourc
             match read::value(&path, max_size, file, sources.open()) {
                 Ok(text) => {
                     let file = sources.add(path.display().to_string(), text);
-                    let whole = sources.get(file).text();
-                    let text = Text::part_of(file, whole, whole.trim_start_matches('\u{feff}'));
-                    let value = value_file::read(file, text, sources, diagnostics);
+                    let value = value_file::read(file, sources, diagnostics);
                     known.insert(path.clone(), value);
                 }
                 Err(diagnostic) => diagnostics.push(*diagnostic),

@@ -336,7 +336,14 @@ fn assembly(arguments: &RunArguments, files: &FleetArguments) -> Option<(Assembl
     }
     let mut read = files_read(&compilation, files);
     read.extend(arguments.events.clone());
-    compilation.output.map(|assembly| (assembly, read))
+    let assembly = compilation.output?;
+    if assembly.components.is_empty() {
+        eprint(
+            "error: this fleet has no components: there is nothing to run\n  = help: add a `<component name=\"...\">` to its composite, or name another composite; `saoms new site` makes one to start from\n\n1 error: nothing was started\n",
+        );
+        return None;
+    }
+    Some((assembly, read))
 }
 
 fn seed(text: &str) -> Result<u64, String> {

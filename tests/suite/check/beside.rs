@@ -86,6 +86,16 @@ fn a_file_of_a_value_by_another_name_is_read() {
 }
 
 #[test]
+fn rows_of_blanks_at_the_ends_of_a_map_file_are_told() {
+    let composite = HALL.replace("\"saoms.World\"/>", "\"saoms.World\"/><property name=\"map\" file=\"map.txt\"/>");
+    let (rows, blank) = ("...........\n".repeat(11), format!("{}\n", " ".repeat(11)));
+    for map in [format!("{blank}{rows}"), format!("{rows}{blank}")] {
+        let told = told_of("blank rows", &[("hall.composite", &composite), ("map.txt", &map)], &["hall.composite"]);
+        assert_hint("blank rows", &told, "S3014", "write `....` for four free blocks");
+    }
+}
+
+#[test]
 fn uses_with_one_world_are_not_told_to_be_sites() {
     let (others, robot) = HALL.split_once("  <component name=\"Robot7\">").unwrap();
     let (root, others) = others.split_once("name=\"hall\" targetNamespace=\"urn:hall\">").unwrap();

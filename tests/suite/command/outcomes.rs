@@ -142,3 +142,20 @@ fn a_scenario_with_a_long_pause_is_played_to_its_end() {
     assert_eq!((code(&output), &report["luggage"]["delivered"]), (0, &Value::from(2)), "{}", text(&output));
     assert_eq!(report["standstill"], Value::Null);
 }
+
+#[test]
+fn a_fleet_without_components_is_refused() {
+    let empty =
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="e" targetNamespace="urn:e"/>"#;
+    for options in [&[][..], &["--virtual"]] {
+        let file = empty_folder("outcome-empty").join("empty.composite");
+        fs::write(&file, empty).unwrap();
+        let output = saoms(&[&["run", file.to_str().unwrap()], options].concat());
+        assert_eq!(code(&output), 2, "{}", text(&output));
+        assert!(
+            text(&output).contains("error: this fleet has no components: there is nothing to run"),
+            "{}",
+            text(&output)
+        );
+    }
+}
