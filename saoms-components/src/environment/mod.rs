@@ -153,7 +153,7 @@ impl Component for Environment {
         let pieces = pieces(*first, self.open.len() - 1);
         Some(match passed_on {
             true => format!("a robot to carry {pieces}"),
-            false => format!("a master of the environment to pass on {pieces}"),
+            false => format!("a master of the environment to pass on {pieces} on `{}`", EVENT_LUGGAGE.name()),
         })
     }
 }

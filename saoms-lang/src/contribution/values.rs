@@ -19,9 +19,9 @@ use crate::source::{FileId, Location, Sources, Text};
 /// `max_size` bytes. A name is a URI (SCA Assembly 1.1, 4.1.3), as a rule a path relative to the folder of the
 /// composite; files are read from disk alone.
 ///
-/// The content of the file is the value, without white space at its ends if it is one line; its place is in that file. XML with the root
-/// `values` of SCA holds values in elements (ASM50046). A file that cannot be read is reported where it is named. So
-/// are the tables that replicated components name with `overrides`.
+/// The content of the file is the value, without white space at its ends if it is one line; its place is in that file.
+/// XML with the root `values` of SCA holds values in elements (ASM50046). A file that cannot be read is reported where
+/// it is named. So are the tables that replicated components name with `overrides`.
 pub fn read_values(composite: &mut Composite, max_size: u64, sources: &mut Sources, diagnostics: &mut Diagnostics) {
     let own = Path::new(sources.get(composite.file()).path());
     let folder = own.parent().map(Path::to_owned).unwrap_or_default();

@@ -49,7 +49,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
         (
             "S5001: luggage is in the world that hears of it, not in that of the other site",
             "NWorld:World:North width=3|height=3
-             NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (5,5)|topicRename=ETOPIC,/events
+             NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (5,5)|topicRename=ETOPIC,/events::ELMSTOPIC,/South/ELMSTOPIC
              World:World:South topicRename=ETOPIC,/events
              SMaster:MasterEnvironment:South topicRename=ETOPIC,/events
              SRobot1:Robot:South@World",
@@ -90,6 +90,14 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
              NMaster:MasterEnvironment:North
              NRobot1:Robot:North@NWorld",
             &["S5009 no robot is in this world: it is in no site, or the fleet has no robot there"],
+        ),
+        (
+            "S5008: an environment outside of the site does not hear of its luggage",
+            "Environment:Environment: scenario=at 1s luggage (1,1) to (5,5)|topicRename=ETOPIC,North/ETOPIC
+             NWorld:World:North
+             NMaster:MasterEnvironment:North
+             NRobot1:Robot:North@NWorld",
+            &["S5008 `Environment` does not receive what becomes of this luggage, so the run never ends"],
         ),
         (
             "S5018: a site without an environment, and one whose environment has no scenario",
@@ -189,7 +197,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
         ),
         (
             "S5007: the map is that of the world that hears of it",
-            "NEnvironment:Environment:North scenario=at 1s luggage (0,0) to (4,1)|topicRename=ETOPIC,/ETOPIC
+            "NEnvironment:Environment:North scenario=at 1s luggage (0,0) to (4,1)|topicRename=ETOPIC,/ETOPIC::ELMSTOPIC,/South/ELMSTOPIC
              NWorld:World:North map=...@..&#10;...@..
              NRobot1:Robot:North@NWorld
              World:World:South topicRename=ETOPIC,/ETOPIC|map=...@..&#10;...@..
@@ -199,7 +207,7 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
         ),
         (
             "S5008: the master of another site hears the events",
-            "NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)|topicRename=ETOPIC,/ETOPIC
+            "NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)|topicRename=ETOPIC,/ETOPIC::ELMSTOPIC,/South/ELMSTOPIC
              World:World:South topicRename=ETOPIC,/ETOPIC
              SMaster:MasterEnvironment:South topicRename=ETOPIC,/ETOPIC
              SRobot1:Robot:South@World",
@@ -337,8 +345,8 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
         ),
         (
             "S5011: luggage of two sites is on one topic",
-            "NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)|topicRename=ETOPIC,/ETOPIC
-             SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)|topicRename=ETOPIC,/ETOPIC
+            "NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)|topicRename=ETOPIC,/ETOPIC::ELMSTOPIC,/ELMSTOPIC
+             SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)|topicRename=ETOPIC,/ETOPIC::ELMSTOPIC,/ELMSTOPIC
              Master:MasterEnvironment:
              Robot1:Robot:",
             &["S5011 `NEnvironment` and `SEnvironment` both number their luggage from 1:"],

@@ -86,7 +86,7 @@ fn a_run_in_which_nothing_can_happen_any_more_ends_and_says_who_waits_for_what()
             "1.100 s",
             &[
                 "`World` waits for a robot to carry luggage 1",
-                "`Environment` waits for a master of the environment to pass on luggage 1",
+                "`Environment` waits for a master of the environment to pass on luggage 1 on `ELMSTOPIC`",
                 "`Robot7` waits for luggage",
             ],
         ),

@@ -20,7 +20,8 @@ pub(in crate::rules) static RULE: FleetRule = FleetRule {
         name: "unserved",
         meaning: "A scenario has no effect: it has no events, no component forwards its events, no robot or world receives them, or \
             all robots are classic robots that sleep, and nothing wakes them. Components of other sites receive them \
-            only on topics outside of sites.",
+            only on topics outside of sites. Or the environment does not receive what becomes of its luggage, and the \
+            run never ends.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -80,7 +81,31 @@ fn without_effect(fleet: &FleetView<'_>) -> Vec<Finding> {
             ),
         })
     });
-    unless_elsewhere(fleet, judged.collect())
+    let unheard = scenarios.iter().filter_map(|(index, has)| without_news(fleet, *index, has));
+    unless_elsewhere(fleet, judged.chain(unheard).collect())
+}
+
+/// A finding about an environment that does not receive what becomes of its luggage.
+fn without_news(fleet: &FleetView<'_>, index: usize, has: &FirstEvents) -> Option<Finding> {
+    let first = has.luggage.as_ref()?;
+    let environment = &fleet.components()[index];
+    let own = environment.topic(EVENT_LUGGAGE.name());
+    let told = passed_on(fleet, events(fleet, index), EVENT_LUGGAGE.name());
+    // Where nobody passes it on, that is the mistake.
+    let name = told.first().filter(|_| !told.contains(own))?;
+    let message = format!(
+        "`{}` does not receive what becomes of this luggage, so the run never ends: masters and robots report it on \
+         the topic `{name}`, and `{}` receives `{own}`",
+        environment.path, environment.path
+    );
+    let outside = if own.contains('/') { "/" } else { "" };
+    let topic = EVENT_LUGGAGE.name();
+    let help = match own == topic || own.ends_with(&format!("/{topic}")) {
+        true => format!("add the pair `{topic},{outside}{name}` to the `topicRename` of `{}`", environment.path),
+        false => together(topic, environment, ("its luggage", name)),
+    };
+    let place = Place::property("scenario").part(first.0, first.1.clone()).in_component(index);
+    Some(Finding::new(place, message).help(help))
 }
 
 /// Index of the text and byte range of the word at which a scenario first has a kind of event.
