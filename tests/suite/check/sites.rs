@@ -353,9 +353,9 @@ fn rules_follow_the_names_that_topics_have_on_the_bus() {
         ),
         (
             "S5011: masters of two sites pass it on on one topic",
-            "NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)
+            "NEnvironment:Environment:North scenario=at 1s luggage (1,1) to (2,2)|topicRename=ELMSTOPIC,/ELMSTOPIC
              NMaster:MasterEnvironment:North topicRename=ELMSTOPIC,/ELMSTOPIC
-             SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)
+             SEnvironment:Environment:South scenario=at 1s luggage (1,1) to (2,2)|topicRename=ELMSTOPIC,/ELMSTOPIC
              SMaster:MasterEnvironment:South topicRename=ELMSTOPIC,/ELMSTOPIC
              Robot1:Robot:",
             &["S5011 `NEnvironment` and `SEnvironment` both number their luggage from 1:"],
