@@ -296,8 +296,9 @@ typedef struct SaomsStopView {
     // Stops the hardware, and may wait for it. `FAILED`, with a text in `error`: it may still move.
     SaomsStatus (*stop)(void *state, struct SaomsSink error);
     // Tells the hardware that its component is alive: it stops by itself when it hears nothing for twice the period,
-    // which is in nanoseconds. Must not wait. May be null: there is no heartbeat.
-    void (*heartbeat)(void *state, uint64_t period);
+    // which is in nanoseconds. Must not wait. `FAILED`, with a text in `error`: whoever has executed fails. May be
+    // null: there is no heartbeat.
+    SaomsStatus (*heartbeat)(void *state, uint64_t period, struct SaomsSink error);
     // Frees the state. May be null: there is nothing to free.
     void (*release)(void *state);
 } SaomsStopView;

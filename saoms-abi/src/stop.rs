@@ -14,8 +14,9 @@ pub struct StopView {
     /// Stops the hardware, and may wait for it. `FAILED`, with a text in `error`: it may still move.
     pub stop: Option<unsafe extern "C" fn(state: *mut c_void, error: Sink) -> Status>,
     /// Tells the hardware that its component is alive: it stops by itself when it hears nothing for twice the period,
-    /// which is in nanoseconds. Must not wait. May be null: there is no heartbeat.
-    pub heartbeat: Option<unsafe extern "C" fn(state: *mut c_void, period: u64)>,
+    /// which is in nanoseconds. Must not wait. `FAILED`, with a text in `error`: whoever has executed fails. May be
+    /// null: there is no heartbeat.
+    pub heartbeat: Option<unsafe extern "C" fn(state: *mut c_void, period: u64, error: Sink) -> Status>,
     /// Frees the state. May be null: there is nothing to free.
     pub release: Option<unsafe extern "C" fn(state: *mut c_void)>,
 }

@@ -23,9 +23,13 @@ struct FailureDetails {
 }
 
 impl Failure {
-    /// A failure with this message.
+    /// A failure with this message. An empty one is replaced: the failure says that it has none.
     pub fn new(message: impl Into<String>) -> Failure {
-        Failure { message: message.into(), details: None }
+        let mut message = message.into();
+        if message.is_empty() {
+            "failed without a message".clone_into(&mut message);
+        }
+        Failure { message, details: None }
     }
 
     /// For hosts: a failure with findings.
@@ -87,7 +91,7 @@ impl<E: Reason> From<E> for Failure {
         };
         match reason.downcast::<Finding>() {
             Ok(finding) => Failure::of_findings(vec![*finding]),
-            Err(reason) => Failure { message: with_sources(&*reason), details: None },
+            Err(reason) => Failure::new(with_sources(&*reason)),
         }
     }
 }

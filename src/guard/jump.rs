@@ -7,17 +7,18 @@
 
 use std::arch::naked_asm;
 use std::cell::Cell;
-use std::ffi::{CStr, c_int, c_void};
+use std::ffi::{c_int, c_void};
 use std::mem::{MaybeUninit, transmute};
 use std::ops::Range;
 use std::ptr;
-use std::sync::atomic::{AtomicPtr, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use saoms_api::host::present::call_number;
 
 use super::ENDS;
-use super::blame::{is_program, leave, next};
+use super::blame::{is_program, leave};
 use super::end::end_after;
+use super::real::Real;
 use crate::Exit;
 
 /// How many places are known at a time. A place that others displaced is not checked.
@@ -47,24 +48,6 @@ impl Place {
     fn number(&self, buffer: usize) -> Option<u64> {
         let number = self.number.load(Ordering::Relaxed);
         (self.mixed.load(Ordering::Relaxed) ^ number == buffer as u64).then_some(number)
-    }
-}
-
-/// A function of the system, once it was looked up.
-struct Real(&'static CStr, AtomicPtr<c_void>);
-
-impl Real {
-    const fn of(name: &'static CStr) -> Real {
-        Real(name, AtomicPtr::new(ptr::null_mut()))
-    }
-
-    fn get(&self) -> *mut c_void {
-        let mut known = self.1.load(Ordering::Relaxed);
-        if known.is_null() {
-            known = next(self.0);
-            self.1.store(known, Ordering::Relaxed);
-        }
-        known
     }
 }
 

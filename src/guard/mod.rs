@@ -10,6 +10,10 @@ mod hardware;
 mod jump;
 mod limits;
 mod own_end;
+#[cfg(target_arch = "x86_64")]
+mod raised;
+#[cfg(target_arch = "x86_64")]
+mod real;
 mod signals;
 mod stray;
 mod thread_end;
@@ -47,6 +51,8 @@ pub(crate) fn install() {
         thread_end::prepare();
         #[cfg(target_arch = "x86_64")]
         jump::prepare();
+        #[cfg(target_arch = "x86_64")]
+        raised::prepare();
         blame::keep_process();
         crash::install();
         end::install();

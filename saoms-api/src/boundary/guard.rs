@@ -1,9 +1,9 @@
-use std::borrow::Cow;
 use std::ffi::c_void;
 
 use saoms_abi::{FindingSink, ReadError, Sink, Status};
 
 use crate::host::contain::{contained, contained_or};
+use crate::host::shown;
 use crate::{CallError, Failure};
 
 use super::convert::put_findings;
@@ -87,19 +87,6 @@ pub(super) unsafe fn guarded_call(error: Sink, code: impl FnOnce() -> Result<(),
         }
     }
     status
-}
-
-/// The bytes of a text for people that are shown.
-const MOST_SHOWN: usize = 10_000;
-
-/// A text for people of the other side: what is no text is replaced, and what is too long left out.
-pub(super) fn shown(text: &[u8]) -> Cow<'_, str> {
-    let Some((first, more @ [_, ..])) = text.split_at_checked(MOST_SHOWN) else {
-        return String::from_utf8_lossy(text);
-    };
-    let first = String::from_utf8_lossy(first);
-    // A character that was cut in two is left out.
-    format!("{}… ({} more bytes)", first.trim_end_matches(char::REPLACEMENT_CHARACTER), more.len()).into()
 }
 
 /// Runs code of this side that cannot answer with a failure: after a panic the answer is `otherwise`.

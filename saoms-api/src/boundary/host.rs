@@ -9,11 +9,11 @@ use saoms_abi::{
 };
 
 use crate::host::Host;
-use crate::host::{Phase, SharedMessage};
+use crate::host::{Phase, SharedMessage, shown};
 use crate::{Cause, Departed, Failure, Header, Level, Region, Time, Work};
 
 use super::convert::{PropertyViews, read_record, read_report, read_topic, read_value};
-use super::guard::{guarded, guarded_call, guarded_value, shown};
+use super::guard::{guarded, guarded_call, guarded_value};
 use super::lease_cell::host;
 use super::looping::export_loop;
 use super::null::{self, given, place};

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use saoms_abi::{Sink, Status, StopView};
 
-use crate::host::contain::contained;
+use crate::host::contain::{contained, resume};
 use crate::host::present::{Function, Owner, enter, here};
 use crate::{Failure, StopFunction};
 
@@ -31,9 +31,14 @@ unsafe extern "C" fn stop_here(state: *mut c_void, error: Sink) -> Status {
     unsafe { guarded(error, || (*state.cast::<StopFunction>()).stop()) }
 }
 
-unsafe extern "C" fn beat_here(state: *mut c_void, period: u64) {
-    // SAFETY: the state is that of `export`, which threads may share. A panic is contained: the heartbeat is missing.
-    let _ = contained(|| unsafe { (*state.cast::<StopFunction>()).beat(Duration::from_nanos(period)) });
+unsafe extern "C" fn beat_here(state: *mut c_void, period: u64, error: Sink) -> Status {
+    // SAFETY: the state is that of `export`, which threads may share; the sink's owner waits for this call.
+    unsafe {
+        guarded(error, || {
+            (*state.cast::<StopFunction>()).beat(Duration::from_nanos(period));
+            Ok(())
+        })
+    }
 }
 
 unsafe extern "C" fn release_here(state: *mut c_void) {
@@ -100,7 +105,9 @@ pub(super) unsafe fn import(view: *const StopView) -> Result<StopFunction, Failu
             let _entered = of_beat.owner.map(|owner| enter(owner, Function::Heartbeat));
             let nanos = u64::try_from(period.as_nanos()).unwrap_or(u64::MAX);
             // SAFETY: as above.
-            unsafe { beat(of_beat.view.state, nanos) }
+            let beaten = call(|error| unsafe { beat(of_beat.view.state, nanos, error) });
+            // What the function of a linked component could only tell by a panic, too.
+            beaten.unwrap_or_else(|failure| resume(failure));
         }),
     })
 }

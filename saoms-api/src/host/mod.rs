@@ -32,7 +32,7 @@ pub use crate::topic::{TopicDeclaration, TopicKind};
 pub use calendar::calendar_date;
 pub use saoms_derive::WriteProperties;
 pub use smol_str::SmolStr;
-pub use visible::{Visible, is_invisible, one_line, shorten};
+pub use visible::{Visible, is_invisible, one_line, shorten, shown};
 pub use xml::escaped;
 
 use crate::{

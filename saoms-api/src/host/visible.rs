@@ -56,6 +56,20 @@ pub fn shorten(message: &mut String) {
     }
 }
 
+/// The bytes of a text for people that are shown.
+const MOST_SHOWN: usize = 10_000;
+
+/// A text for people, of whatever length: what is no text is replaced, and what is beyond 10,000 bytes left out, with
+/// its length.
+pub fn shown(text: &[u8]) -> Cow<'_, str> {
+    let Some((first, more @ [_, ..])) = text.split_at_checked(MOST_SHOWN) else {
+        return String::from_utf8_lossy(text);
+    };
+    let first = String::from_utf8_lossy(first);
+    // A character that was cut in two is left out.
+    format!("{}… ({} more bytes)", first.trim_end_matches(char::REPLACEMENT_CHARACTER), more.len()).into()
+}
+
 fn show(character: char, shown: &mut String) {
     if is_invisible(character) {
         shown.extend(character.escape_default());

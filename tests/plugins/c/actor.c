@@ -111,9 +111,12 @@ static SaomsStatus stop_motor(void *state, SaomsSink error) {
     return SaomsStatus_OK;
 }
 
-static void beat_motor(void *state, uint64_t period) {
-    (void)state;
+static SaomsStatus beat_motor(void *state, uint64_t period, SaomsSink error) {
+    if (strcmp(state, "dead heart") == 0) {
+        return saoms_fail(error, "the heart is dead");
+    }
     fprintf(stderr, "the motor hears: %llu\n", (unsigned long long)period);
+    return SaomsStatus_OK;
 }
 
 static void release_motor(void *state) {

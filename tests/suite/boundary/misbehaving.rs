@@ -115,6 +115,24 @@ fn a_panic_in_a_service_fails_the_provider_and_its_caller_hears_of_it() {
 }
 
 #[test]
+fn a_panic_that_no_call_contains_names_the_library() {
+    let of_library = format!("of library `{}` panicked", library("bad").display());
+    let run = beside_honest(&acts("execute", "thread panics"));
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    assert_eq!(run.text.matches(&format!("warning: a thread {of_library}\n")).count(), 1, "{}", run.text);
+    let run = second(&acts("execute", "local of a thread"), &libraries());
+    let expected = format!(
+        "warning: library `{}` panicked in the destructor of a thread-local variable\n",
+        library("bad").display()
+    );
+    assert!(run.text.contains(&expected), "{}", run.text);
+    assert!(run.text.contains("` crashed in the destructor of a thread-local variable: SIGABRT"), "{}", run.text);
+    assert_ne!(run.code, Some(0), "{}", run.text);
+    // What a call contains is told by its failure alone.
+    assert!(!beside_honest(&acts("execute", "panic")).text.contains(&of_library));
+}
+
+#[test]
 fn a_panic_in_what_a_reload_calls_is_a_failure() {
     let mut registry = Registry::new();
     Plugin::open(&library("bad")).unwrap().register(&mut registry).unwrap();

@@ -148,6 +148,11 @@ fn a_motor_in_c_that_cannot_be_stopped_or_is_null_is_told_by_name() {
     let dead = run("dead line");
     assert_eq!(dead.code, Some(1), "{}", dead.text);
     assert!(dead.text.contains("component `Bad` could not stop its hardware: the line is dead"), "{}", dead.text);
+    let heart = run("dead heart");
+    assert_eq!(heart.code, Some(1), "{}", heart.text);
+    let expected =
+        "component `Bad` failed: the heartbeat of the hardware of component `Bad`: the heart is dead (library `";
+    assert!(heart.text.contains(expected), "{}", heart.text);
     for does in ["null stop", "null motor"] {
         let null = run(does);
         let expected = "found null for the function that stops the hardware, expected ";

@@ -6,7 +6,7 @@ use saoms_api::event::{EventCall, STOP};
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
 use saoms_api::host::{DynLoop, NamedLoops, Phase, ServiceCall, SharedMessage, TopicDeclaration};
-use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT};
+use saoms_api::host::{Host, LoopVisit, TARGET_SHIFT, shown};
 use saoms_api::{
     CallError, Cause, Chance, Departed, Failure, Header, Level, Record, Region, ReportValue, StopFunction, Time, Value,
     Work,
@@ -410,7 +410,12 @@ impl Host for ComponentHost<'_> {
 
     fn log(&mut self, level: Level, line: fmt::Arguments<'_>) {
         if self.part.spent.has_line() && self.shared.events.wants(level) {
-            self.emit(Occurrence::Log { level, text: line.to_string() });
+            let mut text = line.to_string();
+            // That of a library was shortened when it came.
+            if self.spec().class.origin().is_none() {
+                text = shown(text.as_bytes()).into_owned();
+            }
+            self.emit(Occurrence::Log { level, text });
         }
     }
 

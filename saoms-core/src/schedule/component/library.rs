@@ -1,15 +1,16 @@
 use std::fmt::Display;
 
-use saoms_api::host::one_line;
+use saoms_api::host::{one_line, shown};
 use saoms_lang::assembly::ComponentSpec;
 
 /// What a component said when it failed, with the library of the code that failed.
 pub(crate) fn with_library(spec: &ComponentSpec, failure: impl Display) -> String {
-    let mut text = failure.to_string();
-    if let Some(library) = library_of(spec, &text) {
-        text.push_str(&in_library(&library));
+    let text = failure.to_string();
+    match library_of(spec, &text) {
+        Some(library) => text + &in_library(&library),
+        // That of a library was shortened when it came.
+        None => shown(text.as_bytes()).into_owned(),
     }
-    text
 }
 
 /// The library of the code that failed so: that of the component, or of the loop that the failure names.

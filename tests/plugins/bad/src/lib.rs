@@ -1,11 +1,13 @@
 //! A plugin that misbehaves as its properties say.
 
-use std::panic::panic_any;
-use std::time::Duration;
+mod acts;
 
+use std::panic::panic_any;
+
+use acts::{Nasty, act};
 use saoms_api::{
     Class, Component, Context, Effector, Extras, Failure, Knowledge, Loop, LoopClass, Loops, Message, Properties,
-    Publisher, Record, ReportValue, Saved, Subscription, Topic, interface, record,
+    Publisher, Record, ReportValue, Saved, StopFunction, Subscription, Topic, interface, record,
 };
 
 /// A message.
@@ -51,37 +53,12 @@ pub struct ActorProperties {
     does: String,
 }
 
-/// A payload whose drop panics, and so on.
-struct Nasty(u32);
-
-impl Drop for Nasty {
-    fn drop(&mut self) {
-        if self.0 > 0 {
-            panic_any(Nasty(self.0 - 1));
-        }
-    }
-}
-
 impl ActorProperties {
     fn act(&self, place: &str) -> Result<(), Failure> {
         if self.at != place {
             return Ok(());
         }
-        match &*self.does {
-            "panic" => panic!("no more of {place}"),
-            "nasty" => panic_any(Nasty(3)),
-            "block" => std::thread::sleep(Duration::from_millis(300)),
-            "never" => loop {
-                std::thread::sleep(Duration::from_secs(1));
-            },
-            "panic twice" => {
-                let _second = Nasty(1);
-                panic!("no more of {place}")
-            }
-            "fail" => return Err(format!("fails in {place}").into()),
-            other => panic!("what is {other}?"),
-        }
-        Ok(())
+        act(&self.does, place)
     }
 }
 
@@ -198,6 +175,85 @@ impl Drop for Actor {
     }
 }
 
+/// Does it in a function that few classes have.
+#[derive(Debug, Class)]
+#[class(name = "bad.Motor", periodic, reacts, stops, saves, publishes(WORDS), subscribes(WORDS))]
+pub struct Motor {
+    properties: MotorProperties,
+    said: Publisher<Word>,
+    heard: Subscription<Word>,
+}
+
+#[derive(Debug, Properties)]
+pub struct MotorProperties {
+    #[property(flatten)]
+    acts: ActorProperties,
+    /// Can change.
+    #[property(default = 0, live)]
+    speed: u32,
+}
+
+impl Component for Motor {
+    type Properties = MotorProperties;
+
+    fn new(properties: MotorProperties) -> Result<Self, Failure> {
+        Ok(Motor { properties, said: Publisher::default(), heard: Subscription::default() })
+    }
+
+    fn initialize(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        self.said = context.publish(&WORDS)?;
+        self.heard = context.subscribe(&WORDS)?;
+        let acts = || (self.properties.acts.at.clone(), self.properties.acts.does.clone());
+        let in_place = |(at, does): &(String, String), place: &str| if at == place { act(does, place) } else { Ok(()) };
+        let (stops, beats) = (acts(), acts());
+        let stop = StopFunction::new(move || in_place(&stops, "stop"));
+        context.register_stop(stop.with_heartbeat(move |_| drop(in_place(&beats, "heartbeat"))))
+    }
+
+    fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if self.properties.acts.at == "unsubscribe" && self.properties.speed == 0 {
+            self.heard = Subscription::default();
+        }
+        match &*self.properties.acts.at {
+            "unschedule" => context.unschedule()?,
+            "raise" => context.raise("nothing")?,
+            _ => {}
+        }
+        if context.execution() == 5 {
+            self.properties.acts.act("late")?;
+        }
+        context.send(&self.said, Word { text: "word".to_owned() })
+    }
+
+    fn react(&mut self, _: &mut Context<'_>) -> Result<(), Failure> {
+        self.properties.acts.act("react")
+    }
+
+    fn update(&mut self, properties: MotorProperties) -> Result<(), Failure> {
+        self.properties.acts.act("update")?;
+        self.properties = properties;
+        Ok(())
+    }
+
+    fn waits_for(&self) -> Option<String> {
+        self.properties.acts.act("waits_for").err().map(|failure| failure.to_string())
+    }
+
+    fn status(&self) -> Vec<(String, ReportValue)> {
+        let _ = self.properties.acts.act("status");
+        Vec::new()
+    }
+
+    fn save(&mut self) -> Result<Saved, Failure> {
+        self.properties.acts.act("save")?;
+        Ok(Saved::default())
+    }
+
+    fn restore(&mut self, _: &Saved) -> Result<(), Failure> {
+        self.properties.acts.act("restore")
+    }
+}
+
 /// The knowledge of a lamp.
 #[derive(Debug, Default, Knowledge)]
 #[knowledge(name = "bad.Lamp")]
@@ -298,6 +354,6 @@ impl Drop for Switch {
 }
 
 saoms_api::plugin! {
-    classes: [Actor, Lamp],
+    classes: [Actor, Lamp, Motor],
     loops: [Switch],
 }
