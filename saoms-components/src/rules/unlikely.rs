@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use saoms_api::host::declaration::Scalar;
-use saoms_api::host::{PropertyValue, SmolStr, format_duration};
+use saoms_api::host::{PropertyValue, format_duration};
 use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
@@ -13,8 +13,8 @@ pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5020",
         name: "unlikely-value",
-        meaning: "A value probably has the wrong unit: a component has a period of more than a minute or another time of less than \
-            a millisecond, or a robot starts with a battery of 1 % or less.",
+        meaning: "A value probably has the wrong unit: a component has a period of more than a minute or a time of less than a \
+            millisecond, or a robot starts with a battery of 1 % or less.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -61,14 +61,15 @@ fn short_times(fleet: &FleetView<'_>) -> Vec<Finding> {
         _ => None,
     };
     let times = shipped(fleet).flat_map(|(index, one)| {
-        let values = one.values.iter().filter_map(move |(name, value)| Some((name, short(value)?)));
-        values.map(move |(name, time)| (index, one.path, name, time))
+        let values = one.values.iter().filter_map(move |(name, value)| Some((name.as_str(), short(value)?)));
+        let period = one.period.filter(|period| *period < SHORT).map(|period| ("period", period));
+        values.chain(period).map(move |(name, time)| (index, one.path, name, time))
     });
-    let finding = |(index, path, name, time): (usize, &str, &SmolStr, Duration)| {
+    let finding = |(index, path, name, time): (usize, &str, &str, Duration)| {
         let message = format!("`{name}` of `{path}` is {}, which is shorter than a millisecond", format_duration(time));
         // The number in seconds.
         let meant = format_duration(time * 1000);
-        Finding::new(Place::property(name.as_str()).in_component(index), message)
+        Finding::new(Place::property(name).in_component(index), message)
             .help(format!("write the unit, such as `{meant}`: a number without a unit is in milliseconds"))
     };
     times.map(finding).collect()

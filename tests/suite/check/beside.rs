@@ -96,6 +96,20 @@ fn rows_of_blanks_at_the_ends_of_a_map_file_are_told() {
 }
 
 #[test]
+fn a_target_outside_of_the_composite_is_promoted() {
+    let (others, robot) = HALL.split_once("  <component name=\"Robot7\">").unwrap();
+    let (root, others) = others.split_once("name=\"hall\" targetNamespace=\"urn:hall\">").unwrap();
+    let hall = format!("{root} name=\"hall\" targetNamespace=\"urn:hall\"><component name=\"Robot7\">{robot}");
+    let depot = format!(
+        "{root} xmlns:h=\"urn:hall\" name=\"depot\" targetNamespace=\"urn:depot\">{others}\
+         <component name=\"A\"><implementation.composite name=\"h:hall\"/></component></composite>\n"
+    );
+    let told = told_of("outside", &[("depot.composite", &depot), ("hall.composite", &hall)], &["depot.composite"]);
+    assert_hint("outside", &told, "S2011", "`World` is outside of this composite, beside `A`: promote the reference");
+    assert_eq!(told.len(), 2, "{told:#?}");
+}
+
+#[test]
 fn uses_with_one_world_are_not_told_to_be_sites() {
     let (others, robot) = HALL.split_once("  <component name=\"Robot7\">").unwrap();
     let (root, others) = others.split_once("name=\"hall\" targetNamespace=\"urn:hall\">").unwrap();

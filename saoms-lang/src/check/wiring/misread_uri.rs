@@ -131,6 +131,14 @@ pub(crate) fn unknown_component(
         let help = format!("{} is a {what}: write the name of its component before it", quoted(name));
         return Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help).replace(name, at, &meant);
     }
+    if let Some(user) = beside_user(name, scope, fleet).filter(|_| side == Side::Service && !is_promoted) {
+        let (target, user) = (quoted(name), quoted(&fleet.members[user].component.name));
+        let help = format!(
+            "{target} is outside of this composite, beside {user}: promote the reference in this composite, \
+             `<reference name=\"...\" promote=\"COMPONENT/reference\"/>`, and give {user} the target {target}"
+        );
+        return Diagnostic::new(&codes::UNKNOWN_COMPONENT, at, message).help(help);
+    }
     let mut of_class = fleet.scopes[scope].members.iter().map(|member| fleet.members[*member].component);
     let mut of_class = of_class.by_ref().filter(|one| one.class().is_some_and(|class| *class == *name));
     if let (Some(only), None) = (of_class.next(), of_class.next()) {
@@ -143,6 +151,13 @@ pub(crate) fn unknown_component(
     let names = fleet.names(scope).filter(|name| Some(*name) != own && !name.contains(char::is_whitespace));
     let known = ("the components are", first.iter().copied().chain(names).chain(last.iter().copied()));
     report.unknown(&codes::UNKNOWN_COMPONENT, at, message, name, known)
+}
+
+/// The component around a scope that has a component of this name beside it; the innermost counts.
+pub(crate) fn beside_user(name: &str, scope: usize, fleet: &Fleet<'_>) -> Option<usize> {
+    let owner = |scope: usize| fleet.scopes[scope].owner;
+    let mut users = std::iter::successors(owner(scope), |user| owner(fleet.members[*user].scope));
+    users.find(|user| fleet.find(fleet.members[*user].scope, name).is_some())
 }
 
 /// The name of the group of replicas of which one with another number is named.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::misread_uri::{inside, misread, unknown_component};
+use super::misread_uri::{beside_user, inside, misread, unknown_component};
 use super::target::fits;
 use crate::check::contracts::offer::parts;
 use crate::check::fleet::{Fleet, Side};
@@ -120,8 +120,9 @@ impl<'t> Uri<'t> {
                         fleet,
                         report,
                     );
+                    let is_outside = beside_user(self.component, scope, fleet).is_some();
                     match self.wants.and_then(|wants| to_add(wants, scope, fleet)) {
-                        Some(help) if one.suggestions.is_empty() => one.help(help),
+                        Some(help) if one.suggestions.is_empty() && !is_outside => one.help(help),
                         _ => one,
                     }
                 }
