@@ -7,6 +7,7 @@ use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use saoms_api::host::present::present_code;
 use saoms_core::schedule::stop_hardware;
 
 use crate::output::eprint;
@@ -48,7 +49,10 @@ pub(super) fn prepare() {
 
 /// Says that hardware may still move when the process ends.
 pub(crate) fn still_moves(name: &str) -> String {
-    format!("error: the hardware of component `{name}` may still move: its stop function has not returned\n")
+    let code = present_code(name).unwrap_or_default();
+    let library = code.split_once(" of library `").map(|(_, library)| format!(" (library `{library})"));
+    let library = library.unwrap_or_default();
+    format!("error: the hardware of component `{name}` may still move: its stop function has not returned{library}\n")
 }
 
 /// Stops all hardware and waits for that, but not much longer than the patience. A signal handler may ask.

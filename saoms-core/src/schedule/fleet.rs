@@ -8,6 +8,7 @@ use saoms_api::{Level, Time};
 use saoms_lang::assembly::Assembly;
 
 use super::change::{self, StartError};
+use super::component::library::with_library;
 use super::drive;
 use super::engine::RunPhase;
 use super::engine::slot::NEVER;
@@ -162,8 +163,12 @@ impl RunningFleet {
     fn wait_for_hardware(&self) {
         let shared = &self.handle.shared;
         for name in shared.stops.wait(shared.settings.grace) {
-            let message = "the function that stops it has not returned".to_owned();
-            shared.lock().reasons.push(format!("component `{name}` could not stop its hardware: {message}"));
+            let mut engine = shared.lock();
+            let mut message = "the function that stops it has not returned".to_owned();
+            if let Some(slot) = engine.slots.iter().find(|slot| slot.name == name) {
+                message = with_library(&slot.spec, message);
+            }
+            engine.reasons.push(format!("component `{name}` could not stop its hardware: {message}"));
         }
     }
 

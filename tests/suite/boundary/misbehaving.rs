@@ -190,6 +190,15 @@ fn a_component_that_never_returns_is_left_behind_and_named() {
     assert!(run.component("Quick")["executions"].as_u64() > Some(20), "{}", run.report);
 }
 
+#[test]
+fn hardware_whose_stop_function_never_returns_is_told_with_the_library() {
+    let motor = component("Bad", "bad.Motor", &(property("at", "stop") + &property("does", "never")));
+    let run = fleet(&motor, &libraries(), &["--for", "200ms", "--grace", "100ms"]);
+    let of_library = format!("has not returned (library `{}`)", library("bad").display());
+    assert_eq!(run.code, Some(1), "{}", run.text);
+    assert!(run.reasons().contains(&of_library), "{}\n{}", run.reasons(), run.text);
+}
+
 fn raw(does: &str) -> String {
     component("Bad", "raw.Actor", &property("does", does))
 }
