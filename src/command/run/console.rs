@@ -6,11 +6,11 @@ use std::time::Duration;
 use saoms_api::Level;
 use saoms_api::host::one_line;
 use saoms_core::observe::{Interest, Observer, Occurrence, RunEvent, RunProgress};
-use saoms_core::report::RunReport;
+use saoms_core::report::{RunReport, RunStatus};
 
 use super::log_lines::{LogFormat, LogStyle};
 use super::status_line::StatusLine;
-use super::summary::summary;
+use super::summary::{ending, summary};
 use super::{ConsoleStyle, RunArguments};
 use crate::output::{Place, eprint, print};
 
@@ -105,7 +105,12 @@ impl Observer for Console {
             status.clear();
         }
         match (self.verbosity, self.style.format) {
-            (Verbosity::Quiet, _) => {}
+            // Who reads errors alone is told of an end that is one.
+            (Verbosity::Quiet, format) => match (report.outcome.status, format) {
+                (RunStatus::Incomplete | RunStatus::Failed, LogFormat::Plain) => eprint(&ending(report)),
+                (RunStatus::Incomplete | RunStatus::Failed, LogFormat::Json) => eprint(&self.style.end(report)),
+                _ => {}
+            },
             (_, LogFormat::Plain) => (self.write)(&summary(report, self.keeps_all)),
             (_, LogFormat::Json) => (self.write)(&self.style.end(report)),
         }

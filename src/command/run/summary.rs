@@ -15,16 +15,21 @@ const ROWS: usize = 24;
 /// The report in a few lines: the outcome of the run, and a line per component. `keeps_all` says that a file has all
 /// records of the journal.
 pub(crate) fn summary(report: &RunReport, keeps_all: bool) -> String {
-    let mut text = format!("\n{}\n", outcome(report));
-    for reason in &report.outcome.reasons {
-        let _ = writeln!(text, "  {}", one_line(reason));
-    }
-    text.push('\n');
+    let mut text = format!("\n{}\n", ending(report));
     text.push_str(&table(&report.components));
     text.push_str(&problem_lines(&report.components));
     text.push_str(&journal(&report.journal, keeps_all));
     if let Some(hash) = &report.trace_hash {
         let _ = writeln!(text, "\nseed {}, trace {hash}", report.seed);
+    }
+    text
+}
+
+/// The outcome of the run, and its reasons below.
+pub(crate) fn ending(report: &RunReport) -> String {
+    let mut text = format!("{}\n", outcome(report));
+    for reason in &report.outcome.reasons {
+        let _ = writeln!(text, "  {}", one_line(reason));
     }
     text
 }

@@ -46,6 +46,24 @@ fn a_run_whose_luggage_was_given_up_is_incomplete() {
     assert_eq!((code(&output), &report["outcome"]["status"]), (1, &Value::from("incomplete")));
 }
 
+#[test]
+fn who_reads_errors_alone_is_told_of_an_end_that_is_one() {
+    let off = |hall: String| {
+        hall.replace(
+            "Robot7\"/>",
+            "Robot7\"/>\
+        <property name=\"runOnStartup\" value=\"false\"/>",
+        )
+    };
+    let (output, _) = hall("outcome-quiet", off, &["--quiet"]);
+    assert_eq!(code(&output), 1, "{}", text(&output));
+    assert_eq!(stdout(&output), "");
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.starts_with("incomplete after ") && told.contains("\n  nothing has happened since "), "{told}");
+    let (output, _) = hall("outcome-quiet-done", |hall| hall, &["--quiet"]);
+    assert_eq!((code(&output), text(&output).as_str()), (0, ""));
+}
+
 /// A change of a composite's text.
 type Change<'a> = &'a dyn Fn(String) -> String;
 

@@ -179,7 +179,7 @@ fn a_robot_that_stands_with_an_empty_battery_is_marked() {
         text.replace("\"saoms.Robot\"/>", "\"saoms.Robot\"/><property name=\"policy\">classic</property>"),
     )
     .unwrap();
-    let text = drawn(&composite, "8s");
+    let text = drawn(&composite, "3s");
     let document = Document::parse(&text).unwrap();
     let picture = Picture::of(&document);
     assert_eq!(picture.all("stranded").len(), 1 + 1, "and in the legend");
