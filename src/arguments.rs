@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use saoms_api::host::{parse_duration, shorten};
+use saoms_api::host::{meant_duration, parse_duration, shorten};
 
 use crate::command::is_option;
 
@@ -70,6 +70,9 @@ pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
 /// A duration; the message of a wrong one quotes a line of it at most.
 pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     parse_duration(text).map_err(|mut message| {
+        if let Some(meant) = meant_duration(text) {
+            message.push_str(&format!("; write `{meant}`"));
+        }
         shorten(&mut message);
         message
     })
@@ -80,8 +83,21 @@ fn file(path: PathBuf) -> Result<PathBuf, String> {
     let name = path.to_str().map(|text| text.trim_start_matches(['-', '–', '—', '−']).to_owned());
     match name.filter(|name| is_option(name) && !path.exists()) {
         Some(name) => Err(format!("there is no such file; write `--{name}` for the option")),
-        None => Ok(path),
+        None => match path.to_str().filter(|_| !path.exists()).and_then(as_option) {
+            Some(option) => Err(format!("there is no such file; write `{option}`")),
+            None => Ok(path),
+        },
     }
+}
+
+/// The option that a word among the files lacks: of a value of a property, or of a picture to write.
+fn as_option(word: &str) -> Option<String> {
+    let is_name = |name: &str| name.starts_with(char::is_alphabetic) && name.chars().all(char::is_alphanumeric);
+    if word.split_once('=').is_some_and(|(name, _)| is_name(name)) && is_option("set") {
+        return Some(format!("--set {word}"));
+    }
+    let is_picture = [".svg", ".dot", ".mmd"].iter().any(|ending| word.ends_with(ending));
+    (is_picture && is_option("output")).then(|| format!("--output {word}"))
 }
 
 /// A setting, which has to be one argument.

@@ -1,6 +1,10 @@
+mod meant;
+
 use std::fmt;
 use std::ops::{Add, Sub};
 use std::time::Duration;
+
+pub use meant::meant_duration;
 
 use crate::host::declaration::trim;
 

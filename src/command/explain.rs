@@ -105,7 +105,10 @@ fn refusal(wanted: &str, all: &[&Code]) -> String {
     }
     let mut text = format!("error: there is no code `{wanted}`\n");
     let known: Vec<&str> = all.iter().flat_map(|code| names(code)).collect();
-    if let Some(nearest) = nearest_code(wanted, &known) {
+    // As it stands in a diagnostic: `error[S2021, ASM60047]`.
+    let inside = wanted.split_once('[').map_or(wanted, |(_, inside)| inside);
+    let inside = inside.split([']', ',']).next().unwrap_or(inside);
+    if let Some(nearest) = nearest_code(inside, &known) {
         let _ = writeln!(text, "help: did you mean `{nearest}`?");
     }
     text + "help: `saoms explain` lists all codes; those of a plugin with `--plugin PATH`\n"

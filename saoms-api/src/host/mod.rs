@@ -25,7 +25,7 @@ pub use crate::property::{PropertyValue, RESERVED, WriteProperties};
 pub use crate::registration::Registration;
 pub use crate::rule::nearest::{nearest_equal, nearest_few};
 pub use crate::service::{Interface, Invocation, Operation, Reference, ReferenceField, ServiceCall, TypedCall};
-pub use crate::time::{format_duration, parse_duration};
+pub use crate::time::{format_duration, meant_duration, parse_duration};
 pub use crate::topic::{TopicDeclaration, TopicKind};
 
 /// The text of a property, or its name: a short or shared one is copied without a copy of its letters.

@@ -55,6 +55,37 @@ fn wrong_durations_are_refused() {
 }
 
 #[test]
+fn what_is_meant_by_a_wrong_duration_is_found() {
+    for (text, meant) in [
+        ("1m30s", "90s"),
+        ("1h30min", "5400s"),
+        ("1 min 30 s", "90s"),
+        ("1 minute and 30 seconds", "90s"),
+        ("1s500ms", "1500ms"),
+        ("00:01:00", "60s"),
+        ("0:00:01.5", "1500ms"),
+        ("PT0.2S", "0.2s"),
+        ("PT1M30S", "90s"),
+        ("5Hz", "200ms"),
+        ("3 Hz", "333333us"),
+        ("200MS", "200ms"),
+        ("200milliseconds", "200ms"),
+        ("2 minutes", "2min"),
+        ("200ms;", "200ms"),
+        ("~200ms", "200ms"),
+        ("+1s", "1s"),
+        ("0,2s", "0.2s"),
+        ("1e3", "1000"),
+        ("1e3 ms", "1000ms"),
+    ] {
+        assert_eq!(meant_duration(text).as_deref(), Some(meant), "{text}");
+    }
+    for text in ["", "soon", "200ms", "-1s", "1m", "12:30", "0 Hz", "1 parsec", "s", "::", "1/5s", "1s2", "e", "pt"] {
+        assert_eq!(meant_duration(text), None, "{text}");
+    }
+}
+
+#[test]
 fn times_saturate() {
     assert_eq!(Time::from_nanos(5) - Time::from_nanos(7), Duration::ZERO);
     assert_eq!(Time::from_nanos(7) - Time::from_nanos(5), Duration::from_nanos(2));
@@ -72,5 +103,6 @@ proptest! {
     #[test]
     fn any_text_is_read_or_refused(text in "[-0-9. a-zµ]{0,60}|\\PC{0,20}") {
         let _ = parse_duration(&text);
+        let _ = meant_duration(&text);
     }
 }

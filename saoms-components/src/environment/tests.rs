@@ -150,7 +150,7 @@ fn every_wrong_line_says_where_and_why() {
         ("at 6s luggage (3,1) to 3,10", "3,10", format!("found `3,10`, expected {block}"), Some("(3,10)")),
         ("at 6s luggage (3;1) to (3,10)", "(3;1)", format!("found `(3;1)`, expected {block}"), Some("(3,1)")),
         ("at 6s luggage (-3,1) to (3,10)", "(-3,1)", "found `(-3,1)`, but every area starts at (0,0)".into(), None),
-        ("at 6s landing four", "four", format!("found `four`, expected {pieces}"), None),
+        ("at 6s landing four", "four", format!("found `four`, expected {pieces}"), Some("4")),
         ("at 6s landing", "", format!("found the end of the line, expected {pieces}"), None),
         ("at 6s landing 4 5", "5", format!("found `5`, expected {end}"), None),
         ("at 6s breakdown Gripper", "Gripper", format!("found `Gripper`, expected {robot}"), None),
@@ -211,6 +211,22 @@ fn a_slip_is_told_with_what_is_meant() {
         ("at 1s landing 2...4", "at 1s landing 2..4"),
         ("at 1s takeoff 2....4", "at 1s takeoff 2..4"),
         ("at 1s breakdown 1...2", "at 1s breakdown 1..2"),
+        ("1s landing 4", "at 1s landing 4"),
+        ("@1s landing 4", "at 1s landing 4"),
+        ("at every 5s landing 4", "from 5s every 5s landing 4"),
+        ("at 1m30s landing 4", "at 90s landing 4"),
+        ("at 00:01:00 landing 4", "at 60s landing 4"),
+        ("at 1 minute landing 4", "at 1min landing 4"),
+        ("at +1s landing 4", "at 1s landing 4"),
+        ("from 1s every 5s three times landing 4", "from 1s every 5s 3 times landing 4"),
+        ("at 1s twice landing 4", "at 1s 2 times landing 4"),
+        ("at 1s luggage any to (3,10)", "at 1s luggage random to (3,10)"),
+        ("at 1s luggage (3,1) to *", "at 1s luggage (3,1) to random"),
+        ("at 1s luggage (3.1) to (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s luggage (3,1), (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s package (3,1) to (3,10)", "at 1s luggage (3,1) to (3,10)"),
+        ("at 1s Robot7 breakdown", "at 1s breakdown Robot7"),
+        ("at 1s stop", "at 1s end"),
     ] {
         let findings = Scenario::read(&[line]).unwrap_err();
         let (_, part) = findings[0].place().value_part().unwrap();
@@ -221,6 +237,23 @@ fn a_slip_is_told_with_what_is_meant() {
     // What would lead to the same fault is not proposed.
     for line in ["at 1s luggage 5 (3,1) to (3,10)", "at 00:10 landing 4", "at 1s repair Robot7", "at 1s landing -2"] {
         assert_eq!(Scenario::read(&[line]).unwrap_err()[0].replacement(), None, "{line}");
+    }
+    for (line, help) in [
+        ("at 1s landing 4 3 times", "write it before the event: `at 1s 3 times landing 4`"),
+        ("at 1s landing 4 every 5s", "write it before the event: `from 1s every 5s landing 4`"),
+        ("at 1s landing 4 3 times every 5s", "write it before the event: `from 1s every 5s 3 times landing 4`"),
+        (
+            "at 1s luggage (3,1) to (3,2) every 5s 3 times",
+            "write it before the event: `from 1s every 5s 3 times luggage (3,1) to (3,2)`",
+        ),
+        ("at 1s landing 4 every", "as in `at 3s landing 4`"),
+        ("at 1s luggage 5 (3,1) to (3,10)", "write `5 times` before `luggage` for 5 pieces"),
+        ("at 1s luggage (3,1)", "as in `at 6s luggage (3,1) to (3,10)`"),
+        ("at 1s breakdown all", "as in `at 9s breakdown Robot002`"),
+        ("at 1s repair Robot7", "a robot that broke down is not repaired"),
+    ] {
+        let findings = Scenario::read(&[line]).unwrap_err();
+        assert_eq!((findings[0].helps(), findings[0].replacement()), (&[help.to_owned()][..], None), "{line}");
     }
     let findings = Scenario::read(&["end 20s"]).unwrap_err();
     assert_eq!(findings[0].helps(), ["write the time first, as in `at 6s end ...`"]);

@@ -111,8 +111,14 @@ fn unlisted_program() -> Option<PathBuf> {
 }
 
 fn composite(path: &Path) -> Result<String, String> {
-    let path = if path.extension().is_some() { path.to_owned() } else { path.with_extension("composite") };
-    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let path = if path.extension().is_some() || path.file_name().is_none() {
+        path.to_owned()
+    } else {
+        path.with_extension("composite")
+    };
+    let Some(stem) = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()) else {
+        return Err(format!("found `{}`, expected the file to make, such as `hall.composite`", path.display()));
+    };
     composite_name(&stem)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = path.file_name().map(PathBuf::from).unwrap_or_default();
@@ -159,6 +165,9 @@ fn write_all(folder: &Path, files: Vec<(PathBuf, String)>) -> Result<(), String>
         if path.symlink_metadata().is_ok() {
             return Err(format!("`{}` is there already: nothing was made", path.display()));
         }
+    }
+    if folder.is_file() {
+        return Err(format!("`{}` is a file, expected the folder to make", folder.display()));
     }
     for (name, text) in files {
         let path = folder.join(name);

@@ -33,11 +33,29 @@ pub(super) fn read(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Res
     }
 }
 
+/// An example of a line with the event that a wrong line has.
+pub(super) fn example(line: &str) -> &'static str {
+    match line.split_whitespace().find(|word| KINDS.contains(word)) {
+        Some("landing" | "takeoff") => "as in `at 3s landing 4`",
+        Some("breakdown" | "gone") => "as in `at 9s breakdown Robot002`",
+        Some("end") => "as in `at 60s end`",
+        None if line.contains("repair") => "a robot that broke down is not repaired",
+        _ => "as in `at 6s luggage (3,1) to (3,10)`",
+    }
+}
+
 /// Reads an event that other classes take: the rest of the line.
 fn of_class(words: &mut Tokenizer<'_>, vocabulary: Vocabulary<'_>) -> Result<EventSpec, TextFault> {
     let expected = vocabulary.expected();
     let name = words.next(&expected)?;
-    let unknown = |words: &Tokenizer<'_>| words.wrong(name, &expected).instead(nearest(name, vocabulary.names()));
+    let unknown = |words: &Tokenizer<'_>| match words.peek() {
+        // The robot first.
+        Some(event @ ("breakdown" | "gone")) if number(name).is_some() => {
+            let swapped = format!("{event} {name}");
+            words.wrong(words.span(name, event), "the event before the robot").instead(Some(swapped))
+        }
+        _ => words.wrong(name, &expected).instead(nearest(name, vocabulary.names())),
+    };
     let rest = words.rest(name);
     let start = words.bytes(name).start;
     let call = match vocabulary.events() {
@@ -95,7 +113,12 @@ fn spot(words: &mut Tokenizer<'_>) -> Result<Spanned<Spot>, TextFault> {
     let value = match first {
         RANDOM => Spot::Anywhere,
         _ => {
-            let corner = block(words, first)?;
+            let corner = block(words, first).map_err(|fault| match words.peek() {
+                Some(next) if first.parse::<u32>().is_ok() && next.starts_with('(') => {
+                    fault.help(format!("write `{first} times` before `luggage` for {first} pieces"))
+                }
+                _ => fault,
+            })?;
             if words.take_dots()? {
                 let second = words.next("the opposite corner, such as `(10,10)`")?;
                 Spot::between(corner, block(words, second)?)

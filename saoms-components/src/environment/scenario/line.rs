@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use saoms_api::host::parse_duration;
+use saoms_api::host::{meant_duration, parse_duration};
 use saoms_api::rule::nearest;
 
 use super::random::RandomRange;
@@ -79,7 +79,13 @@ pub(in crate::environment) fn read_outside(
 /// Reads a line of the text of a scenario.
 pub(super) fn read(text: &str, line: &str, before: Before, vocabulary: Vocabulary<'_>) -> Result<Line, TextFault> {
     read_line(text, line, before, vocabulary).map_err(|fault| {
-        let Some(site) = site(line) else { return meant::proposed(text, line, (before, vocabulary), fault) };
+        let Some(site) = site(line) else {
+            let fault = meant::proposed(text, line, (before, vocabulary), fault);
+            return match fault.instead.is_none() && fault.help.is_none() {
+                true => fault.help(event::example(line)),
+                false => fault,
+            };
+        };
         let message = format!("found the site `{site}`, which is allowed only before events from outside (`--events`)");
         let fault = Tokenizer::of(text, line).fault(site, message);
         fault.help("remove it: the events of a scenario are for the site of its environment")
@@ -99,9 +105,11 @@ pub(super) fn read_line(text: &str, line: &str, before: Before, vocabulary: Voca
     let mut words = Tokenizer::of(text, line);
     let start = words.next("`at`, `from` or `then`")?;
     if !STARTS.contains(&start) {
+        let time = start.strip_prefix('@').unwrap_or(start);
         let near = match start {
-            "on" | "in" | "after" | "when" => Some("at"),
-            _ => nearest(start, STARTS),
+            "on" | "in" | "after" | "when" => Some("at".to_owned()),
+            _ if parse_duration(time).is_ok() => Some(format!("at {time}")),
+            _ => nearest(start, STARTS).map(str::to_owned),
         };
         let fault = words.wrong(start, "`at`, `from` or `then` at the start of a line").instead(near);
         if vocabulary.names().any(|name| name == start) {
@@ -117,6 +125,10 @@ pub(super) fn read_line(text: &str, line: &str, before: Before, vocabulary: Voca
     if start == "then" && before == Before::Endless {
         let message = "the line before never ends, so no event can follow it";
         return Err(words.fault(start, message).help("add an end: `100 times`, or `until 60s`"));
+    }
+    if let (Some("every"), Some(often), "at") = (words.peek(), words.peek_second(), start) {
+        let fault = words.wrong(line[..words.end_of_next()].trim(), "a time after `at`");
+        return Err(fault.instead(Some(format!("from {often} every"))).help(REPEATED));
     }
     let time = drawn(&mut words, time)?;
     let every = words.take("every").then(|| every(&mut words)).transpose()?;
@@ -199,6 +211,12 @@ fn time(words: &mut Tokenizer<'_>) -> Result<Duration, TextFault> {
     if words.peek().is_some_and(|unit| UNITS.contains(&unit)) {
         words.next(TIME)?;
     }
+    if let Some(unit) = words.peek().filter(|unit| unit.starts_with(char::is_alphabetic)) {
+        let span = words.span(first, unit);
+        if let Some(meant) = meant_duration(span).filter(|_| parse_duration(first).is_ok()) {
+            return Err(words.wrong(span, TIME).instead(Some(meant)));
+        }
+    }
     let span = words.span(first, words.last());
     if !span.starts_with(|sign: char| sign.is_ascii_digit() || matches!(sign, '-' | '+' | '.')) {
         return Err(words.wrong(first, TIME));
@@ -207,21 +225,13 @@ fn time(words: &mut Tokenizer<'_>) -> Result<Duration, TextFault> {
         let message = format!("found `{span}`, which is before the start of the scenario: expected a time from 0s on");
         return Err(words.fault(span, message).instead(Some(positive.trim())));
     }
-    parse_duration(span).map_err(|message| words.fault(span, message).instead(short(span)))
+    parse_duration(span).map_err(|message| words.fault(span, message).instead(meant_time(span)))
 }
 
-/// The short form of a time whose unit is a word.
-fn short(span: &str) -> Option<String> {
-    let number = span.trim_end_matches(|letter: char| letter.is_ascii_alphabetic());
-    let unit = match &span[number.len()..] {
-        "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => "ms",
-        "sec" | "secs" | "second" | "seconds" => "s",
-        "m" | "mins" | "minute" | "minutes" => "min",
-        "hr" | "hrs" | "hour" | "hours" => "h",
-        _ => return None,
-    };
-    let short = format!("{}{unit}", number.trim());
-    parse_duration(&short).is_ok().then_some(short)
+/// The time that is meant by one that is none. Of an event, `m` is for minutes.
+fn meant_time(span: &str) -> Option<String> {
+    let minutes = span.strip_suffix('m').map(|number| format!("{}min", number.trim()));
+    minutes.filter(|minutes| parse_duration(minutes).is_ok()).or_else(|| meant_duration(span))
 }
 
 /// Reads one value, or two with `..` between them.

@@ -5,28 +5,60 @@
 use std::ops::Range;
 
 use super::vocabulary::Vocabulary;
-use super::{Before, line};
+use super::{Before, event, line};
 use crate::text::TextFault;
 
 /// Words of other ways to say it, each with the word of a scenario.
-const OTHER_WORDS: [(&str, &str); 17] = [
+const OTHER_WORDS: &[(&str, &str)] = &[
     ("->", "to"),
     ("=>", "to"),
     ("→", "to"),
     ("into", "to"),
+    (",", " to"),
     ("till", "until"),
+    ("package", "luggage"),
+    ("parcel", "luggage"),
+    ("baggage", "luggage"),
+    ("bag", "luggage"),
+    ("box", "luggage"),
+    ("item", "luggage"),
+    ("job", "luggage"),
+    ("task", "luggage"),
+    ("order", "luggage"),
+    ("arrival", "landing"),
+    ("departure", "takeoff"),
+    ("take-off", "takeoff"),
     ("break", "breakdown"),
     ("breaks", "breakdown"),
     ("fault", "breakdown"),
+    ("fail", "breakdown"),
+    ("failure", "breakdown"),
     ("lost", "gone"),
     ("remove", "gone"),
     ("removed", "gone"),
+    ("stop", "end"),
+    ("any", "random"),
+    ("anywhere", "random"),
+    ("*", "random"),
+    ("?", "random"),
     ("//", "#"),
     ("--", "#"),
     ("and", ";"),
     (",", ";"),
     ("from", ""),
     (".", ""),
+    ("one", "1"),
+    ("once", "1 times"),
+    ("two", "2"),
+    ("twice", "2 times"),
+    ("three", "3"),
+    ("four", "4"),
+    ("five", "5"),
+    ("six", "6"),
+    ("seven", "7"),
+    ("eight", "8"),
+    ("nine", "9"),
+    ("ten", "10"),
 ];
 
 /// The fault with a proposal, if it has none and one makes sense.
@@ -54,8 +86,31 @@ pub(super) fn proposed(
     let meant = candidates(word, behind.split_whitespace().next()).into_iter().find(leads_on);
     match meant {
         Some(meant) => fault.instead(Some(meant)),
-        None => fault,
+        None => match moved(part, bytes.start).filter(|line| line::read_line(line, line, before, vocabulary).is_ok()) {
+            Some(line) => fault.help(format!("write it before the event: `{line}`")),
+            None => fault,
+        },
     }
+}
+
+/// The line with how often it happens, which stands behind the event from this byte on, before the event.
+fn moved(part: &str, from: usize) -> Option<String> {
+    let (head, often) = (part[..from].trim(), part[from..].trim());
+    let is_repeated = often.starts_with("every ") || often.contains(" every ");
+    if !is_repeated && !often.ends_with(" times") {
+        return None;
+    }
+    let event = event::KINDS.iter().find_map(|kind| head.find(&format!(" {kind} ")))?;
+    let start = match head[..event].strip_prefix("at ").filter(|_| is_repeated) {
+        Some(time) => format!("from {time}"),
+        None => head[..event].to_owned(),
+    };
+    // `every` comes before `times`.
+    let often = match often.split_once(" every ").filter(|(times, _)| times.ends_with(" times")) {
+        Some((times, every)) => format!("every {every} {times}"),
+        None => often.to_owned(),
+    };
+    Some(format!("{start} {often}{}", &head[event..]))
 }
 
 /// The byte range within a part of the text, if it is a word of it.
@@ -66,7 +121,8 @@ fn within(bytes: &Range<usize>, start: usize, length: usize) -> Option<Range<usi
 
 /// What may be meant by a word, which `next` follows.
 fn candidates(word: &str, next: Option<&str>) -> Vec<String> {
-    let other = OTHER_WORDS.iter().find(|(other, _)| *other == word).map(|(_, meant)| (*meant).to_owned());
+    let others = OTHER_WORDS.iter().filter(|(other, _)| other.eq_ignore_ascii_case(word));
+    let others = others.map(|(_, meant)| (*meant).to_owned());
     let ended = word.trim_end_matches([',', ':', '.', ';']);
     let ended = (ended.len() < word.len() && !ended.is_empty()).then(|| ended.to_owned());
     let divided = ended.as_ref().filter(|_| next.is_some_and(|next| line::STARTS.contains(&next)));
@@ -79,8 +135,8 @@ fn candidates(word: &str, next: Option<&str>) -> Vec<String> {
     let ranges = ["-", "–", "."].iter().filter_map(|sign| word.split_once(sign));
     let ranges = ranges.map(|(least, most)| format!("{least}..{most}"));
     let target = word.starts_with('(').then(|| format!("to {word}"));
-    let all = [other, divided, ended, counted, repeated, line, target, decimal].into_iter().flatten();
-    all.chain(blocks(word)).chain(ranges).filter(|meant| meant != word).collect()
+    let all = [divided, ended, counted, repeated, line, target, decimal].into_iter().flatten();
+    others.chain(all).chain(blocks(word)).chain(ranges).filter(|meant| meant != word).collect()
 }
 
 fn is_number(text: &str) -> bool {
@@ -90,7 +146,8 @@ fn is_number(text: &str) -> bool {
 /// The block that a word means: in other brackets, with another sign between its numbers, or without its end.
 fn blocks(word: &str) -> Vec<String> {
     let block = |text: &str| {
-        let (x, y) = text.trim_matches(['(', '[', '{', ')', ']', '}', ',', '.']).split_once([',', ';', ':', '/'])?;
+        let (x, y) =
+            text.trim_matches(['(', '[', '{', ')', ']', '}', ',', '.']).split_once([',', ';', ':', '/', '.'])?;
         let (x, y) = (x.trim(), y.trim());
         (is_number(x) && is_number(y)).then(|| format!("({x},{y})"))
     };

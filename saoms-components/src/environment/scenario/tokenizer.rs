@@ -44,6 +44,11 @@ impl<'a> Tokenizer<'a> {
         self.words.get(self.at + 1).copied()
     }
 
+    /// Byte of the line at which the next word ends.
+    pub(super) fn end_of_next(&self) -> usize {
+        self.peek().map_or(self.line.len(), |word| bytes(self.line, word).end)
+    }
+
     /// Takes the next word if it equals `word`.
     pub(super) fn take(&mut self, word: &str) -> bool {
         let is_next = self.peek() == Some(word);

@@ -1,6 +1,7 @@
 //! The fault of a text that a property does not take, and what it probably means.
 
 use saoms_api::host::declaration::{PropertyKind, parse_scalar};
+use saoms_api::host::meant_duration;
 
 use super::conversion::Target;
 use crate::check::report::replacing;
@@ -105,9 +106,7 @@ fn meant(text: &str, declaration: &PropertyDeclaration) -> Option<String> {
             let text = text.strip_suffix(".0").filter(|_| is_whole).unwrap_or(text);
             without_unit(text).unwrap_or(text).replace(',', ".")
         }
-        // As in XML Schema.
-        (PropertyKind::Duration, _) if let Some(time) = lower.strip_prefix("pt") => time.to_owned(),
-        (PropertyKind::Duration, _) => duration(&lower).unwrap_or_else(|| lower.replace(',', ".")),
+        (PropertyKind::Duration, _) => meant_duration(text)?,
         _ => lower,
     };
     (said != text && declaration.check(said.as_str()).is_ok()).then_some(said)
@@ -119,28 +118,4 @@ fn without_unit(text: &str) -> Option<&str> {
     let number = text.trim_end_matches(|c: char| !c.is_ascii_digit());
     let unit = text[number.len()..].trim();
     UNITS.iter().any(|known| known.eq_ignore_ascii_case(unit)).then_some(number)
-}
-
-/// A duration whose unit is written out, or how often a second.
-fn duration(text: &str) -> Option<String> {
-    let digits = text.trim_end_matches(|c: char| !c.is_ascii_digit());
-    let unit = text[digits.len()..].trim();
-    let digits = digits.trim();
-    let short = match unit {
-        "hz" => {
-            let often: f64 = digits.parse().ok().filter(|often| *often > 0.0)?;
-            let micros = (1e6 / often).round() as u64;
-            return Some(match micros.is_multiple_of(1000) {
-                true => format!("{}ms", micros / 1000),
-                false => format!("{micros}us"),
-            });
-        }
-        "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => "ms",
-        "usec" | "usecs" | "\u{b5}s" | "\u{3bc}s" | "micros" | "microsecond" | "microseconds" => "us",
-        "sec" | "secs" | "second" | "seconds" => "s",
-        "mins" | "minute" | "minutes" => "min",
-        "hr" | "hrs" | "hour" | "hours" => "h",
-        _ => return None,
-    };
-    Some(format!("{digits}{short}"))
 }

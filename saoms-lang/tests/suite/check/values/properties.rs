@@ -262,6 +262,7 @@ fn absurd_periods() {
         1e3
         2:121-124 error S3007: property `period`: `1e3` is not a duration: expected a duration from 100us to 24h (in ms, or with a unit: ns, us, ms, s, min, h)
           help: `period`: From one due execution to the next; a number without a unit is in ms
+          fix: replace `1e3` with `1000` [2:121-124 "1000"]
         100 ms
         100us
         24h
