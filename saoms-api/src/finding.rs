@@ -12,6 +12,7 @@ pub struct Place {
     pub(crate) component: Option<usize>,
     pub(crate) property: Option<String>,
     pub(crate) part: Option<(usize, Range<usize>)>,
+    pub(crate) own: Option<String>,
 }
 
 impl Place {
@@ -40,6 +41,18 @@ impl Place {
     #[must_use]
     pub fn part(self, value: usize, bytes: Range<usize>) -> Place {
         Place { part: Some((value, bytes)), ..self }
+    }
+
+    /// The same place, or that of another property whose value comes from a row of a table for this component alone,
+    /// where that of the first one does not. What a library finds has the first place alone.
+    #[must_use]
+    pub fn or_own(self, name: impl Into<String>) -> Place {
+        Place { own: Some(name.into()), ..self }
+    }
+
+    /// The name of the other property, see [`or_own`](Place::or_own).
+    pub fn own_property_name(&self) -> Option<&str> {
+        self.own.as_deref()
     }
 
     /// The index of the component; `None` for the one that reports the finding.

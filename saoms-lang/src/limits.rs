@@ -109,6 +109,8 @@ pub(crate) const NUMBER_DIGITS: usize = 18;
 // Diagnostics: a generated file may have one mistake a million times.
 /// Faults that are kept of the text of one file.
 pub(crate) const TEXT_FAULTS: usize = 1000;
+/// References to declared entities that are shown with the declaration.
+pub(crate) const DECLARED_ENTITIES: usize = 8;
 /// Diagnostics of one code that are kept for one file.
 pub(crate) const CODE_DIAGNOSTICS: u32 = 1000;
 /// Diagnostics of all codes together that are kept for one file.
@@ -135,5 +137,7 @@ pub(crate) const REMEMBERED_DIAGNOSTICS: usize = 20_000;
 pub(crate) const SUGGESTED_EDITS: usize = 100;
 /// Characters of a text that a message repeats.
 pub(crate) const QUOTED_CHARACTERS: usize = 60;
+/// Words with hidden characters that are looked at.
+pub(crate) const HIDDEN_CHARACTERS: usize = 1000;
 /// Names that are offered in place of a wrong one.
 pub(crate) const OFFERED_NAMES: usize = 3;

@@ -4,12 +4,14 @@ use std::borrow::Cow;
 use std::fmt::{self, Display, Write};
 
 /// True for a character that steers what shows it in place of being seen: control characters (C0, DEL, C1), those that
-/// turn the writing direction or break lines in Unicode (UAX #9, UAX #14), marks of the byte order and noncharacters.
+/// turn the writing direction or break lines in Unicode (UAX #9, UAX #14), marks of the byte order and others of no
+/// width, and noncharacters. Joiners are no such characters: scripts and emoji need them.
 pub fn is_invisible(character: char) -> bool {
     character.is_control()
         || matches!(
             character,
-            '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}'
+            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}'
+                | '\u{2060}'..='\u{2064}' | '\u{2066}'..='\u{2069}' | '\u{feff}'
                 | '\u{fffe}' | '\u{ffff}'
         )
 }

@@ -17,6 +17,7 @@ mod number;
 mod robots;
 pub(crate) mod scenario;
 mod shifts;
+mod slow_world;
 mod start;
 mod sustain;
 mod unlikely;
@@ -45,4 +46,5 @@ saoms_api::fleet_rules!(
     scenario::early_end::RULE,
     unlikely::RULE,
     classic_walls::RULE,
+    slow_world::RULE,
 );

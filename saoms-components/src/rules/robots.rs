@@ -139,12 +139,12 @@ impl FleetRobot {
 
     /// Place of the robot's charger in the composite, as far as it is given.
     pub(super) fn charger_place(&self, fleet: &FleetView<'_>) -> Place {
-        self.first_given(fleet, &["chargeY", "chargeX", "ID"])
+        self.first_given(fleet, &["chargeY", "chargeX", "ID"]).or_own("chargeX")
     }
 
     /// Place of the column of the robot's charger in the composite, as far as it is given.
     pub(super) fn column_place(&self, fleet: &FleetView<'_>) -> Place {
-        self.first_given(fleet, &["chargeX", "chargeY", "ID"])
+        self.first_given(fleet, &["chargeX", "chargeY", "ID"]).or_own("chargeY")
     }
 
     /// Place of the robot's number in the composite.

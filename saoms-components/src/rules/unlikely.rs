@@ -24,10 +24,10 @@ pub(super) static RULE: FleetRule = FleetRule {
 };
 
 /// Period beyond which a component of this crate hinders the others: it handles messages once in a period.
-const LONG: Duration = Duration::from_secs(60);
+pub(super) const LONG: Duration = Duration::from_secs(60);
 
 /// Time below which nothing of this crate takes a time.
-const SHORT: Duration = Duration::from_millis(1);
+pub(super) const SHORT: Duration = Duration::from_millis(1);
 
 fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut findings = long_periods(fleet);

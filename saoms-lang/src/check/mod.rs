@@ -10,6 +10,7 @@ mod classes;
 mod component;
 mod contracts;
 mod fleet;
+mod hidden;
 mod judged;
 mod loops;
 mod occurrences;
@@ -103,6 +104,7 @@ pub fn check(
         properties::foreign::lower_missing_files(&fleet, report);
     }
     report.finish();
+    hidden::check(contribution, sources, report);
     severities.apply(0, report.diagnostics());
     if report.has_errors() {
         severities.overruled(report.diagnostics());

@@ -7,12 +7,13 @@ use super::fleets::InnerDeployable;
 use super::head;
 use super::imports::Imports;
 use super::index::{Index, is_of_definitions};
-use crate::diagnostic::{Candidates, Diagnostics, Severity, quoted};
+use crate::diagnostic::{Candidates, Diagnostic, Diagnostics, Severity, codes, quoted};
 use crate::limits::{EXPLAINED_FILE_BYTES, EXPLAINED_FILES, EXPLAINED_NAMES, OFFERED_NAMES};
+use crate::load::description::DESCRIPTIONS;
 use crate::load::vocabulary::{CONTRIBUTION, DEFINITIONS};
 use crate::load::{ReadContext, definitions, load_component_type, load_file, read};
 use crate::model::{ComponentType, Version};
-use crate::source::{OpenTexts, Sources};
+use crate::source::{OpenTexts, Sources, Span};
 
 /// Finder of what composites name in other files. It looks at each folder and each first tag of a file once: with one
 /// finder for all fleets of a folder, the time of their checks grows linearly with their number.
@@ -71,6 +72,7 @@ impl Finder {
         } else if name == CONTRIBUTION.name {
             let above = folder.parent().filter(|_| folder.ends_with("META-INF"));
             let context = &mut ReadContext { max_size, sources, diagnostics };
+            misnamed(path, context);
             self.describe(path, above.unwrap_or(folder), context);
         } else if name == "componentType" {
             let file = read(path, max_size, sources, diagnostics);
@@ -108,6 +110,18 @@ pub enum SideFile {
     Checked,
     /// The description of an implementation, which the checker holds to itself; `None` where it could not be read.
     ComponentType(Option<Box<ComponentType>>),
+}
+
+/// Reports the description of a contribution in a file where none is looked for.
+fn misnamed(path: &Path, context: &mut ReadContext<'_>) {
+    if DESCRIPTIONS.iter().any(|name| path.ends_with(name)) {
+        return;
+    }
+    let usual = quoted(DESCRIPTIONS[1]);
+    let file = context.sources.add(path.display().to_string(), "");
+    let message = format!("this describes a contribution, but a description is read only from {usual}");
+    let one = Diagnostic::new(&codes::ROOT, Span::empty(0).in_file(file), message).severity(Severity::Warning);
+    context.diagnostics.push(one.help(format!("rename the file to {usual}")));
 }
 
 /// The fault of a file that should be a composite.

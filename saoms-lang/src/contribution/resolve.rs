@@ -9,9 +9,9 @@ use super::{component_types, read_values};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest_few, quoted};
 use crate::limits::{FLEET_ENTRIES, OFFERED_NAMES};
 use crate::load::description::Kind;
-use crate::load::{ReadContext, STANDARD_INPUT, load_component_type, load_file};
+use crate::load::{ReadContext, STANDARD_INPUT, load_component_type, load_file, read};
 use crate::model::{Composite, Contribution, ImplementationKind, Link, Missing, Naming, Origin};
-use crate::source::{Location, Sources, identity};
+use crate::source::{Location, Sources, Span, identity};
 use crate::syntax::escaped;
 
 impl Finder {
@@ -184,6 +184,8 @@ impl Finder {
         }
         let other = seen.named(&wanted.local);
         let elsewhere = other.map(|other| other.namespace.clone());
+        let nameless = other.filter(|other| other.namespace.is_empty());
+        let misspelt = nameless.and_then(|other| misspelt_namespace(&other.path, context));
         if let Some(other) = other {
             let (path, local) = (quoted(&other.path.display().to_string()), quoted(&other.local));
             let meant = wanted.namespaces.as_ref().and_then(|all| all.first()).filter(|_| other.namespace.is_empty());
@@ -199,8 +201,18 @@ impl Finder {
         searched.extend(self.unread(folder, local, context.sources.open()));
         let around = (&mut self.index, &mut self.candidates);
         searched.extend(self.imports.hints(around, root, namespaces, local, context));
-        Missing { near, searched, elsewhere }
+        Missing { near, searched, elsewhere, misspelt }
     }
+}
+
+/// The place of the attribute of a composite that is called as its target namespace is but for case.
+fn misspelt_namespace(path: &Path, context: &mut ReadContext<'_>) -> Option<Location> {
+    let file = read(path, context.max_size, context.sources, &mut Diagnostics::new())?;
+    let text = context.sources.get(file).text();
+    let tag = &text[..text.find("<component").unwrap_or(text.len())];
+    let start = tag.to_ascii_lowercase().find(" targetnamespace")? + 1;
+    let end = start + "targetNamespace".len();
+    (&text[start..end] != "targetNamespace").then(|| Span::new(start as u32, end as u32).in_file(file))
 }
 
 /// A composite that is named and not known.

@@ -98,6 +98,7 @@ codes! {
     NAMESPACE_NEAR = "S1013" Warning "namespace-near": "A namespace is nearly that of SCA or SAOMS, and its elements and attributes are ignored.";
     NEWER_ATTRIBUTE = "S1014" Warning "newer-attribute": "A file of SCA 1.0 has an attribute of SCA 1.1.";
     FOREIGN_ELEMENT = "S1015" Warning "foreign-element": "An element has a name of SCA but another namespace, or is an element of XInclude: it is ignored.";
+    HIDDEN_CHARACTER = "S1016" Warning "hidden-character" [OutlivesExpansion]: "A name or a value contains a character that nobody sees, or a letter of another alphabet that looks like a Latin one.";
     // S20: names, composite properties, services, references and wires.
     COMPOSITE_REPEATED = "S2001" Error "composite-repeated" ("ASM60001") [Judgement]: "Two composites in one namespace have the same name.";
     COMPONENT_REPEATED = "S2002" Error "component-repeated" ("ASM50001"): "Two components have the same name.";

@@ -79,9 +79,21 @@ pub(super) fn parse_from(text: &str, start: usize) -> Result<(Expression, usize)
                 "and" | "or" if word != text[at.clone()] => Some(word.as_str()),
                 "mod" => Some("%"),
                 "div" => Some("/"),
+                "eq" => Some("=="),
+                "ne" => Some("!="),
+                "gt" => Some(">"),
+                "ge" => Some(">="),
+                "lt" => Some("<"),
+                "le" => Some("<="),
                 _ => None,
             };
-            Err(meant.into_iter().fold(one, ExpressionError::instead).at(at.clone()))
+            let one = meant.into_iter().fold(one, ExpressionError::instead);
+            // A value with its unit is no number.
+            let number = text[..at.start].trim_end_matches(|sign: char| sign.is_ascii_digit() || sign == '.');
+            let value = &text[number.len()..at.end];
+            let has_unit = number.len() < at.start && meant.is_none() && matches!(token, Token::Word(_));
+            let one = if has_unit { one.help(format!("write a text in quotes: `'{value}'`")) } else { one };
+            Err(one.at(at.clone()))
         }
     }
 }

@@ -129,8 +129,10 @@ fn expression(text: &str, inside: Range<usize>) -> Result<Piece<'_>, ExpressionF
         Some(digits @ 1..=NUMBER_DIGITS) => Ok(Piece::Expression(expression, digits)),
         _ => {
             let problem = ExpressionError::new("expected the number of digits after `:`, with a `0` before it");
-            let plain = width.parse().is_ok_and(|digits: usize| (1..=NUMBER_DIGITS).contains(&digits));
-            let problem = if plain { problem.instead(format!("0{width}")) } else { problem };
+            // As in other languages: `%02d`, `02d`, `2`.
+            let plain = width.trim_start_matches('%').trim_end_matches('d').trim_start_matches('0');
+            let is_meant = plain.parse().is_ok_and(|digits: usize| (1..=NUMBER_DIGITS).contains(&digits));
+            let problem = if is_meant { problem.instead(format!("0{plain}")) } else { problem };
             Err(problem.help("as in `${index:03}`, which turns 7 into 007").at(end + 1..inside.end.max(end + 1)))
         }
     }

@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use super::Loader;
 use super::children::is_known;
-use super::other_words::{is_class_beside_implementation, is_word_for};
+use super::other_words::{
+    given_already, is_class_beside_implementation, is_class_of_component, is_class_without_implementation, is_word_for,
+};
 use super::vocabulary::{self, Holds, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
 use crate::limits::LIST_WORDS;
@@ -124,6 +126,12 @@ impl Loader<'_> {
             None if vocabulary::own_names(kind).any(|known| known == name) => {
                 own_without_prefix(one, attribute, element)
             }
+            // There is no end tag to write it before.
+            None if element.end_tag_span().is_none() && is_class_without_implementation(element, attribute) => one
+                .help(format!(
+                    "write `<implementation.rust class=\"{}\"/>` in the component",
+                    attribute.value().trim()
+                )),
             None if name == "mustSupply" => {
                 one.help("remove it: it belongs to a property of the composite that its users have to give")
             }
@@ -165,6 +173,13 @@ impl Loader<'_> {
             None if name == "env" => one.help(
                 "only a property of the composite has this attribute: take the value of such a property with `source`",
             ),
+            None if kind.name == "include" && matches!(name, "site" | "count") => one.help(format!(
+                "only a component can have it: write `<component name=\"...\" {}=\"{}\"><implementation.composite \
+                 name=\"{}\"/></component>` in place of the `include`",
+                attribute.name(),
+                attribute.value(),
+                element.attribute("name").map(|one| one.value().into_owned()).unwrap_or_default()
+            )),
             None if vocabulary::own_names(&vocabulary::COMPONENT).any(|known| known == name) => one.help(format!(
                 "write it in the start tag of a `component`: {} has no such attribute",
                 quoted(kind.name)
@@ -250,10 +265,10 @@ impl Loader<'_> {
         let Some(name) = self.required(element, "name") else {
             return Located::new("".into(), element.name_location());
         };
-        if is_local_name(&name) {
+        if name.is_ascii() && is_local_name(&name) {
             return name;
         }
-        // Copied from a page or a document, of no width.
+        // Copied from a page or a document, of no width. What turns the writing direction is warned of.
         let is_unseen = |letter| matches!(letter, '\u{ad}' | '\u{200b}'..='\u{200d}' | '\u{2060}' | '\u{feff}');
         if let Some(unseen) = name.chars().find(|letter| is_unseen(*letter)) {
             let clean: String = name.chars().filter(|letter| !is_unseen(*letter)).collect();
@@ -262,6 +277,9 @@ impl Loader<'_> {
             let one = Diagnostic::new(&codes::ATTRIBUTE_VALUE, name.location, message);
             self.report(one.suggest("remove that character", name.location, escaped(&clean)));
             return Located::new(clean.into(), name.location);
+        }
+        if is_local_name(&name) {
+            return name;
         }
         if let Some(bad) = without_expressions(&name).chars().find(|c| c.is_whitespace() || *c == '/') {
             let shown = quoted(bad.encode_utf8(&mut [0; 4]));
@@ -424,19 +442,9 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
     one.suggest_edits(format!("write it as {what}: {}", quoted(&written)), edits)
 }
 
-/// True if an attribute of a component seems to name its class.
-pub(super) fn is_class_of_component(attribute: Attribute<'_>) -> bool {
-    matches!(attribute.name(), "class" | "type" | "implementation") && attribute.value().contains('.')
-}
-
 /// True if a name can start with this.
 pub(super) fn is_first(letter: char) -> bool {
     letter.is_alphabetic() || letter == '_' || !letter.is_ascii()
-}
-
-/// Help for an attribute that seems to be meant for one that the element has.
-fn given_already(name: &str) -> String {
-    format!("{} is given already: remove one of the two", quoted(name))
 }
 
 /// A text of a replicated component without its expressions, in which blanks and slashes are nothing odd.

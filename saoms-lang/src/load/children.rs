@@ -204,6 +204,9 @@ impl Loader<'_> {
                 }
                 self.hide_components(element);
             }
+            if name == "component" {
+                self.hide_components(element);
+            }
             self.report(match is_own {
                 true => one.help(format!("it is allowed in {}", list(vocabulary::own_parents(name).iter().copied()))),
                 false => one.help(belongs_outside(name, parent).unwrap_or_else(holds)),
@@ -224,8 +227,10 @@ impl Loader<'_> {
             }
             _ => nearest(name, known.iter().copied()),
         };
-        let word = word(name).filter(|meant| known.contains(meant));
+        let is_exchange = matches!(name, "import" | "export") && element.attribute("namespace").is_some();
+        let word = word(name).filter(|meant| known.contains(meant) && !is_exchange);
         self.report(match word.or(slip) {
+            _ if is_exchange => one.help("write it in the `sca-contribution.xml` of the folder"),
             None if parent.has(name, self.version) && is_attribute_as_element(element) => as_attribute(one, element),
             Some("implementation.java") if let Some((kind, attribute)) = kind_in_attribute(element) => {
                 let file = element.document().file();
@@ -248,7 +253,7 @@ impl Loader<'_> {
         match word {
             // What it is called elsewhere has the same parts.
             Some(meant) => Some(meant).filter(|meant| !meant.contains('.')),
-            None => slip,
+            None => slip.filter(|_| !is_exchange),
         }
     }
 
@@ -308,7 +313,7 @@ impl Loader<'_> {
     pub(super) fn repeated(&mut self, element: Element<'_>, first: Location, parent: &'static Kind, what: &str) {
         let message = format!("{} has a second {what}", quoted(parent.name));
         let one = Diagnostic::new(&codes::REPEATED_ELEMENT, element.name_location(), message);
-        self.report(one.label(first, format!("the first {what}")));
+        self.report(one.label(first, format!("the first {what}")).help("keep one of the two"));
     }
 
     /// Reports text in an element that holds elements alone.

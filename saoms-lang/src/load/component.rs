@@ -1,8 +1,8 @@
 //! Components with their implementations and loops.
 
 use super::Loader;
-use super::attributes::is_class_of_component;
 use super::children::{Family, is_defined, renaming, variant};
+use super::other_words::is_class_of_component;
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind, LOOP,

@@ -64,7 +64,13 @@ impl Loader<'_> {
             None if element.attribute("target").is_some() => {
                 let message = "a `reference` with a `target`, outside of the component that has it";
                 let one = Diagnostic::new(&codes::MISSING_ATTRIBUTE, element.name_location(), message);
-                self.report(one.help("move it into that component; a reference of the composite has a `promote`"));
+                let text =
+                    |name: &str| element.attribute(name).map(|one| one.value().into_owned()).unwrap_or("...".into());
+                let wire = format!("<wire source=\"COMPONENT/{}\" target=\"{}\"/>", text("name"), text("target"));
+                self.report(one.help(format!(
+                    "move it into that component, or write {}; a reference of the composite has a `promote`",
+                    quoted(&wire)
+                )));
             }
             None => _ = self.required(element, "promote"),
             Some(attribute) => {

@@ -84,7 +84,9 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
     }
     let hint = match (version.is_some(), local) {
         (true, "componentType") => "this describes an implementation; name the composite that uses it",
-        (true, "contribution") => "this describes a contribution; name a composite in it",
+        (true, "contribution") => {
+            "this describes a contribution; name a composite in it, or rename the file to `sca-contribution.xml`"
+        }
         (true, "definitions") => "this holds policies; name a composite",
         (true, "component") => "put the component into a `composite`",
         (true, _) => return renamed(one, root, "composite"),

@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 
 use super::{ComponentElement, ComponentType, Composite, ImplementationKind, Include, Origin, Part, Table, Version};
 use crate::diagnostic::{Candidates, nearest};
-use crate::source::{FileId, Text};
+use crate::source::{FileId, Location, Text};
 use crate::syntax::ElementId;
 
 /// The files of one fleet: the composites that were asked for, and those that they name.
@@ -67,6 +67,8 @@ pub struct Missing {
     pub searched: Vec<String>,
     /// The namespace of a composite of this name that is of another one.
     pub elsewhere: Option<String>,
+    /// The place of its `targetNamespace` where that is misspelt.
+    pub misspelt: Option<Location>,
 }
 
 /// A place in a composite that names another one.
@@ -274,6 +276,7 @@ impl Contribution {
             near: near.map(|near| format!("{prefix}{near}")).into_iter().collect(),
             searched: Vec::new(),
             elsewhere: None,
+            misspelt: None,
         }
     }
 }

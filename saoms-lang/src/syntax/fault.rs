@@ -1,7 +1,7 @@
 //! Faults of a text, as diagnostics.
 
-use crate::diagnostic::{Code, Diagnostic};
-use crate::limits::TEXT_FAULTS;
+use crate::diagnostic::{Code, Diagnostic, Label, codes, quoted};
+use crate::limits::{DECLARED_ENTITIES, TEXT_FAULTS};
 use crate::source::{FileId, Location, Span};
 
 /// The faults found so far.
@@ -14,6 +14,24 @@ impl Faults {
         if self.0.len() < TEXT_FAULTS {
             self.0.push(make());
         }
+    }
+
+    /// Adds the place of a reference to the fault of the document type declaration that declares it. False if there is
+    /// none.
+    pub(super) fn add_entity(&mut self, input: Input<'_>, start: u32, end: u32) -> bool {
+        // Nearly all texts have none.
+        let Some(one) = self.0.first_mut().filter(|one| one.code == &codes::XML_DOCTYPE) else { return false };
+        let declaration = format!("<!ENTITY {} ", input.slice(start + 1, end - 1));
+        if !input.text[one.location.span.start as usize..start as usize].contains(&declaration) {
+            return false;
+        }
+        if one.labels.is_empty() {
+            one.help.push(format!("write the text itself in place of {}", quoted(input.slice(start, end))));
+        }
+        if one.labels.len() < DECLARED_ENTITIES {
+            one.labels.push(Label { location: input.at(start, end), text: "an entity that it declares".to_owned() });
+        }
+        true
     }
 
     pub(super) fn is_empty(&self) -> bool {

@@ -23,6 +23,7 @@ mod slips;
 mod start_tag;
 #[cfg(test)]
 mod tests;
+mod unseen;
 mod value;
 
 use std::sync::Arc;
@@ -32,6 +33,7 @@ pub(crate) use characters::{is_local_name, is_qualified_name};
 pub use document::{Document, ElementId, TokenKind};
 pub use element::Element;
 pub use saoms_api::host::escaped;
+pub(crate) use unseen::{hidden_in, is_unseen, looks_like, named};
 pub(crate) use value::SourceMap;
 
 use fault::Input;

@@ -32,7 +32,9 @@ impl Lexer<'_> {
         if resolve(&after[..length]).is_some() {
             return (end, true);
         }
-        self.faults.add(|| unknown(input, Span::new(at, end)));
+        if !self.faults.add_entity(input, at, end) {
+            self.faults.add(|| unknown(input, Span::new(at, end)));
+        }
         (at + 1, false)
     }
 }

@@ -3,6 +3,7 @@
 use super::attribute::RawAttribute;
 use super::characters::{is_qualified_name, name_length};
 use super::fault::Input;
+use super::unseen::is_unseen;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::source::Span;
 
@@ -65,14 +66,17 @@ pub(super) fn backslash(input: Input<'_>, at: u32) -> Diagnostic {
 /// The fault of a name that is none; `what` it is of.
 pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Option<Diagnostic> {
     let name = input.slice(start, end);
-    if is_qualified_name(name) {
+    if is_qualified_name(name) && !name.contains(is_unseen) {
         return None;
     }
     if let Some((length, odd)) = odd_space(name) {
         let at = start + length as u32;
         let end = at + odd.len_utf8() as u32;
         let code = u32::from(odd);
-        let (kind, meant) = if odd.is_whitespace() { ("a blank", " ") } else { ("nothing", "") };
+        let kind = if odd.is_whitespace() { "a blank" } else { "nothing" };
+        // Behind the name of an element, an attribute may begin.
+        let is_attribute = what == "element" && input.byte(input.skip_space(start + name.len() as u32)) == Some(b'=');
+        let meant = if odd.is_whitespace() || is_attribute { " " } else { "" };
         let message = format!("U+{code:04X}, which looks like {kind}, in the name of an {what}");
         let one = input.fault(&codes::XML_NAME, at, end, message);
         let description = if meant.is_empty() { "remove it" } else { "replace it with a blank" };
@@ -89,8 +93,7 @@ pub(super) fn bad_name(input: Input<'_>, start: u32, end: u32, what: &str) -> Op
 
 /// The first character of a name that looks like a blank, or like nothing, and where it is.
 pub(super) fn odd_space(name: &str) -> Option<(usize, char)> {
-    let is_odd = |c: char| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{2060}' | '\u{feff}');
-    name.char_indices().find(|(_, c)| is_odd(*c))
+    name.char_indices().find(|(_, c)| c.is_whitespace() || is_unseen(*c))
 }
 
 /// The fault of a start tag, of the element at `name`, whose `>` is missing at `at`, before the text of the element.

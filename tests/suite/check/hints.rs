@@ -273,6 +273,17 @@ fn a_cell_of_a_table_of_two_is_told_once() {
     assert_hint("shared", &told, "(in `A/Robot01`, index 1, and in 1 more)", "Battery level");
 }
 
+#[test]
+fn a_charger_is_shown_in_the_table_that_it_comes_from() {
+    let same_row = [["chargeY\">${index}", "chargeY\">1"]];
+    let files = replicated(&same_row, &[], "index,chargeX\n1,2\n2,2\n3,3\n");
+    let folder = empty_folder("hints/charger");
+    files.iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
+    let text = String::from_utf8(saoms_in(&folder, &["check", "fleet.composite"]).stderr).unwrap();
+    let is_shown = text.contains("error[S5003]") && text.contains("--> robots.csv:3:3");
+    assert!(is_shown && text.contains("- the first robot"), "{text}");
+}
+
 /// A second site, with fewer robots.
 const B: &str = "  <component name=\"B\" saoms:site=\"B\">
     <implementation.composite name=\"w:inner\"/>

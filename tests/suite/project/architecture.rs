@@ -20,9 +20,9 @@ const ORDERS: &[(&str, &str, &[&str])] = &[
         "saoms-lang/src/check",
         "crate::check::",
         &[
-            "judged", "options", "report", "values", "fleet", "parameters", "unfolding", "classes", "properties",
-            "loops", "component", "tasks", "contracts", "wiring", "rules", "run_settings", "assemble", "occurrences",
-            "wanted_tables",
+            "judged", "options", "report", "hidden", "values", "fleet", "parameters", "unfolding", "classes",
+            "properties", "loops", "component", "tasks", "contracts", "wiring", "rules", "run_settings", "assemble",
+            "occurrences", "wanted_tables",
         ],
     ),
     (

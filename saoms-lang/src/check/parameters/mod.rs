@@ -3,7 +3,7 @@
 mod outside;
 mod sources;
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::rc::Rc;
 
 use outside::{from_outside, is_asked_for};
@@ -35,6 +35,8 @@ pub(crate) struct Parameters<'a> {
     /// The elements that paths of sources look at.
     elements: Rc<Budget>,
     pub(crate) faulty: Rc<FaultyValues>,
+    /// The first `source` at which it is reported that a composite property, by its place, has no value.
+    lacks: HashMap<Location, Location>,
 }
 
 /// The properties of one composite, those of what it includes among them.
@@ -117,6 +119,7 @@ impl<'a> Parameters<'a> {
             text: Budget::of(SOURCE_BYTES),
             elements: Rc::clone(elements),
             faulty: Rc::default(),
+            lacks: HashMap::new(),
         }
     }
 
@@ -260,14 +263,25 @@ impl<'a> Parameters<'a> {
 
     /// True if the reason is reported why the composite property that a `source` names has no value: it is misspelt
     /// where it is given, or comes from a file, as those of components can.
-    pub(crate) fn is_lack_reported(&self, unit: usize, source: &str) -> bool {
+    pub(crate) fn is_lack_reported(&self, unit: usize, source: &Text) -> bool {
         let declared = &self.units[unit];
         let Some((name, Parameter { composite, property, .. })) = self.named_by(unit, source) else {
             return false;
         };
         let is_declared = |name: &str| declared.by_name.contains_key(name);
-        declared.owner.is_some_and(|owner| is_misspelt(name, owner, is_declared))
+        let is_told = self.lacks.get(&property.name.location).is_some_and(|first| *first != source.location);
+        is_told
+            || declared.owner.is_some_and(|owner| is_misspelt(name, owner, is_declared))
             || property.origin.element(&composite.document).attribute("file").is_some()
+    }
+
+    /// Notes that it is reported at a `source` that the composite property that it names has no value. Other uses of
+    /// the property lack the same one.
+    pub(crate) fn tell_lack(&mut self, unit: usize, source: &Text) {
+        if let Some((_, parameter)) = self.named_by(unit, source) {
+            let place = parameter.property.name.location;
+            self.lacks.entry(place).or_insert(source.location);
+        }
     }
 
     /// Lets any property of a composite be meant by what is wrong in it.

@@ -7,7 +7,7 @@ use crate::check::fleet::Fleet;
 use crate::check::judged::{Faulty, Judged};
 use crate::check::report::{Report, replacing};
 use crate::check::values::path::{FORMS, PathFault, PathFaultKind, expression};
-use crate::check::values::raw::{Piece, Raw, raw};
+use crate::check::values::raw::{Piece, Raw, is_one_of_several, raw};
 use crate::check::values::shared_values::{Answer, SharedValues};
 use crate::check::values::value_type::Typed;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
@@ -135,6 +135,12 @@ impl<'a> Parameters<'a> {
             }
         }
         if whole.raw.0.is_empty() {
+            // That there is more than one, or that its text is faulty, is reported.
+            if is_one_of_several(property, composite.version)
+                || property.origin.element(&composite.document).has_damaged_content()
+            {
+                return Err(Faulty);
+            }
             whole = SharedValues::new(raw(property, &composite.document, None, report)?);
         }
         if whole.raw.0.is_empty() && property.must_supply().is_some_and(|must| must.value) {

@@ -165,7 +165,9 @@ impl<'a> PropertyCheck<'_, '_, '_, 'a> {
         {
             let message = format!("the property {} has no value: its source has no value", quoted(&declaration.name));
             let one = Diagnostic::new(&codes::PROPERTY_MISSING, source.location, message);
-            self.report.push(self.parameters.supply(unit, source, one));
+            let one = self.parameters.supply(unit, source, one);
+            self.parameters.tell_lack(unit, source);
+            self.report.push(one);
         }
     }
 

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::given_twice;
 use crate::check::fleet::{Member, Unit};
 use crate::check::report::Report;
+use crate::check::values::raw::is_one_of_several;
 use crate::check::values::value_type::{Typed, check_match};
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
 use crate::expression::has_expression;
@@ -89,9 +90,8 @@ fn several(
 
 /// Checks that a composite gives its property one value, where it takes one.
 pub(crate) fn one_value(property: &Property, version: Version, report: &mut Report<'_>) {
-    // In SCA 1.0 elements of this name may be parts of a complex value.
-    if let (true, [first, second, ..]) = (version.is_1_1(), property.values())
-        && property.many().is_none_or(|many| !many.value)
+    if let [first, second, ..] = property.values()
+        && is_one_of_several(property, version)
     {
         several((property, first, second), property, report);
     }

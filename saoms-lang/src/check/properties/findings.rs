@@ -41,10 +41,20 @@ impl<'a> Subject<'a> {
         self.value(name).is_some_and(|(_, place)| !place.places.is_empty())
     }
 
-    /// The text at a place, where a property has one text.
+    /// The text at a place, where a property has one text there.
     pub(crate) fn text(&self, place: &Place) -> Option<&'a str> {
-        let whole = self.value(place.property_name()?)?.0.as_text()?;
-        place.value_part().map_or(Some(whole), |(_, part)| whole.get(part))
+        let (index, part) = place.value_part().map_or((0, None), |(index, part)| (index, Some(part)));
+        let whole = match self.value(place.property_name()?)?.0 {
+            PropertyValue::Many(values) => values.get(index).and_then(PropertyValue::as_text)?,
+            one => one.as_text()?,
+        };
+        part.map_or(Some(whole), |part| whole.get(part))
+    }
+
+    /// Where the text is written that a place is in.
+    pub(crate) fn written(&self, place: &Place) -> Option<Location> {
+        let index = place.value_part().map_or(0, |(index, _)| index);
+        self.value(place.property_name()?)?.1.places.get(index).copied()
     }
 
     /// The value of the property of this name, with its place.
@@ -125,7 +135,10 @@ fn located<'a>(place: &Place, subject: Subject<'a>, report: &Report<'_>) -> Loca
     let nowhere =
         Located { at, source: None, text: beside.map(|text| text.value.clone()), is_xml: report.is_xml(at.file) };
     let given = place.property_name().and_then(|name| subject.value(name));
-    let Some((values, given)) = given else { return nowhere };
+    let is_cell = |given: &(&PropertyValue, &ValuePlace)| given.1.places.iter().all(|at| !report.is_xml(at.file));
+    let own = place.own_property_name().and_then(|name| subject.value(name));
+    let own = own.filter(|own| !own.1.places.is_empty() && is_cell(own) && !given.as_ref().is_some_and(is_cell));
+    let Some((values, given)) = own.or(given) else { return nowhere };
     let Some(&first) = given.places.first() else { return nowhere };
     let whole = Located { at: first, source: given.source, ..nowhere };
     let Some((index, part)) = place.value_part() else { return whole };

@@ -110,7 +110,8 @@ fn findings(
         }
         // The text of an expression that nobody reads is wrong for that alone.
         if let Some(text) = subject.text(finding.place()).filter(|text| has_expression(text) && !report.has_index()) {
-            report.withdraw(&codes::EXPRESSION_UNREAD, one.location);
+            let whole = subject.written(finding.place());
+            [Some(one.location), whole].iter().flatten().for_each(|at| report.withdraw(&codes::EXPRESSION_UNREAD, *at));
             report.push(unread::diagnostic(&codes::CONSTRUCTION, text, one.location).help(one.message));
             continue;
         }

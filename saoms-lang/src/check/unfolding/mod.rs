@@ -23,7 +23,7 @@ use crate::check::unfolding::replica_plan::Plan;
 use crate::check::values::replica::Replica;
 use crate::diagnostic::{Diagnostic, codes, quoted};
 use crate::limits::{Budget, PATH_ELEMENTS, REPLICAS};
-use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming};
+use crate::model::{ComponentElement, Composite, Contribution, Include, Link, Naming, SAOMS_NAMESPACE};
 use crate::source::{FileId, Location};
 use smol_str::SmolStr;
 
@@ -249,6 +249,11 @@ impl<'a> Unfolding<'a, '_, '_> {
             return self.open(place, composite, unit, Some(naming));
         }
         let is_again = self.fleet.units[unit].composites.iter().any(|known| std::ptr::eq(*known, composite));
+        // What makes no copy of it is reported.
+        let element = include.origin.element(&around.document);
+        if is_again && ["site", "count"].iter().any(|name| element.attribute_in(SAOMS_NAMESPACE, name).is_some()) {
+            return;
+        }
         if is_again {
             let message = format!("the composite {} is included twice", quoted(&composite.name));
             let one = Diagnostic::new(&codes::INCLUDED_TWICE, naming.name.location, message);

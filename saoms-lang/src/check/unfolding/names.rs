@@ -7,7 +7,7 @@ use crate::check::report::{Report, replacing};
 use crate::diagnostic::{Code, Diagnostic, Edit, Severity, codes, nearest, quoted};
 use crate::model::{Composite, Missing, Naming, Version};
 use crate::source::{Location, Span};
-use crate::syntax::{Element, escaped};
+use crate::syntax::{Element, escaped, hidden_in};
 
 /// Checks that no two components have one path. Where none is given, names alone see to that.
 pub(crate) fn paths(fleet: &Fleet<'_>, report: &mut Report<'_>) {
@@ -172,6 +172,9 @@ pub(crate) fn not_found(
     };
     let message = format!("there is no composite {}{of}", quoted(local));
     let mut one = Diagnostic::new(code(naming, composite), name.location, message);
+    if let Some(place) = missing.misspelt {
+        one = one.label(place, "expected `targetNamespace`");
+    }
     // What is spelt alike is meant; anything else may come from another contribution.
     if assume_classes && missing.near.is_empty() {
         one = one.severity(Severity::Warning);
@@ -188,7 +191,17 @@ pub(crate) fn not_found(
     let around = naming.origin.element(&composite.document);
     let of = namespaces.as_ref().and_then(|all| all.first()).filter(|_| !name.contains(':'));
     let prefix = of.and_then(|namespace| prefix_of(namespace, around));
-    for near in &missing.near {
+    // A name with a character that nobody sees is not proposed, but has to be mended where it is.
+    let others = missing.near.iter().chain(&missing.elsewhere);
+    let hidden: Vec<(&String, String)> = others
+        .filter_map(|other| {
+            let (seen, sign) = hidden_in(other)?;
+            Some((other, format!("the name {} of another composite contains {sign}: write it without", quoted(&seen))))
+        })
+        .collect();
+    one.help.extend(hidden.iter().map(|(_, help)| help.clone()));
+    let is_hidden = |name: &str| hidden.iter().any(|(other, _)| *other == name);
+    for near in missing.near.iter().filter(|near| !is_hidden(near)) {
         let meant = prefix.map_or_else(|| near.clone(), |prefix| format!("{prefix}:{near}"));
         let places = composite.namings().filter(|other| other.name.value == name.value);
         let edit = |place: Location| Edit { location: place, replacement: escaped(&meant) };
@@ -199,7 +212,7 @@ pub(crate) fn not_found(
         };
         one = one.suggest_edits(description, if edits.is_empty() { vec![edit(name.location)] } else { edits });
     }
-    if let Some((at, meant)) = wrong_namespace {
+    if let Some((at, meant)) = wrong_namespace.filter(|(_, meant)| !is_hidden(meant)) {
         let of = namespaces.iter().flatten().next().map_or("", |namespace| namespace.as_str());
         one = one.suggest(replacing(of, meant), at, escaped(meant));
     }

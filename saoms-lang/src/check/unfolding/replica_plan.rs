@@ -171,6 +171,8 @@ impl<'a> Plan<'a> {
                     self.rows.insert(index, place);
                     match self.component.condition.as_ref().filter(|condition| self.is_left_out(index, condition)) {
                         None => report.line(row.key.location),
+                        // A condition with a sign that it cannot have is reported, and may say something else.
+                        Some(condition) if report.written(condition.location).contains('<') => {}
                         Some(condition) => report.line_without_replica(left_out(row, condition)),
                     }
                 }

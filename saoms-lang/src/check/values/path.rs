@@ -231,7 +231,13 @@ impl<'p> Test<'p> {
             return PathFault::new(at, message).near(self.name.unwrap_or_default(), known);
         }
         let Some(Predicate::Value { of, value }) = self.predicate else {
-            return PathFault::new(at, self.no_place(named));
+            let fault = PathFault::new(at, self.no_place(named));
+            return match self.predicate {
+                Some(Predicate::Position(Position::Number(0))) => {
+                    PathFault { instead: Some(("[0]".to_owned(), "[1]".to_owned())), ..fault }
+                }
+                _ => fault,
+            };
         };
         let Some(name) = of.strip_prefix('@') else {
             return PathFault::new(
@@ -262,7 +268,10 @@ impl<'p> Test<'p> {
             named.chunk_by(|one, other| parent(one) == parent(other)).map(<[Element<'_>]>::len).collect();
         let counted = is_counted(named.len(), self.name);
         match groups[..] {
-            [_] | [] => format!("there {counted}, counted from `[1]`"),
+            [_] | [] => format!(
+                "there {counted}, counted from `[1]`: the last one is {}",
+                quoted(&format!("{}[{}]", self.name.unwrap_or("*"), named.len()))
+            ),
             _ => {
                 let (most, count) = (groups.iter().max().copied().unwrap_or_default(), groups.len());
                 format!(

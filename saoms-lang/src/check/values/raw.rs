@@ -9,7 +9,7 @@ use crate::check::judged::{Faulty, Judged};
 use crate::check::report::Report;
 use crate::check::values::replica::Instance;
 use crate::diagnostic::{Diagnostic, Severity, codes, quoted};
-use crate::model::{Part, Property, ValueDocument};
+use crate::model::{Part, Property, ValueDocument, Version};
 use crate::source::{Located, Location, Text};
 use crate::syntax::{Document, Element};
 
@@ -118,6 +118,12 @@ impl<'a> Piece<'a> {
             Self::Elements(elements, _) => elements[0].name_location(),
         }
     }
+}
+
+/// True if a property of a composite has several values, but takes one. In SCA 1.0 elements of this name may be parts
+/// of a complex value.
+pub(crate) fn is_one_of_several(property: &Property, version: Version) -> bool {
+    version.is_1_1() && property.values().len() > 1 && property.many().is_none_or(|many| !many.value)
 }
 
 /// The values that a property gives directly, in one of four ways: the attribute `value`, what is inside, elements

@@ -15,8 +15,10 @@ mod tests;
 mod too_many;
 mod unwired;
 mod uri;
+mod useless_autowire;
 mod wire;
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, HashSet};
 
 use crate::check::contracts::offer::{Provider, ReferenceId};
@@ -29,6 +31,7 @@ use crate::check::wiring::ends::{End, Ends};
 use crate::check::wiring::promotion::Promoted;
 use crate::check::wiring::target::target;
 use crate::check::wiring::unwired::DanglingNames;
+use crate::check::wiring::useless_autowire::UselessAutowire;
 use crate::check::wiring::wire::{Wire, wires};
 use crate::diagnostic::Severity;
 use crate::limits::{Budget, WIRE_ENDS};
@@ -45,7 +48,16 @@ pub(crate) fn check(fleet: &Fleet<'_>, options: &Options, report: &mut Report<'_
     let ends_left = Budget::of(WIRE_ENDS);
     let (wires, dangling) = wires(fleet, options, &ends_left, report);
     let autowire = Autowire::default();
-    let mut all = Wires { fleet, options, promoted: &promoted, wires, dangling, autowire, ends_left };
+    let mut all = Wires {
+        fleet,
+        options,
+        promoted: &promoted,
+        wires,
+        dangling,
+        autowire,
+        ends_left,
+        useless: RefCell::default(),
+    };
     let mut circles = CallCycles::default();
     let mut wiring = Wiring::with_capacity(fleet.members.len());
     for member in 0..fleet.members.len() {
@@ -77,6 +89,7 @@ struct Wires<'f, 'a> {
     dangling: DanglingNames<'f>,
     autowire: Autowire<'f>,
     ends_left: Budget,
+    useless: RefCell<UselessAutowire>,
 }
 
 impl<'f, 'a> Wires<'f, 'a> {

@@ -68,6 +68,9 @@ impl Wires<'_, '_> {
         // A wire or a promotion of a component that does not exist may be meant for this one.
         let is_unknown = fleet.misread.is_some() || dangling.iter().any(|one| one.lost.contains_key(&own.scope));
         if !is_required {
+            if is_autowired && !is_promoted && !is_unknown {
+                self.autowired_to_nothing(place, declared, report);
+            }
             return is_unknown;
         }
         let (interface, component) = (&declared.interface.name, &own.component.name);

@@ -15,6 +15,7 @@ use super::document::{NONE, Node, Token, TokenKind};
 use super::element::part_span;
 use super::fault::Input;
 use super::lexer::{Lexer, end_name};
+use super::unseen::is_unseen;
 use super::value;
 use crate::diagnostic::{codes, quoted};
 use crate::source::Span;
@@ -206,7 +207,7 @@ impl<'a> Nest<'_, 'a> {
             // The file ends inside the tag, which is reported.
             Some(top) if self.is_cut(tag) && self.name(self.node(*top)).starts_with(found) => self.close(at, true),
             // `</>` ends whatever is open.
-            Some(top) if found.is_empty() || self.name(self.node(*top)) == found => self.close(at, true),
+            Some(top) if found.is_empty() || is_same(self.name(self.node(*top)), found) => self.close(at, true),
             Some(&top) => self.mismatch(at, found, top),
         }
     }
@@ -303,4 +304,10 @@ impl<'a> Nest<'_, 'a> {
             self.lexer.faults.add(|| self.input.ended(&codes::XML_SYNTAX, at, at, "the file contains no element"));
         }
     }
+}
+
+/// True if a name is the other one, but for what nobody sees in it, which is reported.
+fn is_same(name: &str, other: &str) -> bool {
+    let seen = |sign: &char| !is_unseen(*sign) && !sign.is_whitespace();
+    name == other || !name.is_ascii() && name.chars().filter(seen).eq(other.chars())
 }

@@ -57,7 +57,8 @@ impl Lexer<'_> {
         let mut at = end;
         if let Some(fault) = slips::bad_name(input, from, end, "element") {
             // Behind a character that looks like a blank, an attribute begins.
-            let odd = slips::odd_space(input.slice(from, end));
+            let is_attribute = input.byte(input.skip_space(end)) == Some(b'=');
+            let odd = slips::odd_space(input.slice(from, end)).filter(|_| is_attribute);
             (token.is_damaged, token.is_unnamed) = (odd.is_none(), odd.is_none());
             if let Some((length, odd)) = odd.filter(|(length, _)| *length > 0) {
                 end = from + length as u32;

@@ -51,6 +51,7 @@ fn what_the_schemas_forbid_is_told_where_it_stands() {
         sca-contribution.xml:2:122 [pakage] error S1007 `export.java` has no attribute `pakage`
           replace `pakage` with `package`
         sca-contribution.xml:3:15 [extensions] error S1006 `contribution` has a second `extensions`
+          keep one of the two
         sca-contribution.xml:3:27 [deployable] error S1004 SCA 1.1 has no element `deployable`
           `extensions` cannot contain elements of SCA
         sca-contribution.xml:3:78 [location] error S1007 `export` has no attribute `location`

@@ -279,12 +279,18 @@ fn quotes_of_word_processors_are_told() {
     expect![[r#"
         2:17-20 error S0105: `“` is not a quote of XML: write values between two `"`
           fix: replace it with `"G"` [2:17-20 "\"G\""]
+        2:31-35 warning S2018: autowire finds no service with the interface `example.Positions` for reference `other` of component `G`
+          help: no component beside it has a service
+          help: remove `autowire`, or add a component with that service
     "#]]
     .assert_eq(&with("<component name=“G\" autowire=\"true\">"));
     expect![[r#"
         2:19-20 error S0105: `”` does not close a value that starts with `"`
           2:17-18 the value starts here
           fix: replace `”` with `"` [2:19-20 "\""]
+        2:31-35 warning S2018: autowire finds no service with the interface `example.Positions` for reference `other` of component `G`
+          help: no component beside it has a service
+          help: remove `autowire`, or add a component with that service
     "#]]
     .assert_eq(&with("<component name=\"G” autowire=\"true\">"));
     // They may stand in a value.

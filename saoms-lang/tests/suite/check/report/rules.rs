@@ -38,20 +38,20 @@ those of `S0001` to `S0009`, `S2035` and `S3016`, which cannot be files.
 const SECOND: &str = "
 ## Rules of SCA Assembly 1.1
 
-If a rule has no code, the last column gives the reason. SCA 1.0 has no numbers; where it allows what 1.1 forbids, the diagnostic is a warning there. The
-same holds for faults of the services and references of a composite of SCA 1.0 that is no part of another one: no component of the program uses them.
+If a rule has no code, the last column gives the reason. SCA 1.0 has no numbers for its rules. Where it allows what 1.1 forbids, the diagnostic is a warning in
+files of 1.0. Faults of the services and references of a composite of SCA 1.0 are warnings, too, if no other composite uses it: no component depends on them.
 
-The XML schemas of both versions (ASM13001) are followed, but for what other programs live with as well:
+The XML schemas of both versions (ASM13001) are followed. Some things that they forbid are accepted, because other programs accept them, too:
 
-- the order of elements: an implementation may stand behind services and references, an interface behind bindings, an include behind components;
-- elements of other namespaces stand anywhere;
-- a composite's reference of 1.1 without `multiplicity`, which the schema requires, takes one target (`1..1`), as in 1.0;
-- a name that is no XML name is a warning (S1011) if its first character is wrong, or if it has a colon or a blank; other characters are accepted in names of components, properties, services and references, and names of classes and interfaces
-  are those of their languages;
-- bindings, implementations and policies that are not described by the core, such as those for JMS, EJB or BPEL, are taken as they are.
+- elements in another order: an implementation after services and references, an interface after bindings, an include after components;
+- elements of other namespaces at any place;
+- a composite's reference of 1.1 without `multiplicity`, which the schema requires: it takes one target (`1..1`), as in 1.0;
+- a name that is not an XML name: it is a warning (S1011) if its first character is wrong, or if it has a colon or a blank. Other characters are accepted in names of components, properties, services and references. Names of classes and interfaces
+  follow the rules of their languages;
+- bindings, implementations and policies that the core schemas do not describe, such as those for JMS, EJB or BPEL: they are not checked.
 
-`--assume-classes` is for composites of other programs, which may come with more than can be seen. It makes warnings of composites (S2030, S2031),
-files of values (S0001) and values of composite properties (S2025) that are not there.
+`--assume-classes` is for composites of other programs, whose other files may be elsewhere. With it, a composite (S2030, S2031), a file of a value (S0001) or a
+value of a composite property (S2025) that is missing is a warning, not an error.
 
 | rule | meaning | codes | remark |
 | --- | --- | --- | --- |

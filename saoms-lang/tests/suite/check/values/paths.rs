@@ -82,8 +82,8 @@ fn sources_are_paths() {
         $many[2]: Integer(2
         $many[last()]: Integer(2
         $b/bay[2]/y: S2023: there is no part `y`; the parts are `x`
-        $b/bay[4]: S2023: there are 3 parts `bay`, counted from `[1]`
-        $b/bay[0]/x: S2023: there are 3 parts `bay`, counted from `[1]`
+        $b/bay[4]: S2023: there are 3 parts `bay`, counted from `[1]`: the last one is `bay[3]`
+        $b/bay[0]/x: S2023: there are 3 parts `bay`, counted from `[1]`: the last one is `bay[3]`
         $b/bay/x: S3011: the property `number` allows one value, found 3
         $b/bay[@id='c']/x: S2023: no part here has the attribute `id` with the value `c`: its values are `a` and `b/c`
         $b/bay[@name='c']/x: S2023: no part here has the attribute `name` with the value `c`: no part has this attribute

@@ -2,7 +2,7 @@
 
 use expect_test::expect;
 
-use crate::check::support::{faults, faults_of, fleet, fleet_1_0};
+use crate::check::support::{faults, faults_of, fleet, fleet_1_0, outcome, part};
 
 /// A robot, a GPS and a pair of twins, and these.
 fn with(inside: &str) -> String {
@@ -300,4 +300,35 @@ fn both_ends_of_a_wire_can_be_wrong() {
         r#"<component name="G"><implementation.java class="example.Gps"/></component>
 <wire source="H/gps" target="I/position"/><wire source="G/other/" target="G/posit"/>"#,
     ));
+}
+
+#[test]
+fn autowire_that_finds_nothing_is_told_once() {
+    let robots = "<component name=\"A\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">A</property><property name=\"period\">1</property><property name=\"number\">1</property>\n<reference name=\"gps\"/></component>";
+    let robots = format!(
+        "{robots}\n{}",
+        robots.replace("\"A\"", "\"B\"").replace(">A<", ">B<").replace(">1</property>\n", ">2</property>\n")
+    );
+    let of_composite = |more: &str| outcome(&[&part("fleet", "autowire=\"true\"", &format!("{robots}\n{more}"))], &[]);
+    expect![[r#"
+        1:132-136 warning S2018: autowire finds no service with the interface `example.Positions` for reference `gps` of component `A`
+          help: the services beside it are those of `A` (example.Wheels), `A` (unibg.robotics.tca.TaskInterface), `B` (example.Wheels), `B` (unibg.robotics.tca.TaskInterface)
+          help: remove `autowire`, or add a component with that service
+        A (example.Robot) ID=Text("A") number=Integer(1) gps->
+        B (example.Robot) ID=Text("B") number=Integer(2) gps->
+    "#]].assert_eq(&of_composite(""));
+    expect![[r#"
+        A (example.Robot) ID=Text("A") number=Integer(1) gps->G/position
+        B (example.Robot) ID=Text("B") number=Integer(2) gps->G/position
+        G (example.Gps) other->
+    "#]]
+    .assert_eq(&of_composite("<component name=\"G\"><implementation.java class=\"example.Gps\"/></component>"));
+    let own = robots.replacen("name=\"gps\"", "name=\"gps\" autowire=\"true\"", 1);
+    expect![[r#"
+        3:33-37 warning S2018: autowire finds no service with the interface `example.Positions` for reference `gps` of component `A`
+          help: the services beside it are those of `A` (example.Wheels), `A` (unibg.robotics.tca.TaskInterface), `B` (example.Wheels), `B` (unibg.robotics.tca.TaskInterface)
+          help: remove `autowire`, or add a component with that service
+        A (example.Robot) ID=Text("A") number=Integer(1) gps->
+        B (example.Robot) ID=Text("B") number=Integer(2) gps->
+    "#]].assert_eq(&outcome(&[&part("fleet", "", &own)], &[]));
 }

@@ -1,0 +1,196 @@
+//! One mistake, one message: what follows from it is not told again.
+
+use expect_test::expect;
+
+use crate::check::mistakes::slips::{GPS, of, robot};
+use crate::check::support::{fleet, outcome, part};
+use crate::check::values::files::checked;
+
+/// Two robots that take their number from a property of the composite, which is given as `given`.
+fn takers(given: &str) -> String {
+    let taker =
+        |name: &str| robot(name, "<property name=\"password\" source=\"$n\"/><property name=\"number\">1</property>");
+    format!("{given}\n{}\n{}", taker("A"), taker("B").replace(">1</property></component>", ">2</property></component>"))
+}
+
+#[test]
+fn an_entity_that_is_declared_is_told_with_its_declaration() {
+    let whole = fleet(&takers("<property name=\"n\">&p;</property>"));
+    expect![[r#"
+        1:1-10 error S0110: a document type declaration is not allowed here
+          3:20-23 an entity that it declares
+          help: remove it; a composite needs no DTD, and entities beyond the five predefined ones are refused
+          help: write the text itself in place of `&p;`
+    "#]]
+    .assert_eq(&outcome(&[&format!("<!DOCTYPE composite [<!ENTITY p \"7\">]>\n{whole}")], &[]));
+    expect![[r#"
+        1:1-10 error S0110: a document type declaration is not allowed here
+          help: remove it; a composite needs no DTD, and entities beyond the five predefined ones are refused
+        3:20-23 error S0109: unknown entity `&p;`
+          help: use only `&lt;`, `&gt;`, `&amp;`, `&apos;` and `&quot;`; other entities cannot be declared
+    "#]]
+    .assert_eq(&outcome(&[&format!("<!DOCTYPE composite [<!ENTITY q \"7\">]>\n{whole}")], &[]));
+}
+
+#[test]
+fn a_property_without_a_value_is_told_at_its_first_use() {
+    expect![[r#"
+        A (example.Robot) ID=Text("A") number=Integer(1) gps->
+        B (example.Robot) ID=Text("B") number=Integer(2) gps->
+    "#]]
+    .assert_eq(&of(&takers("<property name=\"n\"/>")));
+    expect![[r#"
+        2:22-31 error S0109: unknown entity `&nowhere;`
+          help: use only `&lt;`, `&gt;`, `&amp;`, `&apos;` and `&quot;`; other entities cannot be declared
+    "#]]
+    .assert_eq(&of(&takers("<property name=\"n\">a &nowhere; b</property>")));
+}
+
+#[test]
+fn two_values_of_a_property_that_takes_one_are_told_where_they_are() {
+    let two = "<value>1</value><value>2</value>";
+    expect![[r#"
+        2:37-42 error S3011: the property `n` allows one value, found 2
+          2:21-26 the first
+          help: keep one of them, or write `many="true"` where the property is declared
+    "#]]
+    .assert_eq(&of(&takers(&format!("<property name=\"n\">{two}</property>"))));
+    expect![[r#"
+        2:55-56 error S3011: the property `password` allows one value, found 2
+          2:39-40 the first
+          4:35-37 used here as `password`
+          help: `password`: The account's password
+    "#]]
+    .assert_eq(&of(&takers(&format!("<property name=\"n\" many=\"true\">{two}</property>"))));
+}
+
+#[test]
+fn a_condition_that_xml_does_not_allow_leaves_no_replica_out() {
+    let robots = |condition: &str| {
+        format!(
+            "<component name=\"R${{index}}\" xmlns:saoms=\"urn:saoms:1\" saoms:count=\"3\" saoms:overrides=\"robots.csv\" saoms:if=\"{condition}\"><implementation.java class=\"example.Robot\"/><property name=\"ID\">R${{index}}</property><property name=\"period\">1</property><property name=\"number\">${{index}}</property></component>"
+        )
+    };
+    let with = |condition: &str| checked(&robots(condition), &[("robots.csv", b"index,number\n3,7\n")], 1000).1;
+    expect![[r#"
+        2:116-117 error S0105: `<` in the value of `saoms:if`
+          2:109-110 the value starts here
+          fix: replace `<` with `&lt;` [2:116-117 "&lt;"]
+    "#]]
+    .assert_eq(&with("index < 3"));
+    expect![[r#"
+        robots.csv:2:1-2 warning S2047: the condition leaves out the replica `3`
+          2:110-122 false for it
+          help: change the condition, or remove the row
+    "#]]
+    .assert_eq(&with("index &lt; 3"));
+}
+
+#[test]
+fn what_an_element_cannot_have_is_told_alone() {
+    let inner = part("inner", "", GPS);
+    let with = |includes: &str| outcome(&[&part("fleet", "xmlns:saoms=\"urn:saoms:1\"", includes), &inner], &[]);
+    expect![[r#"
+        2:25-35 error S1007: `include` has no attribute `saoms:site`
+          help: only a component can have it: write `<component name="..." saoms:site="A"><implementation.composite name="t:inner"/></component>` in place of the `include`
+        3:25-35 error S1007: `include` has no attribute `saoms:site`
+          help: only a component can have it: write `<component name="..." saoms:site="B"><implementation.composite name="t:inner"/></component>` in place of the `include`
+    "#]]
+    .assert_eq(&with("<include name=\"t:inner\" saoms:site=\"A\"/>\n<include name=\"t:inner\" saoms:site=\"B\"/>"));
+    expect![[r#"
+        2:25-36 error S1007: `include` has no attribute `saoms:count`
+          help: only a component can have it: write `<component name="..." saoms:count="2"><implementation.composite name="t:inner"/></component>` in place of the `include`
+    "#]]
+    .assert_eq(&with("<include name=\"t:inner\" saoms:count=\"2\"/>"));
+    let inside = "<component name=\"Inside\"><implementation.java class=\"example.Gps\"/></component>";
+    expect![[r#"
+        2:24-33 error S1005: `component` is not allowed in `component`
+          help: move it out of `component`: it belongs in the composite
+    "#]]
+    .assert_eq(&of(&format!(
+        "<component name=\"Out\">{inside}<implementation.java class=\"example.Gps\"/></component>\n{}",
+        robot("R", "<property name=\"number\">1</property><reference name=\"gps\" target=\"Inside\"/>")
+    )));
+    expect![[r#"
+        2:20-27 error S1007: `property` has no attribute `promote`
+          help: `property` has the attributes `name`, `value`, `type`, `element`, `many`, `mustSupply`
+    "#]]
+    .assert_eq(&of(&format!("<property name=\"n\" promote=\"G/n\">1</property>\n{GPS}")));
+    expect![[r#"
+        2:2-8 error S1004: SCA 1.1 has no element `import`
+          help: write it in the `sca-contribution.xml` of the folder
+    "#]]
+    .assert_eq(&of("<import namespace=\"urn:t\"/>"));
+    expect![[r#"
+        2:2-11 error S1008: a `reference` with a `target`, outside of the component that has it
+          help: move it into that component, or write `<wire source="COMPONENT/gps" target="G"/>`; a reference of the composite has a `promote`
+    "#]].assert_eq(&of("<reference name=\"gps\" target=\"G\"/>"));
+    expect![[r#"
+        2:21-26 error S1007: `component` has no attribute `class`
+          help: write `<implementation.rust class="example.Gps"/>` in the component
+    "#]]
+    .assert_eq(&of("<component name=\"C\" class=\"example.Gps\"/>"));
+    expect![[r#"
+        4:59-66 error S1007: `reference` has no attribute `service`
+          fix: replace `service` with `target` [4:59-66 "target"]
+    "#]]
+    .assert_eq(&of(&format!(
+        "{GPS}\n{}",
+        robot("R", "<property name=\"number\">1</property><reference name=\"gps\" service=\"G\"/>")
+    )));
+}
+
+#[test]
+fn a_position_in_a_path_says_how_many_there_are() {
+    let with = |place: &str| {
+        of(&format!(
+            "<property name=\"bays\"><bay>3</bay><bay>2</bay></property>\n{}",
+            robot("R", &format!("<property name=\"number\" source=\"$bays/bay[{place}]\"/>"))
+        ))
+    };
+    expect![[r#"
+        4:39-45 error S2023: there are 2 parts `bay`, counted from `[1]`: the last one is `bay[2]`
+        4:39-45 error S2023: there are 2 parts `bay`, counted from `[1]`: the last one is `bay[2]`
+          fix: replace `[0]` with `[1]` [4:42-45 "[1]"]
+    "#]]
+    .assert_eq(&(with("3") + &with("0")));
+}
+
+#[test]
+fn conditions_of_other_languages_are_told_in_this_one() {
+    let with = |condition: &str| {
+        let component = format!(
+            "<component name=\"G\" xmlns:saoms=\"urn:saoms:1\" saoms:if=\"{condition}\"><implementation.java class=\"example.Gps\"/></component>"
+        );
+        of(&format!("<property name=\"robots\">3</property><property name=\"pause\">200ms</property>\n{component}"))
+    };
+    expect![[r#"
+        3:64-66 error S2045: expected an operator before this
+          fix: replace `gt` with `>` [3:64-66 "&gt;"]
+        3:64-66 error S2045: expected an operator before this
+          fix: replace `lt` with `<` [3:64-66 "&lt;"]
+        3:64-66 error S2045: expected an operator before this
+          fix: replace `eq` with `==` [3:64-66 "=="]
+        3:69-71 error S2045: expected an operator before this
+          help: write a text in quotes: `'200ms'`
+    "#]]
+    .assert_eq(&["robots gt 3", "robots lt 3", "robots eq 3", "pause == 200ms"].map(with).concat());
+    let named = |width: &str| {
+        of(&robot(&format!("R${{index:{width}}}"), "<property name=\"number\">${index}</property>")
+            .replacen("<component", "<component saoms:count=\"1\"", 1))
+    };
+    expect![[r#"
+        2:43-47 error S2045: expected the number of digits after `:`, with a `0` before it (in `R${index:%02d}`, index 1)
+          help: as in `${index:03}`, which turns 7 into 007
+          fix: replace `%02d` with `02` [2:43-47 "02"]
+        2:123-127 error S2045: expected the number of digits after `:`, with a `0` before it (in `R${index:%02d}`, index 1)
+          help: as in `${index:03}`, which turns 7 into 007
+          fix: replace `%02d` with `02` [2:123-127 "02"]
+        2:43-44 error S2045: expected the number of digits after `:`, with a `0` before it (in `R${index:2}`, index 1)
+          help: as in `${index:03}`, which turns 7 into 007
+          fix: replace `2` with `02` [2:43-44 "02"]
+        2:120-121 error S2045: expected the number of digits after `:`, with a `0` before it (in `R${index:2}`, index 1)
+          help: as in `${index:03}`, which turns 7 into 007
+          fix: replace `2` with `02` [2:120-121 "02"]
+    "#]].assert_eq(&["%02d", "2"].map(named).concat());
+}
