@@ -70,8 +70,9 @@ fn without_gaps(text: &str) -> String {
 
 /// The missing context of parts of composites, because a page does not show all of one: files, implementations,
 /// components, classes of plugins, properties.
-const LACKING: [&str; 13] = [
-    "S0003", "S1010", "S2011", "S2022", "S2024", "S2026", "S2030", "S2031", "S2045", "S2049", "S3001", "S3006", "S3015",
+const LACKING: [&str; 14] = [
+    "S0003", "S1010", "S2011", "S2022", "S2024", "S2025", "S2026", "S2030", "S2031", "S2045", "S2049", "S3001",
+    "S3006", "S3015",
 ];
 
 #[test]
@@ -154,4 +155,48 @@ fn the_driver_on_the_page_about_hardware_is_the_one_under_test() {
     for block in shown {
         assert!(files.iter().any(|file| file.contains(block.trim_end())), "in no file of `plugins/wheels`:\n{block}");
     }
+}
+
+/// A page without its blocks and pieces of code.
+fn prose(page: &str) -> String {
+    let outside = page.split("```").step_by(2);
+    outside.flat_map(|text| text.split('`').step_by(2)).collect()
+}
+
+/// What leads to the headings of a page.
+fn anchors(page: &str) -> Vec<String> {
+    let headings = page.split("```").step_by(2).flat_map(str::lines).filter(|line| line.starts_with('#'));
+    let anchor = |heading: &str| {
+        let text = heading.trim_start_matches('#').trim().to_lowercase();
+        let kept = text.chars().filter(|sign| sign.is_alphanumeric() || matches!(sign, ' ' | '-' | '_'));
+        kept.map(|sign| if sign == ' ' { '-' } else { sign }).collect()
+    };
+    headings.map(anchor).collect()
+}
+
+#[test]
+fn links_of_pages_lead_to_files_and_headings_that_are_there() {
+    let others = ["benches/README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/diagnostics.md"];
+    let others = others.map(|name| (root().join(name), project(name)));
+    let (mut count, mut lost) = (0, Vec::new());
+    for (path, page) in pages().into_iter().chain(others) {
+        let text = prose(&page);
+        for link in text.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0)) {
+            if link.contains("://") || link.starts_with("mailto:") {
+                continue;
+            }
+            count += 1;
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { path.clone() } else { path.parent().unwrap().join(file) };
+            let is_there = match anchor {
+                "" => target.exists(),
+                anchor => fs::read_to_string(&target).is_ok_and(|page| anchors(&page).iter().any(|one| one == anchor)),
+            };
+            if !is_there {
+                lost.push(format!("{}: {link}", path.display()));
+            }
+        }
+    }
+    assert!(count >= 50, "there are {count} links");
+    assert_eq!(lost, [""; 0]);
 }
