@@ -226,7 +226,6 @@ fn a_slip_is_told_with_what_is_meant() {
         ("at 1s luggage (3,1), (3,10)", "at 1s luggage (3,1) to (3,10)"),
         ("at 1s package (3,1) to (3,10)", "at 1s luggage (3,1) to (3,10)"),
         ("at 1s Robot7 breakdown", "at 1s breakdown Robot7"),
-        ("at 1s stop", "at 1s end"),
     ] {
         let findings = Scenario::read(&[line]).unwrap_err();
         let (_, part) = findings[0].place().value_part().unwrap();
