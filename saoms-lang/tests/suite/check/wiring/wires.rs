@@ -312,7 +312,7 @@ fn autowire_that_finds_nothing_is_told_once() {
     let of_composite = |more: &str| outcome(&[&part("fleet", "autowire=\"true\"", &format!("{robots}\n{more}"))], &[]);
     expect![[r#"
         1:132-136 warning S2018: autowire finds no service with the interface `example.Positions` for reference `gps` of component `A`
-          help: the services beside it are those of `A` (example.Wheels), `A` (unibg.robotics.tca.TaskInterface), `B` (example.Wheels), `B` (unibg.robotics.tca.TaskInterface)
+          help: the services beside it are those of `B` (example.Wheels), `B` (unibg.robotics.tca.TaskInterface)
           help: remove `autowire`, or add a component with that service
         A (example.Robot) ID=Text("A") number=Integer(1) gps->
         B (example.Robot) ID=Text("B") number=Integer(2) gps->
@@ -326,7 +326,7 @@ fn autowire_that_finds_nothing_is_told_once() {
     let own = robots.replacen("name=\"gps\"", "name=\"gps\" autowire=\"true\"", 1);
     expect![[r#"
         3:33-37 warning S2018: autowire finds no service with the interface `example.Positions` for reference `gps` of component `A`
-          help: the services beside it are those of `A` (example.Wheels), `A` (unibg.robotics.tca.TaskInterface), `B` (example.Wheels), `B` (unibg.robotics.tca.TaskInterface)
+          help: the services beside it are those of `B` (example.Wheels), `B` (unibg.robotics.tca.TaskInterface)
           help: remove `autowire`, or add a component with that service
         A (example.Robot) ID=Text("A") number=Integer(1) gps->
         B (example.Robot) ID=Text("B") number=Integer(2) gps->
