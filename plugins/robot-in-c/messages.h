@@ -15,7 +15,8 @@
 #define BLOCK JSON({"name": "Block", "fields": [{"name": "x", "type": "int32"}, {"name": "y", "type": "int32"}]})
 
 #define POSITION                                                                                            \
-    JSON({"name": "Position", "key": "robot", "fields": [{"name": "robot", "type": "uint32"}, {"name": "block", "type":)   \
+    JSON({"name": "Position", "key": "robot", "place": "block", "fields": [{"name": "robot",                \
+        "type": "uint32"}, {"name": "block", "type":)                                                       \
     BLOCK JSON(}, {"name": "next", "type":) BLOCK JSON(}, {"name": "wanted", "type":) BLOCK                  \
     JSON(}, {"name": "priority", "type": {"name": "Priority", "fields": [                                   \
         {"name": "rank", "type": "uint64"}, {"name": "robot", "type": "uint32"}]}}]})

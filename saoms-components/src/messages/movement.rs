@@ -44,6 +44,7 @@ impl PartialOrd for Priority {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Message)]
 #[message(
     key = "robot",
+    place = "block",
     speaker(
         "robot",
         instead = "to keep the robot at its block, stop it with `estop`; if it was removed from the floor, send `gone`"

@@ -130,6 +130,7 @@ impl Component for Robot {
             self.knowledge.began = Some(Time::START);
         } else {
             self.enter(context)?;
+            self.topics.hear_around(&self.knowledge, context)?;
         }
         self.loops.initialize(&mut *self.knowledge, context)
     }
@@ -151,7 +152,7 @@ impl Component for Robot {
             ));
         }
         let was_critical = self.knowledge.variables.critical;
-        self.knowledge.hear(&self.topics, context);
+        self.knowledge.hear(&mut self.topics, context)?;
         self.knowledge.begin_execution(context)?;
         self.loops.monitor(&mut *self.knowledge, context)?;
         self.knowledge.forget_gone(&gone);

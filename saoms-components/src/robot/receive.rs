@@ -1,12 +1,23 @@
 //! Messages that robots receive from other robots, after validation.
 
-use saoms_api::{Context, Failure, Header, Subscription, record, warn};
+use saoms_api::{Context, Failure, Header, Region, Subscription, record, warn};
 
 use super::{ASSISTANCE, Lists, Policy, RobotKnowledge};
+use crate::grid::Block;
 use crate::messages::{
     EVENT_LUGGAGE, EventLuggage, FAULT, Fault, FaultKind, IMMOVABLE, POSITION, Position, ROBOT_LIST, RobotList,
 };
 use crate::validation::Validate;
+
+/// Least distance within which a robot hears the positions of others, in blocks. Right of way needs three; the more it
+/// hears, the farther ahead it drives around robots that cannot move, and the better it knows which chargers are free.
+const HEARING: u32 = 16;
+
+/// Number of blocks that a robot drives before its region of hearing follows.
+const SLACK: u32 = 4;
+
+/// Number of blocks of a map up to which a robot hears all positions: a region costs more than it saves there.
+const SMALL: usize = 4 * (2 * (HEARING + SLACK) as usize + 1).pow(2);
 
 /// The topics that a robot hears by itself.
 #[derive(Debug, Default)]
@@ -15,6 +26,8 @@ pub(super) struct Topics {
     luggage: Subscription<EventLuggage>,
     positions: Subscription<Position>,
     faults: Subscription<Fault>,
+    /// The middle of the region of which positions are heard; `None` while it is the whole map.
+    hears_around: Option<Block>,
 }
 
 impl Topics {
@@ -24,7 +37,24 @@ impl Topics {
             luggage: context.subscribe(&EVENT_LUGGAGE)?,
             positions: context.subscribe(&POSITION)?,
             faults: context.subscribe(&FAULT)?,
+            hears_around: None,
         })
+    }
+
+    /// Hears positions around the robot alone, so that what it hears does not grow with the fleet. A robot that is not
+    /// on the floor yet may be anywhere.
+    pub(super) fn hear_around(&mut self, robot: &RobotKnowledge, context: &mut Context<'_>) -> Result<(), Failure> {
+        let Block { x, y } = robot.block;
+        let is_near = |middle: Block| middle.distance(robot.block) <= SLACK;
+        if self.hears_around.is_some_and(is_near)
+            || robot.policy != Policy::Safe
+            || !robot.hardware.has_entered()
+            || robot.routes.map().is_some_and(|map| map.size() <= SMALL)
+        {
+            return Ok(());
+        }
+        self.hears_around = Some(robot.block);
+        context.set_region(&self.positions, Some(Region::around((x, y), HEARING + SLACK)))
     }
 }
 
@@ -36,13 +66,17 @@ impl RobotKnowledge {
 
     /// Handles what other robots said about themselves, and what was said about luggage. All loops rely on it, so that
     /// the robot hears it by itself.
-    pub(super) fn hear(&mut self, topics: &Topics, context: &mut Context<'_>) {
+    ///
+    /// # Errors
+    /// The region in which positions are heard cannot be set.
+    pub(super) fn hear(&mut self, topics: &mut Topics, context: &mut Context<'_>) -> Result<(), Failure> {
         self.hear_robots(topics.robots, context);
         self.hear_luggage(topics.luggage, context);
         self.hear_positions(topics.positions, context);
         if self.policy == Policy::Safe {
             self.learn_obstacles();
         }
+        topics.hear_around(self, context)
     }
 
     /// Hears which robots somebody took off the floor. `None` if this one is, and has nothing to do any more; else the
@@ -90,6 +124,10 @@ impl RobotKnowledge {
 
     /// Handles the positions of other robots.
     fn hear_positions(&mut self, positions: Subscription<Position>, context: &mut Context<'_>) {
+        for departed in context.departed(&positions) {
+            let robot = u32::try_from(departed.key).ok();
+            robot.into_iter().for_each(|robot| self.lists.peers.forget(robot));
+        }
         let RobotKnowledge { validator, lists, routes, .. } = self;
         let heard = context.receive(&positions).with_headers();
         let sound = heard.filter(|(header, position)| validator.accepts(*position, *header, routes.map(), context));

@@ -158,3 +158,45 @@ fn the_navigator_drives_the_robot_of_figure_3_2_home() {
     // Four sides of two metres, a metre in each period from the start on.
     assert_eq!(report.time_s, 0.7);
 }
+
+/// Robots in two corners of a hall that is larger than their hearing.
+fn large_hall(scenario: &str) -> Fleet {
+    let component = |name: &str, class: &str, more: &str| {
+        format!(
+            r#"<component name="{name}"><implementation.rust class="saoms.{class}"/>
+            <property name="ID">{name}</property><property name="period">100</property>{more}</component>"#
+        )
+    };
+    let property = |name: &str, value: &str| format!(r#"<property name="{name}">{value}</property>"#);
+    let mut text = component("World", "World", &(property("width", "150") + &property("height", "50")));
+    text += &component("Master", "MasterEnvironment", "");
+    text += &component("Environment", "Environment", &property("scenario", scenario));
+    for robot in 1..=12 {
+        let (x, y) = if robot <= 6 { (robot, robot % 2) } else { (149 - robot, 48 + robot % 2) };
+        let place = property("chargeX", &x.to_string()) + &property("chargeY", &y.to_string());
+        let battery = property("dischargePerBlock", "0.1") + &property("chargePerSecond", "4");
+        let wire = r#"<reference name="world" target="World"/>"#;
+        text += &component(&format!("Robot{robot}"), "Robot", &format!("{place}{battery}{wire}"));
+    }
+    Fleet::of_text(format!(
+        r#"<composite xmlns="http://docs.oasis-open.org/ns/opencsa/sca/200912" name="f" targetNamespace="urn:f">{text}</composite>"#
+    ))
+}
+
+#[test]
+fn robots_on_a_large_map_hear_positions_around_them_alone() {
+    let run = large_hall("from 1s every 2s 30 times luggage (1,3)..(20,20) to (1,3)..(20,20)").run(1, HOUR);
+    assert_delivered(&run, 30, "one corner");
+    let received = |name: &str| run.components.iter().find(|one| one.name == name).unwrap().messages.received;
+    // What is said about luggage and robots is heard everywhere.
+    assert!(received("Robot12") * 2 < received("Robot1"), "{} and {}", received("Robot12"), received("Robot1"));
+}
+
+#[test]
+fn robots_that_meet_far_from_where_they_started_make_way_for_each_other() {
+    let across = "from 1s every 1s 30 times luggage (0,20)..(20,30) to (130,20)..(149,30); \
+                  from 1s every 1s 30 times luggage (130,20)..(149,30) to (0,20)..(20,30); at 30s breakdown Robot3";
+    for seed in 0..4 {
+        assert_delivered(&large_hall(across).run(seed, HOUR), 60, &format!("seed {seed}"));
+    }
+}

@@ -144,13 +144,16 @@ fn section(ends: &Ends<'_>, meanings: &Meanings, types: &mut BTreeMap<String, Va
         _ => names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
     };
     let key = topic.schema["key"].as_str().map_or_else(String::new, |key| format!(", one for each `{key}`"));
+    let place = topic.schema["place"].as_str().map_or_else(String::new, |place| {
+        format!(" A subscription with a region receives the messages whose `{place}` is in it.")
+    });
     let speakers: Vec<String> = topic.speakers.iter().map(ToString::to_string).collect();
     let speakers = match &speakers[..] {
         [] => String::new(),
         all => format!(" Sender: {}.", all.join("; ")),
     };
     format!(
-        "\n## {}\n\n{} topic of `{}`{key}. Published by {}; read by {}.{speakers}\n\n{}",
+        "\n## {}\n\n{} topic of `{}`{key}. Published by {}; read by {}.{speakers}{place}\n\n{}",
         topic.name,
         if topic.kind == saoms_api::host::TopicKind::State { "State" } else { "Event" },
         topic.message,

@@ -28,7 +28,7 @@ impl Peers {
     }
 
     /// Forgets the position of a robot.
-    pub(super) fn forget(&mut self, robot: u32) {
+    pub(in crate::robot) fn forget(&mut self, robot: u32) {
         self.newest.retain(|(known, _)| known.robot != robot);
     }
 
