@@ -74,6 +74,10 @@ pub struct Environment {
     done: bool,
 }
 
+/// Greatest number of events in one execution; others that are due follow in the next ones. So a queue of 1024 messages
+/// does not overflow, even if its reader has eight times the period.
+const MAX_EVENTS: usize = 128;
+
 impl Component for Environment {
     type Properties = EnvironmentProperties;
 
@@ -122,7 +126,8 @@ impl Component for Environment {
             return Ok(());
         };
         let now = context.due().since(start);
-        while let Some(event) = player.next(now, self.map.as_ref()) {
+        for _ in 0..MAX_EVENTS {
+            let Some(event) = player.next(now, self.map.as_ref()) else { break };
             self.publish(context, event)?;
         }
         if player.is_over() && self.open.is_empty() {

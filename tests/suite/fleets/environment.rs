@@ -149,3 +149,12 @@ fn a_scenario_may_lie_in_a_file_beside_the_composite() {
         "{found}"
     );
 }
+
+#[test]
+fn much_luggage_at_once_overflows_no_queue() {
+    let run = Fleet::of_text(with_scenario("at 1s 3000 times luggage (0,0)..(4,1) to (0,3)..(4,3)"))
+        .run(1, Duration::from_secs(10));
+    assert_eq!(run.outcome.status, RunStatus::Elapsed, "{:?}", run.outcome);
+    assert_eq!(section(&run, "luggage")["requested"], 3000);
+    assert_eq!(run.components.iter().map(|one| one.dropped).sum::<u64>(), 0);
+}

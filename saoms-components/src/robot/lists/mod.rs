@@ -102,13 +102,20 @@ impl Lists {
     /// Handles the state of a robot.
     pub fn hear_robot(&mut self, robot: &RobotList) {
         self.helps.hear_robot(robot);
-        self.learn_charger(robot.charger);
         if robot.robot == self.number {
-            return;
+            return self.learn_charger(robot.charger);
         }
+        // As a rule it is known: only what changes is looked for among all places.
         match self.chargers.binary_search_by_key(&robot.robot, |(known, _)| *known) {
-            Ok(place) => self.chargers[place].1 = robot.charger,
-            Err(place) => self.chargers.insert(place, (robot.robot, robot.charger)),
+            Ok(place) if self.chargers[place].1 == robot.charger => {}
+            Ok(place) => {
+                self.chargers[place].1 = robot.charger;
+                self.learn_charger(robot.charger);
+            }
+            Err(place) => {
+                self.chargers.insert(place, (robot.robot, robot.charger));
+                self.learn_charger(robot.charger);
+            }
         }
         match (self.active.binary_search_by_key(&robot.robot, |known| known.robot), robot.active) {
             (Ok(place), true) => self.active[place].clone_from(robot),

@@ -29,7 +29,9 @@ impl Peers {
 
     /// Forgets the position of a robot.
     pub(in crate::robot) fn forget(&mut self, robot: u32) {
-        self.newest.retain(|(known, _)| known.robot != robot);
+        if let Ok(place) = self.newest.binary_search_by_key(&robot, |(known, _)| known.robot) {
+            self.newest.remove(place);
+        }
     }
 
     /// Positions that arrived in this period.
