@@ -5,6 +5,7 @@ use std::time::Duration;
 use std::{io, thread};
 
 use saoms_api::host::present::{Function, Owner, everywhere};
+use saoms_core::schedule::start_thread;
 
 use crate::output::eprint;
 
@@ -16,7 +17,7 @@ const LOOK: Duration = Duration::from_millis(250);
 
 /// Begins to watch, on a thread of its own.
 pub(super) fn watch() -> io::Result<()> {
-    super::started("saoms-hang", look_for_ever)
+    start_thread("saoms-hang", look_for_ever).map(drop)
 }
 
 fn look_for_ever() {
@@ -24,16 +25,21 @@ fn look_for_ever() {
     let mut told = HashSet::new();
     loop {
         thread::sleep(LOOK);
-        super::look_again();
         let calls = everywhere();
         since.resize(calls.len(), (u64::MAX, Duration::ZERO));
+        let mut begins = false;
         for (thread, (call, since)) in calls.into_iter().zip(&mut since).enumerate() {
             let (number, present) = call;
             *since = if since.0 == number { (number, since.1 + LOOK) } else { (number, Duration::ZERO) };
             let Some((owner, function)) = present.filter(|(_, function)| function.holds_up()) else { continue };
+            begins |= since.1 < PATIENCE && function.is_looked_after();
             if since.1 >= PATIENCE && told.insert((thread, number)) {
                 eprint(&format!("warning: {}\n", waits(owner, function)));
             }
+        }
+        // What code does that begins is looked at when it returns, which names its component, too.
+        if !begins {
+            super::look_again();
         }
     }
 }

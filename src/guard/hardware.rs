@@ -7,8 +7,8 @@ use std::ptr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use saoms_api::host::present::present_code;
-use saoms_core::schedule::stop_hardware;
+use saoms_api::host::present::present_library;
+use saoms_core::schedule::{start_thread, stop_hardware};
 
 use crate::output::eprint;
 
@@ -41,17 +41,15 @@ pub(super) fn prepare() {
         }
         STOPPED.store(true, Ordering::SeqCst);
     };
-    match super::started("saoms-last-stop", wait) {
-        Ok(()) => WAITS.store(true, Ordering::SeqCst),
+    match start_thread("saoms-last-stop", wait) {
+        Ok(_) => WAITS.store(true, Ordering::SeqCst),
         Err(error) => eprint(&format!("warning: a crash in a library will not stop hardware: {error}\n")),
     }
 }
 
 /// Says that hardware may still move when the process ends.
 pub(crate) fn still_moves(name: &str) -> String {
-    let code = present_code(name).unwrap_or_default();
-    let library = code.split_once(" of library `").map(|(_, library)| format!(" (library `{library})"));
-    let library = library.unwrap_or_default();
+    let library = present_library(name).map(|library| format!(" (library `{library}`)")).unwrap_or_default();
     format!("error: the hardware of component `{name}` may still move: its stop function has not returned{library}\n")
 }
 

@@ -21,7 +21,7 @@ mod thread_end;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Once, mpsc};
 use std::time::Duration;
-use std::{io, process, ptr, thread};
+use std::{process, ptr, thread};
 
 pub(crate) use hang::waited_for;
 pub(crate) use hardware::{STOP_PATIENCE, still_moves};
@@ -66,17 +66,6 @@ pub(crate) fn install() {
             eprint(&format!("warning: code that does not return will not be detected: {error}\n"));
         }
     });
-}
-
-/// Starts a thread, and waits until its code runs.
-fn started(name: &str, code: impl FnOnce() + Send + 'static) -> io::Result<()> {
-    let (runs, has_begun) = mpsc::channel();
-    let begin = move || {
-        let _ = runs.send(());
-        code();
-    };
-    thread::Builder::new().name(name.to_owned()).spawn(begin)?;
-    has_begun.recv().map_err(io::Error::other)
 }
 
 /// Looks at what code of a library that begins has done to the process.

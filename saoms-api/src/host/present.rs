@@ -120,6 +120,11 @@ functions! {
 }
 
 impl Function {
+    /// True if the host [looks](look_after) at what it did once it has returned.
+    pub const fn is_looked_after(self) -> bool {
+        matches!(self, Function::Load | Function::Construct | Function::Initialize)
+    }
+
     /// True if the program itself waits for it, so that nothing goes on while it hangs.
     pub const fn holds_up(self) -> bool {
         use Function::{Check, Construct, Destroy, Initialize, Load, Restore, Save, Update};
@@ -284,10 +289,19 @@ pub fn everywhere() -> Vec<(u64, Option<(&'static Owner, Function)>)> {
 
 /// The code of a component that a thread runs now, if a library has it, as ``function of library `./libarm.so` ``.
 pub fn present_code(component: &str) -> Option<String> {
-    let own = format!("component `{component}` of ");
+    code_of(component).map(|(function, library)| format!("{} of library `{library}`", function.name()))
+}
+
+/// The library of the code of a component that a thread runs now.
+pub fn present_library(component: &str) -> Option<&'static str> {
+    code_of(component).map(|(_, library)| library)
+}
+
+fn code_of(component: &str) -> Option<(Function, &'static str)> {
+    let own = format!("component `{component}` of library `");
+    let library = |owner: &'static Owner| owner.text.strip_prefix(&own)?.strip_suffix('`');
     let mut calls = everywhere().into_iter().filter_map(|(_, call)| call);
-    let found = calls.find_map(|(owner, function)| Some((function, owner.text.strip_prefix(&own)?)));
-    found.map(|(function, library)| format!("{} of {library}", function.name()))
+    calls.find_map(|(owner, function)| Some((function, library(owner)?)))
 }
 
 /// What a host looks at when code of a library that begins has returned.

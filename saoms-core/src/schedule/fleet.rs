@@ -1,7 +1,7 @@
 use std::fs::File;
 use std::io;
 use std::sync::Arc;
-use std::thread::{self, JoinHandle};
+use std::thread::JoinHandle;
 
 use saoms_api::host::contain;
 use saoms_api::{Level, Time};
@@ -15,6 +15,7 @@ use super::engine::slot::NEVER;
 use super::handle::Handle;
 use super::os::clock::Clock;
 use super::os::realtime;
+use super::os::thread::start_thread;
 use super::settings::{ClockKind, Settings};
 use super::shared::Shared;
 use crate::journal::ComponentName;
@@ -93,10 +94,8 @@ impl RunningFleet {
         let beginning = Beginning { seed, is_virtual, components: &components };
         shared.observers.begin(&beginning).map_err(StartError::Observer)?;
         let deliverer = Arc::clone(&shared);
-        let deliverer = thread::Builder::new()
-            .name("saoms-events".to_owned())
-            .spawn(move || deliverer.events.deliver(&deliverer.observers, || deliverer.progress()))
-            .map_err(StartError::Thread)?;
+        let deliver = move || deliverer.events.deliver(&deliverer.observers, || deliverer.progress());
+        let deliverer = start_thread("saoms-events", deliver).map_err(StartError::Thread)?;
         // From here on, dropping the fleet ends the run.
         let handle = Handle { shared };
         if let Err(error) = &awake {
@@ -221,7 +220,7 @@ fn spawn_journal(shared: &Arc<Shared>) -> io::Result<Option<JoinHandle<RecordDel
     let deliver = move || {
         deliver_records(&records, &shared.observers, |failure| shared.alert(FILE, "journal", failure.to_string()))
     };
-    thread::Builder::new().name("saoms-journal".to_owned()).spawn(deliver).map(Some)
+    start_thread("saoms-journal", deliver).map(Some)
 }
 
 impl Drop for RunningFleet {

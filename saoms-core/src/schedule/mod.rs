@@ -41,6 +41,7 @@ pub use members::UnknownComponent;
 pub use metrics::TimerSign;
 pub use order::{Order, OrderError, OrderTicket, TimedOrder};
 pub use os::realtime::RealtimeError;
+pub use os::thread::start_thread;
 pub use settings::{ClockKind, Settings};
 pub use speakers::ForeignSpeaker;
 pub use stop::{hears_stops, stop_hardware};

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use saoms_api::Level;
 use saoms_api::host::contain::contained;
-use saoms_core::schedule::{Handle, Order, stop_hardware};
+use saoms_core::schedule::{Handle, Order, start_thread, stop_hardware};
 use saoms_lang::model::Hangup;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -74,7 +74,7 @@ impl Signalled {
                     cannot_wait();
                 }
             };
-            thread::Builder::new().name("signals".to_owned()).spawn(handle)
+            start_thread("signals", handle)
         });
         if let Err(error) = spawned {
             eprint(&format!("warning: Ctrl-C will end the process without a report: {error}\n"));

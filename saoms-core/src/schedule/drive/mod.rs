@@ -22,40 +22,54 @@ use crate::schedule::engine::Engine;
 use crate::schedule::engine::ending::EndCause;
 use crate::schedule::engine::slot::NEVER;
 use crate::schedule::os::sys;
+use crate::schedule::os::thread::start_thread;
 use crate::schedule::settings::{ClockKind, nanos};
 use crate::schedule::shared::Shared;
 
 pub(super) use supervise::wait_until;
 
+const TIMER: &str = "saoms-timer";
+
 /// Starts the thread that does the timer's work, and in real time the one that watches it.
 pub(super) fn spawn(shared: &Arc<Shared>) -> io::Result<()> {
-    spawn_timer(shared, 0)?;
+    start_thread(TIMER, contained(shared, timer(shared, 0)))?;
     if shared.settings.clock == ClockKind::Real {
-        watchdog::spawn(shared)?;
+        start_thread(watchdog::SPARE, contained(shared, watchdog::watch))?;
     }
     Ok(())
 }
 
 /// Starts a thread that does the timer's work as long as the role's number is this.
 fn spawn_timer(shared: &Arc<Shared>, role: u64) -> io::Result<()> {
+    spawn_thread(shared, TIMER, timer(shared, role))
+}
+
+fn timer(shared: &Shared, role: u64) -> impl FnOnce(&Arc<Shared>) + Send + 'static + use<> {
     let drive = match shared.settings.clock {
         ClockKind::Real => real::run,
         ClockKind::Virtual => virtual_time::run,
     };
-    spawn_thread(shared, "saoms-timer", move |shared| drive(shared, role))
+    move |shared| drive(shared, role)
 }
 
+/// Starts a thread in the middle of a run, and does not wait for it.
 fn spawn_thread(shared: &Arc<Shared>, name: &str, run: impl FnOnce(&Arc<Shared>) + Send + 'static) -> io::Result<()> {
+    thread::Builder::new().name(name.to_owned()).spawn(contained(shared, run)).map(drop)
+}
+
+fn contained<R: FnOnce(&Arc<Shared>) + Send + 'static>(
+    shared: &Arc<Shared>,
+    run: R,
+) -> impl FnOnce() + Send + 'static + use<R> {
     let shared = Arc::clone(shared);
-    let contained = move || {
+    move || {
         // Component code is contained elsewhere: this is a fault of the engine itself. The program must not wait for
         // ever.
         if panic::catch_unwind(AssertUnwindSafe(|| run(&shared))).is_err() {
             shared.lock().break_down();
             announce_end(&shared);
         }
-    };
-    thread::Builder::new().name(name.to_owned()).spawn(contained).map(drop)
+    }
 }
 
 /// Gives the calling thread the sleep precision and the priority of its role.

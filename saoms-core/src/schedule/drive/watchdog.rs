@@ -13,15 +13,17 @@ use crate::schedule::os::sys;
 use crate::schedule::settings::nanos;
 use crate::schedule::shared::Shared;
 
+pub(super) const SPARE: &str = "saoms-spare";
+
 /// Starts the spare thread that watches the thread with the timer's work.
 pub(super) fn spawn(shared: &Arc<Shared>) -> io::Result<()> {
-    spawn_thread(shared, "saoms-spare", watch)
+    spawn_thread(shared, SPARE, watch)
 }
 
 /// Sleeps until the code that runs has used up its budget, or the one that is due next could have. When it has, this
 /// thread takes over the timer's work. The timer only writes down what it does; it makes no system call for its
 /// watcher.
-fn watch(shared: &Arc<Shared>) {
+pub(super) fn watch(shared: &Arc<Shared>) {
     prepare_thread(shared, SPARE_PRIORITY);
     let budget = nanos(shared.settings.budget);
     let mut least = 0;

@@ -3,3 +3,4 @@
 pub(super) mod clock;
 pub(super) mod realtime;
 pub(super) mod sys;
+pub(super) mod thread;
