@@ -4,6 +4,7 @@ use std::ffi::{c_int, c_void};
 use std::mem::MaybeUninit;
 use std::ptr;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use saoms_api::host::present::{libraries, library_at};
 
@@ -65,7 +66,7 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
         let mut action: libc::sigaction = MaybeUninit::zeroed().assume_init();
         let top = registers(context).map(|(top, _)| top);
         match blame(top.unwrap_or_default()) {
-            Blame::Call(owner, function) => {
+            Blame::Call(owner, function) if is_new(ptr::from_ref(owner) as usize ^ function as usize) => {
                 if signal == libc::SIGSEGV && is_of_code {
                     let distance = top.map(|top| top.abs_diff((*info).si_addr() as usize));
                     meaning = if distance.is_some_and(|far| far < NEAR) { OVERFLOW } else { meaning };
@@ -73,10 +74,11 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
                 write(&["error: ", &owner.text, " crashed ", function.place(), ": ", meaning, "\n"]);
                 action.sa_sigaction = libc::SIG_DFL;
             }
-            Blame::Thread(library) => {
+            Blame::Thread(library) if is_new(library.as_ptr() as usize) => {
                 write(&["error: a thread of library `", library, "` crashed: ", meaning, "\n"]);
                 action.sa_sigaction = libc::SIG_DFL;
             }
+            Blame::Call(..) | Blame::Thread(_) => action.sa_sigaction = libc::SIG_DFL,
             Blame::Nobody => match registers(context).and_then(|(_, code)| library_at(code)) {
                 Some(library) => {
                     write(&["error: code of library `", library, "` crashed: ", meaning, "\n"]);
@@ -99,6 +101,13 @@ extern "C" fn crashed(signal: c_int, info: *mut libc::siginfo_t, context: *mut c
             libc::raise(signal);
         }
     }
+}
+
+/// True if code with this number is not what has crashed first. Those who stop all hardware before the end call the
+/// functions for it once more, where one of them crashed.
+fn is_new(code: usize) -> bool {
+    static FIRST: AtomicUsize = AtomicUsize::new(0);
+    FIRST.compare_exchange(0, code, Ordering::SeqCst, Ordering::SeqCst).map_or_else(|first| first != code, |_| true)
 }
 
 /// Tells a crash of the program itself, which finds out what code of a library did before: to its memory, or to the

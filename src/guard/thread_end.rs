@@ -9,6 +9,9 @@ use std::ffi::{c_int, c_void};
 use std::mem::transmute;
 use std::ptr;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use saoms_api::host::present::{Owner, library_at};
 
@@ -29,7 +32,25 @@ thread_local! {
     static NEWEST: Cell<*mut Node> = const { Cell::new(ptr::null_mut()) };
     /// The library whose destructor runs.
     static RUNS: Cell<Option<&'static Owner>> = const { Cell::new(None) };
+    /// True while destructors of libraries wait for the end of this thread.
+    static HAS_OF_LIBRARY: Cell<bool> = const { Cell::new(false) };
 }
+
+/// The number of threads for whose end destructors of libraries wait.
+static WITH_LIBRARY: AtomicUsize = AtomicUsize::new(0);
+
+/// Waits for the ends of other threads that call destructors of libraries, as those of a run that has ended: what these
+/// do is told. Not for long: some threads end with the process.
+pub(super) fn wait(patience: Duration) {
+    let own = usize::from(HAS_OF_LIBRARY.get());
+    let deadline = Instant::now() + patience;
+    while WITH_LIBRARY.load(Ordering::SeqCst) > own && Instant::now() < deadline {
+        thread::sleep(LOOK);
+    }
+}
+
+/// The time between two looks.
+const LOOK: Duration = Duration::from_millis(1);
 
 /// The library whose destructor runs on the present thread. A signal handler may ask.
 pub(super) fn present() -> Option<&'static Owner> {
@@ -65,7 +86,11 @@ pub(super) fn prepare() {
 unsafe extern "C" fn __cxa_thread_atexit_impl(destructor: Destructor, of: *mut c_void, library: *mut c_void) -> c_int {
     let code = destructor as usize;
     let program = (&raw const __executable_start) as usize..(&raw const _end) as usize;
-    if (program.contains(&code) || library_at(code).is_some()) && is_run_at_end() {
+    let is_of_library = library_at(code).is_some();
+    if (program.contains(&code) || is_of_library) && is_run_at_end() {
+        if is_of_library && !HAS_OF_LIBRARY.replace(true) {
+            WITH_LIBRARY.fetch_add(1, Ordering::SeqCst);
+        }
         let node = Box::new(Node { destructor, of, before: NEWEST.get() });
         NEWEST.set(Box::into_raw(node));
         return 0;
@@ -103,6 +128,9 @@ unsafe extern "C" fn run(_: *mut c_void) {
         // SAFETY: its code is of the program or of a library that is never unloaded; the pointer is its own.
         unsafe { (node.destructor)(node.of) };
         RUNS.set(None);
+    }
+    if HAS_OF_LIBRARY.take() {
+        WITH_LIBRARY.fetch_sub(1, Ordering::SeqCst);
     }
 }
 

@@ -92,6 +92,9 @@ static SaomsStatus construct(const SaomsPropertyView *values, size_t count, void
 static SaomsStatus stop(void *state, SaomsSink error) {
     (void)error;
     fprintf(stderr, "the hardware stops\n");
+    if (strcmp(state, "crashes in stop") == 0) {
+        *nowhere = 1;
+    }
     while (strstr(state, "hangs in stop") != NULL) {
         sleep(1);
     }

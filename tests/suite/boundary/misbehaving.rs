@@ -128,6 +128,10 @@ fn a_panic_that_no_call_contains_names_the_library() {
     assert!(run.text.contains(&expected), "{}", run.text);
     assert!(run.text.contains("` crashed in the destructor of a thread-local variable: SIGABRT"), "{}", run.text);
     assert_ne!(run.code, Some(0), "{}", run.text);
+    // Of a thread of the program, which ends at the end of the run.
+    let run = second(&acts("execute", "local"), &libraries());
+    assert!(run.text.contains("` crashed in the destructor of a thread-local variable: SIGABRT"), "{}", run.text);
+    assert_ne!(run.code, Some(0), "{}", run.text);
     // What a call contains is told by its failure alone.
     assert!(!beside_honest(&acts("execute", "panic")).text.contains(&of_library));
 }

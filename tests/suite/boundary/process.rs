@@ -286,6 +286,19 @@ fn hardware_stops_before_code_of_a_library_ends_the_process() {
     }
 }
 
+/// Those who stop all hardware before the end call it again, on other threads.
+#[test]
+fn a_crash_in_a_stop_function_is_told_once() {
+    let output = ended_with(&bad("h.Motor", "crashes in stop", ""), &[]);
+    let told = stderr(&output);
+    let expected = "libhostile.so` crashed in the function that stops its hardware: SIGSEGV";
+    assert!(told.contains("error: component `Bad` of library `"), "{}", text(&output));
+    assert_eq!(told.matches(expected).count(), 1, "{}", text(&output));
+    assert_eq!(told.matches(" crashed").count(), 1, "{}", text(&output));
+    assert_eq!(told.matches("error: the hardware of component `Bad` may still move").count(), 1, "{}", text(&output));
+    assert_eq!(output.status.signal(), Some(libc::SIGSEGV), "{}", text(&output));
+}
+
 #[test]
 fn a_jump_out_of_a_call_is_told_with_component_and_library() {
     for definitions in [&[][..], &["_FORTIFY_SOURCE=2"]] {
