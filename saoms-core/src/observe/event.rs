@@ -101,6 +101,8 @@ pub enum Occurrence {
         time: Duration,
         /// True if it has hardware.
         stops: bool,
+        /// The library of its code, if it is of one.
+        library: Option<String>,
     },
     /// The code of a component that hung has returned.
     Returned,
@@ -190,10 +192,11 @@ impl fmt::Display for Occurrence {
             Occurrence::Overrun { missed } => {
                 write!(formatter, "stopped, because executions could not start in time: {missed} would be left out")
             }
-            Occurrence::Hangs { time, stops } => {
+            Occurrence::Hangs { time, stops, library } => {
                 let time = saoms_api::host::format_duration(Duration::from_millis(time.as_millis() as u64));
                 let then = if *stops { ": its hardware is stopped" } else { "" };
-                write!(formatter, "has not returned for {time}{then}")
+                let library = library.as_deref().map(|library| format!(" (library `{library}`)")).unwrap_or_default();
+                write!(formatter, "has not returned for {time}{then}{library}")
             }
             Occurrence::Returned => formatter.write_str("has returned"),
             Occurrence::NotStopped { message } => write!(formatter, "its hardware may still move: {message}"),

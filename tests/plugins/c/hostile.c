@@ -23,6 +23,10 @@
 #ifndef PLACE
 #define PLACE "spot"
 #endif
+/* The interface of the service and of the reference. */
+#ifndef INTERFACE
+#define INTERFACE "h.Callee"
+#endif
 /* Members of the declaration of `h.Motor`, and whether its property is live. */
 #ifndef SAYS
 #define SAYS
@@ -110,10 +114,18 @@ static void release(void *state) {
     }
 }
 
+static SaomsStatus beat(void *state, uint64_t period, SaomsSink error) {
+    (void)state, (void)period;
+    return saoms_fail(error, "the line is dead");
+}
+
 static SaomsStatus register_stops(Actor *actor, const SaomsHostHandle *host, SaomsSink error) {
     SaomsStopView view = {sizeof view, strdup(actor->does), stop, NULL, release};
     uint32_t count = does(actor, "registers without end") ? 1000000 : 1;
     SaomsStatus status = SaomsStatus_OK;
+    if (does(actor, "fails to beat")) {
+        view.heartbeat = beat;
+    }
     if (does(actor, "a short view")) {
         view.size = offsetof(SaomsStopView, release) + 4;
     }
@@ -153,7 +165,7 @@ static SaomsStatus initialize(void *component, const SaomsHostHandle *host, Saom
         status = functions->subscribe(host->state, &spots, &actor->sees, error);
     }
     if (status == SaomsStatus_OK) {
-        status = functions->reference(host->state, saoms_text("callee"), saoms_text("h.Callee"), &actor->callee, error);
+        status = functions->reference(host->state, saoms_text("callee"), saoms_text(INTERFACE), &actor->callee, error);
     }
     return status;
 }
@@ -354,7 +366,7 @@ static SaomsStatus restore(void *component, SaomsBytes saved, SaomsSink error) {
 }
 
 #define TOPICS JSON([{"topic": "WORDS", "kind": "event", "message": "Word", "optional": true, "schema":) WORD JSON(}, {"topic": "SPOTS", "kind": "state", "message": "Spotted", "optional": true, "schema":) SPOTTED JSON(}])
-#define CALLEE JSON({"name": "callee", "optional": true, "interface": {"name": "h.Callee", "operations": [{"name": "call", "arguments": [], "reply": "uint32"}]}})
+#define CALLEE JSON({"name": "callee", "optional": true, "interface": {"name":) TEXT(INTERFACE) JSON(, "operations": [{"name": "call", "arguments": [], "reply": "uint32"}]}})
 #define MEMBERS JSON("kind": "periodic", "properties": [{"name": "does", "type": "string", "default": "", "live":) TEXT(LIVE) JSON(}], "services": [) CALLEE JSON(], "references": [) CALLEE JSON(], "publishes":) TOPICS JSON(, "subscribes":) TOPICS
 
 SAOMS_METADATA static const char metadata[] =

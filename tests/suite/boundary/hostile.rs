@@ -4,7 +4,7 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Output, Stdio};
 
-use super::build::c_library_of;
+use super::build::{c_library_of, library};
 use super::run::{Run, component, in_folder, property, second};
 use crate::support::{PROGRAM, command, text};
 
@@ -200,6 +200,23 @@ fn what_a_failed_execution_counted_is_taken_back_however_much_it_was() {
 #[test]
 fn hardware_that_is_never_released_holds_up_no_end() {
     assert_goes_on(&run("h.Motor", "hangs in release"), "could not stop its hardware");
+}
+
+/// Each component that executes fails, also one of another library: the library is that of the hardware.
+#[test]
+fn a_heartbeat_that_fails_is_told_with_the_library_of_the_hardware() {
+    let caller = component("Caller", "bad.Actor", "<reference name=\"callee\" target=\"Bad/callee\"/>");
+    let folder = tempfile::tempdir().unwrap();
+    let hostile = c_library_of("hostile", folder.path(), &["INTERFACE=\"bad.Callee\""]);
+    let of_library = format!("the line is dead (library `{}`)", hostile.display());
+    let run = second(&(caller + &bad("h.Motor", "fails to beat", "")), &[hostile, library("bad")]);
+    assert_eq!(run.code, Some(1), "{}", run.text);
+    for name in ["Caller", "Bad"] {
+        let expected =
+            format!("component `{name}` failed: the heartbeat of the hardware of component `Bad`: {of_library}");
+        assert!(run.reasons().contains(&expected), "{expected} is missing in\n{}\n{}", run.reasons(), run.text);
+    }
+    assert!(!run.text.contains(&library("bad").display().to_string()), "{}", run.text);
 }
 
 #[test]

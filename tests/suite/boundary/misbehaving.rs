@@ -203,6 +203,15 @@ fn hardware_whose_stop_function_never_returns_is_told_with_the_library() {
     assert!(run.reasons().contains(&of_library), "{}\n{}", run.reasons(), run.text);
 }
 
+#[test]
+fn hardware_that_is_stopped_since_code_hangs_is_told_with_the_library() {
+    let motor = component("Bad", "bad.Motor", &(property("at", "late") + &property("does", "never")));
+    let run = fleet(&motor, &libraries(), &["--for", "900ms", "--grace", "100ms"]);
+    let line = run.text.lines().find(|line| line.contains("has not returned for "));
+    let expected = format!(": its hardware is stopped (library `{}`)", library("bad").display());
+    assert!(line.is_some_and(|line| line.ends_with(&expected)), "{expected} is missing in\n{}", run.text);
+}
+
 fn raw(does: &str) -> String {
     component("Bad", "raw.Actor", &property("does", does))
 }

@@ -64,7 +64,7 @@ impl Drop for Outgoing {
         let (instance, stops) = (self.instance.take(), std::mem::take(&mut self.stops));
         // A panic of its destructor does not concern its successor.
         let _ = contained(|| drop(instance));
-        let _ = contained(|| drop(stops));
+        stops.into_iter().for_each(RegisteredStop::release_here);
     }
 }
 

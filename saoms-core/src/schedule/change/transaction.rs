@@ -260,8 +260,11 @@ impl<'a> Change<'a> {
         let result = body.perform(self.shared, Job::Shutdown);
         let mut engine = self.shared.lock();
         body.part.outbox.clear();
+        let is_told = body.part.told.take().is_some();
         engine.put_back(number, body);
-        if let Err(failure) = result {
+        if let Err(failure) = result
+            && !is_told
+        {
             let message =
                 format!("could not shut down: {}", with_library(&engine.slots[number as usize].spec, failure));
             engine.emit(now, number, Occurrence::Failed { message, restart: None });

@@ -12,6 +12,7 @@ use super::unheard::Unheard;
 use crate::bus::{TopicId, TopicReader};
 use crate::fault::TaskFaultKind;
 use crate::journal::Recorder;
+use crate::schedule::engine::failing::Told;
 use crate::schedule::engine::votes::Ballot;
 use crate::schedule::order::OrderInCode;
 use crate::schedule::shared::Shared;
@@ -86,6 +87,10 @@ pub(crate) struct Part {
     pub(crate) initializing: bool,
     /// True if a shutdown that finds another component busy is tried again.
     pub(crate) retries_shutdown: bool,
+    /// The component whose code made the present execution fail, if that is another one.
+    pub(crate) blamed: Option<u32>,
+    /// What was told of the failure of the present code, before the instance was dropped.
+    pub(crate) told: Option<Told>,
     /// The fault of the present execution.
     pub(crate) fault: Option<TaskFaultKind>,
     /// Records for the journal.
@@ -178,6 +183,8 @@ impl Body {
             period,
             initializing: false,
             retries_shutdown: false,
+            blamed: None,
+            told: None,
             fault: None,
             recorder: Recorder::default(),
             spec,
@@ -228,7 +235,11 @@ impl Body {
             return result;
         }
         if result.is_ok() && job == Job::Execute && self.part.beats() {
-            result = shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
+            let beaten = shared.stops.beat(&self.part.heartbeats, Duration::from_nanos(self.part.period));
+            result = beaten.map_err(|(component, failure)| {
+                self.part.blamed = Some(component);
+                failure
+            });
         }
         if result.is_ok() && self.part.lasting.saves && matches!(job, Job::Execute | Job::React) {
             result = self.save_execution();
@@ -245,6 +256,9 @@ impl Body {
         if self.part.has_departed {
             self.part.departed.iter_mut().for_each(Vec::clear);
             self.part.has_departed = false;
+        }
+        if let Err(failure) = &result {
+            self.tell(shared, job, failure);
         }
         if result.is_err() || job == Job::Shutdown {
             self.discard();
@@ -293,9 +307,10 @@ impl Body {
         let result = before.and_then(|()| self.call(shared, |instance, context| instance.serve(invocation, context)));
         let result = self.part.spent.is_within().and(result);
         self.part.lasting.touch();
-        if result.is_err() {
+        if let Err(failure) = &result {
             shared.stops.request(&self.part.stops);
             self.part.lasting.take_back(&mut shared.sections());
+            self.tell(shared, Job::Execute, failure);
             self.discard();
         }
         result
@@ -321,6 +336,15 @@ impl Body {
     pub(crate) fn clear_inboxes(&mut self) {
         self.inboxes.clear();
         self.reactions.clear();
+    }
+
+    /// Tells a failure before the instance is dropped, whose destructor may hang.
+    #[cold]
+    fn tell(&mut self, shared: &Shared, job: Job, failure: &Failure) {
+        let now = if shared.clock.is_virtual() { self.part.now } else { shared.clock.now() };
+        let mut engine = shared.lock();
+        engine.tell_early(&mut self.part, job, failure, now);
+        shared.release(engine);
     }
 
     /// Drops the instance. A panic of its destructor is contained, too.
@@ -383,6 +407,7 @@ impl Part {
     fn begin(&mut self, because: Cause) {
         self.recorder.begin(because);
         self.spent = Spent::default();
+        (self.blamed, self.told) = (None, None);
     }
 
     /// Holds a class that declares it to the registration of a function that stops hardware.

@@ -131,7 +131,7 @@ impl Engine {
         }
         self.note_return();
         if let Some(failure) = panic {
-            self.fail(index, &mut body, Job::Execute, failure, now);
+            self.fail(index, &mut body, Job::Execute, &failure, now);
             self.slots[index as usize].body = Some(body);
             return;
         }

@@ -201,11 +201,11 @@ impl Engine {
             }
         }
         match result {
-            Err(failure) if self.tries_again(index, job, &failure, &body.part) => {
+            Err(failure) if body.part.told.is_none() && self.tries_again(index, job, &failure, &body.part) => {
                 self.skip(index, body, job, &failure, ended);
             }
             Err(failure) => {
-                self.fail(index, &mut body, job, failure, ended);
+                self.fail(index, &mut body, job, &failure, ended);
                 self.slots[index as usize].body = Some(body);
             }
             Ok(()) => {

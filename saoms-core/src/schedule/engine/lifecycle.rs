@@ -1,15 +1,10 @@
 use std::sync::atomic::Ordering;
 
-use saoms_api::Failure;
-
-use super::ending::EndCause;
 use super::slot::{NEVER, PendingRequest, SlotState};
 use super::trace::TraceStep;
 use super::{Engine, RunPhase};
 use crate::observe::Occurrence;
-use crate::schedule::component::body::{Body, Job};
-use crate::schedule::component::library::with_library;
-use crate::schedule::settings::nanos;
+use crate::schedule::component::body::Body;
 
 /// Requests about a periodic component, at any time and from any thread. They take effect after the code that runs at
 /// present.
@@ -156,90 +151,6 @@ impl Engine {
         self.forget_vote(index, now);
         if let PendingRequest::Return { lasting } = pending {
             self.request(index, Request::Schedule { lasting }, now);
-        }
-    }
-
-    /// Handles the failure of a component in any job, by its policy.
-    pub(crate) fn fail(&mut self, index: u32, body: &mut Body, job: Job, failure: Failure, now: u64) {
-        // The journal keeps its records of the time before the failure.
-        self.record(&mut body.part, now);
-        let unsent = body.part.outbox.len();
-        body.part.outbox.clear();
-        body.part.bytes_to_keep = None;
-        body.part.sent_bytes = 0;
-        body.part.vote = None;
-        let doing = match job {
-            Job::Start => "could not start: ",
-            Job::Execute | Job::React | Job::Ask | Job::Describe | Job::Order => "",
-            Job::Shutdown => "could not shut down: ",
-        };
-        let mut message = format!("{doing}{}", with_library(&body.part.spec, failure));
-        if unsent > 0 {
-            message.push_str(&format!(" (messages of this execution that are not sent: {unsent})"));
-        }
-        self.step(now, index, TraceStep::Failed);
-        let slot = &mut self.slots[index as usize];
-        slot.react_due = NEVER;
-        slot.statistics.failures += 1;
-        slot.waiting = false;
-        if body.part.held {
-            // The change it belongs to is undone.
-            slot.state = SlotState::Failed;
-            let reason = format!("component `{}` failed: {message}", slot.name);
-            self.held_failure = Some((index, Failure::new(reason)));
-            self.emit(now, index, Occurrence::Failed { message, restart: None });
-            return;
-        }
-        let stays = self.phase == RunPhase::Running && job != Job::Shutdown && slot.pending == PendingRequest::None;
-        let policy = slot.policy;
-        self.stop_its_hardware(index);
-        let slot = &mut self.slots[index as usize];
-        let longer = 1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX);
-        let pause = (stays && slot.restarts < policy.restarts).then(|| policy.backoff.saturating_mul(longer));
-        if pause.is_some() {
-            body.keep_unread(&mut self.bus);
-        } else {
-            body.part.lasting.forget();
-        }
-        self.keep_subscriptions(body);
-        let slot = &mut self.slots[index as usize];
-        let pending = std::mem::replace(&mut slot.pending, PendingRequest::None);
-        match pause {
-            Some(pause) => {
-                slot.restarts += 1;
-                slot.restarting = true;
-                slot.state = SlotState::Starting;
-                self.emit(now, index, Occurrence::Failed { message, restart: Some(pause) });
-                self.enqueue(index, now.saturating_add(nanos(pause)));
-            }
-            None => {
-                slot.state = SlotState::Failed;
-                slot.restarting = false;
-                self.reasons.extend(slot.overrun_failure.take());
-                self.reasons.push(format!("component `{}` failed: {message}", slot.name));
-                self.emit(now, index, Occurrence::Failed { message, restart: None });
-                self.release(index, body, now);
-                self.lost(index, now);
-                if let PendingRequest::Return { lasting } = pending {
-                    self.request(index, Request::Schedule { lasting }, now);
-                }
-            }
-        }
-    }
-
-    /// Ends the run if a component that was lost for good leaves it without purpose.
-    fn lost(&mut self, index: u32, now: u64) {
-        if self.phase != RunPhase::Running {
-            return;
-        }
-        let voted = self.slots[index as usize].sees_work.is_some();
-        self.forget_vote(index, now);
-        if voted && self.votes.voters == 0 {
-            let name = &self.slots[index as usize].name;
-            self.reasons.push(format!("component `{name}` ended before it reported that its work is done"));
-            self.begin_stop(EndCause::Lost, now);
-        } else if !self.slots.iter().any(|slot| slot.policy.periodic && slot.is_scheduled()) {
-            self.begin_stop(EndCause::Lost, now);
         }
     }
 

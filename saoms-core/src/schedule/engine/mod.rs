@@ -4,6 +4,7 @@ mod busy;
 mod delivery;
 pub(super) mod ending;
 mod execution;
+pub(super) mod failing;
 pub(super) mod lifecycle;
 mod overrun;
 pub(super) mod queue;

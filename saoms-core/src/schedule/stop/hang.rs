@@ -4,8 +4,10 @@ use std::thread;
 use std::time::Duration;
 
 use saoms_api::Level;
+use saoms_api::host::present::present_library;
 
 use crate::observe::Occurrence;
+use crate::schedule::component::library::library_of;
 use crate::schedule::engine::Engine;
 use crate::schedule::engine::slot::{NEVER, SlotState};
 use crate::schedule::settings::ClockKind;
@@ -84,7 +86,8 @@ impl Engine {
             return;
         }
         slot.hangs_since = since;
-        self.emit(now, index, Occurrence::Hangs { time: Duration::from_nanos(now - since), stops });
+        let library = present_library(&slot.name).map(str::to_owned).or_else(|| library_of(&slot.spec, ""));
+        self.emit(now, index, Occurrence::Hangs { time: Duration::from_nanos(now - since), stops, library });
         if stops {
             self.stops.request_of(index);
             self.stop_its_hardware(index);

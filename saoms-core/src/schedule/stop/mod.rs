@@ -9,6 +9,7 @@ mod hang;
 mod threads;
 
 use std::collections::HashMap;
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use std::time::{Duration, Instant};
@@ -44,7 +45,36 @@ pub(crate) struct RegisteredStop {
     component: u32,
     /// Path of the component.
     name: Arc<str>,
-    function: StopFunction,
+    function: ManuallyDrop<StopFunction>,
+    /// Those of its fleet, whose threads release it.
+    stops: Weak<Stops>,
+}
+
+impl RegisteredStop {
+    /// Frees the state of the function on this thread, if this is its last owner.
+    pub(crate) fn release_here(self: Arc<RegisteredStop>) {
+        if let Some(mut last) = Arc::into_inner(self) {
+            last.stops = Weak::new();
+            drop(last);
+        }
+    }
+}
+
+impl Drop for RegisteredStop {
+    /// The last owner frees the state, which is code of the component and may hang: that holds up nobody else.
+    fn drop(&mut self) {
+        // SAFETY: it is taken once, and nobody uses it afterwards.
+        let function = unsafe { ManuallyDrop::take(&mut self.function) };
+        match self.stops.upgrade() {
+            Some(stops) => stops.threads.release(&stops, &self.name, function),
+            None => release(function),
+        }
+    }
+}
+
+/// Frees the state of a function. A panic of its destructor is contained: nothing depends on it.
+fn release(function: StopFunction) {
+    let _ = contained(|| drop(function));
 }
 
 /// The functions of all fleets of the process.
@@ -84,7 +114,12 @@ impl Stops {
         name: &Arc<str>,
         function: StopFunction,
     ) -> Arc<RegisteredStop> {
-        let registered = Arc::new(RegisteredStop { component, name: Arc::clone(name), function });
+        let registered = Arc::new(RegisteredStop {
+            component,
+            name: Arc::clone(name),
+            function: ManuallyDrop::new(function),
+            stops: Arc::downgrade(self),
+        });
         let mut all = lock(&self.registered);
         let own = all.entry(component).or_default();
         own.retain(|known| known.strong_count() > 0);
@@ -135,14 +170,15 @@ impl Stops {
     /// Tells the hardware of these components that an execution has finished, and within which time the next one does.
     ///
     /// # Errors
-    /// The function of one panicked: its hardware stops by itself, which whoever executed has to know.
+    /// The function of this component panicked: its hardware stops by itself, which whoever executed has to know.
     #[cold]
-    pub(crate) fn beat(&self, components: &[u32], period: Duration) -> Result<(), Failure> {
+    pub(crate) fn beat(&self, components: &[u32], period: Duration) -> Result<(), (u32, Failure)> {
         let mut result = Ok(());
         for registered in components.iter().flat_map(|component| self.of(*component)) {
             if let Err(panic) = contained(|| registered.function.beat(period)) {
                 let name = &registered.name;
-                result = Err(Failure::new(format!("the heartbeat of the hardware of component `{name}`: {panic}")));
+                let failure = Failure::new(format!("the heartbeat of the hardware of component `{name}`: {panic}"));
+                result = Err((registered.component, failure));
             }
         }
         result

@@ -93,6 +93,9 @@ static SaomsStatus counter_serve(void *component, const SaomsHostHandle *host, S
 }
 
 static void counter_destroy(void *component) {
+#ifdef ENDS_SLOWLY
+    sleep(1);
+#endif
 #ifdef HANGS_AT_END
     if (((Counter *)component)->count > 0) {
         for (;;) {

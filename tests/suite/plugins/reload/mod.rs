@@ -181,6 +181,18 @@ fn hardware_stops_although_a_new_build_hangs_while_it_is_loaded() {
     assert_eq!(code, Some(130));
 }
 
+/// Also where nothing but the component itself has the function that stops its hardware any more.
+#[test]
+fn a_failure_is_told_although_the_end_of_the_component_hangs() {
+    for ends in [&["-DMOTOR", "-DENDS_SLOWLY"][..], &["-DHANGS_AT_END"]] {
+        let mut run = Run::start(&[&["-DBUILD=1", "-DFAILS_AT=50"], ends].concat());
+        run.wait_for(&of_library(&run, "failed: this build fails"));
+        let (_, report, code) = run.end();
+        assert!(report["outcome"].to_string().contains("this build fails"), "{report}");
+        assert_eq!(code, Some(130));
+    }
+}
+
 #[test]
 fn a_build_that_cannot_take_over_leaves_the_earlier_one_in_place() {
     let mut run = Run::start(&["-DBUILD=1"]);
