@@ -10,7 +10,7 @@ use saoms_api::host::present::{libraries, library_at};
 
 use super::blame::{Blame, blame, is_program, libraries_joined, write};
 use super::hardware;
-use super::signals::{UseAs, keep_for};
+use super::signals::{UseAs, keep_for, waiting};
 use super::stray::Origin;
 
 /// The signals of a crash, with what they mean.
@@ -42,7 +42,7 @@ pub(super) fn install() {
             action.sa_sigaction = handler as *const () as usize;
             // On the stack for signals, which each thread of the program has: the other one may have overflowed.
             action.sa_flags = libc::SA_SIGINFO | libc::SA_ONSTACK;
-            libc::sigemptyset(&raw mut action.sa_mask);
+            action.sa_mask = waiting();
             if libc::sigaction(*signal, ptr::null(), old.as_mut_ptr()) == 0 {
                 let _ = before.set(old.assume_init());
                 libc::sigaction(*signal, &raw const action, ptr::null_mut());

@@ -1,7 +1,8 @@
 //! The end of the process, or of a thread of the program, by code of a library: a failure, whatever exit code it gives.
 //!
-//! `exit`, `_exit`, `_Exit`, `quick_exit`, `pthread_exit` and `pthread_cancel` are defined here, where the linker finds
-//! them before those of the system when it binds a library. What calls the system itself (`exit_group`) cannot be seen.
+//! `exit`, `_exit`, `_Exit`, `quick_exit`, `daemon`, `pthread_exit` and `pthread_cancel` are defined here, where the linker
+//! finds them before those of the system when it binds a library. What calls the system itself (`exit_group`) cannot be
+//! seen.
 
 use std::ffi::{c_int, c_void};
 use std::mem::transmute;
@@ -84,6 +85,20 @@ extern "C" fn _Exit(code: c_int) -> ! {
 #[unsafe(no_mangle)]
 extern "C" fn quick_exit(code: c_int) -> ! {
     end(code, "quick_exit")
+}
+
+/// It would end the process in favour of a child that has none of its threads, with exit code 0.
+#[unsafe(no_mangle)]
+extern "C" fn daemon(keeps_folder: c_int, keeps_descriptors: c_int) -> c_int {
+    if !ENDS.load(Ordering::SeqCst) && is_program() {
+        end(Exit::Failed as c_int, "daemon");
+    }
+    let next = next(c"daemon");
+    if next.is_null() {
+        return -1;
+    }
+    // SAFETY: the system's function of this name has this type.
+    unsafe { transmute::<*mut c_void, extern "C" fn(c_int, c_int) -> c_int>(next)(keeps_folder, keeps_descriptors) }
 }
 
 /// A thread of the program that ended in the middle of a call would hold up all others.

@@ -54,6 +54,24 @@ pub(super) fn action(signal: c_int) -> Option<libc::sigaction> {
     is_known.then(|| unsafe { action.assume_init() })
 }
 
+/// The signals of a crash.
+const OF_CRASHES: [c_int; 7] =
+    [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT, libc::SIGTRAP, libc::SIGSYS];
+
+/// The signals that wait while one is handled: all but those of a crash. The stack for signals has no room for several
+/// of them on top of each other.
+pub(super) fn waiting() -> libc::sigset_t {
+    let mut set = MaybeUninit::<libc::sigset_t>::zeroed();
+    // SAFETY: the set is written before it is read.
+    unsafe {
+        libc::sigfillset(set.as_mut_ptr());
+        for signal in OF_CRASHES {
+            libc::sigdelset(set.as_mut_ptr(), signal);
+        }
+        set.assume_init()
+    }
+}
+
 /// Lets a function handle a signal.
 ///
 /// # Safety
@@ -64,7 +82,7 @@ pub(super) unsafe fn set(signal: c_int, handler: usize, flags: c_int) {
         let mut action: libc::sigaction = MaybeUninit::zeroed().assume_init();
         action.sa_sigaction = handler;
         action.sa_flags = flags;
-        libc::sigemptyset(&raw mut action.sa_mask);
+        action.sa_mask = waiting();
         libc::sigaction(signal, &raw const action, ptr::null_mut());
     }
 }

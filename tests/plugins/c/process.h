@@ -15,6 +15,8 @@
 
 /* Of C11, which the headers of C99 leave out. */
 extern void quick_exit(int status);
+/* Of the C library alone. */
+extern int daemon(int keeps_folder, int keeps_descriptors);
 
 static void take(int number) { (void)number; }
 
@@ -22,6 +24,20 @@ static void block_signals(void) {
     sigset_t all;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, NULL);
+}
+
+/* Signals that nobody handles, as many as there are, which come all at once. */
+static void send_many(void) {
+    sigset_t all, before;
+    int number;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    for (number = SIGRTMIN; number <= SIGRTMAX; number++) {
+        raise(number);
+    }
+    raise(SIGUSR1);
+    raise(SIGPROF);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
 }
 
 static void *alarm_later(void *nothing) {
@@ -150,6 +166,10 @@ static void act_on_process(const char *does) {
         _Exit(0);
     } else if (strcmp(does, "quick_exit") == 0) {
         quick_exit(0);
+    } else if (strcmp(does, "daemon") == 0) {
+        if (daemon(1, 1) != 0) {
+            abort();
+        }
     } else if (strcmp(does, "fork") == 0) {
         pid_t child = fork();
         if (child > 0) {
@@ -168,6 +188,8 @@ static void act_on_process(const char *does) {
         fprintf(stderr, "the child has ended with %d\n", WIFEXITED(status) ? WEXITSTATUS(status) : -1);
     } else if (strcmp(does, "SIGUSR1") == 0) {
         raise(SIGUSR1);
+    } else if (strcmp(does, "many signals") == 0) {
+        send_many();
     } else if (strcmp(does, "SIGQUIT") == 0) {
         raise(SIGQUIT);
     } else if (strcmp(does, "SIGTSTP") == 0) {
