@@ -1,10 +1,13 @@
+mod gauge;
+mod patience;
+
 use saoms_api::{CallError, Context, Failure, Field};
 
 use crate::grid::{Block, Map};
 use crate::hardware::{Action, ActionKind, HardwareReference, Progress};
 
-use super::gauge::Gauge;
-use super::patience::Patience;
+use gauge::Gauge;
+use patience::Patience;
 
 /// Client of a robot's hardware, called through its reference `world`. If that is not wired, every action succeeds at
 /// once.
