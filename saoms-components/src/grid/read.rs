@@ -53,18 +53,20 @@ impl BlankRows {
     }
 }
 
-/// The fault of a text that is no map, but a scenario or a table: all its lines have one cause.
+/// The fault of a text that is no map, but a scenario, a table or XML: all its lines have one cause.
 fn other(text: &str) -> Option<TextFault> {
     let head = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'))?;
     let is_event = ["at ", "from ", "then "].iter().any(|start| head.starts_with(start));
     let what = match head {
         _ if is_event => "a scenario",
         _ if head.starts_with("index,") || head.starts_with("name,") => "a table",
+        _ if head.starts_with('<') => "XML",
         _ => return None,
     };
     let fault = TextFault::of(text, head, format!("this is {what}, expected a map with one row of `.` and `@` a line"));
     Some(fault.help(match what {
         "a table" => "name the table with `saoms:overrides`",
+        "XML" => "`..@@..` is a row with two blocked blocks",
         _ => "a scenario is the property `scenario` of a `saoms.Environment`",
     }))
 }

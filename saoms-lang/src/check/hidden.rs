@@ -100,7 +100,7 @@ fn explain(word: &Word<'_>, report: &mut Report<'_>) -> bool {
                 word.hidden.iter().all(|(_, _, meant)| meant.is_some_and(|meant| meant.is_ascii_punctuation()));
             if (one.suggestions.is_empty() || !is_plain) && !one.message.contains("U+") {
                 one.help.insert(0, word.message());
-                if one.suggestions.is_empty() && !is_plain {
+                if one.suggestions.is_empty() && !word.has_markup() {
                     *one = word.mended(one.clone());
                 }
             }
@@ -143,6 +143,11 @@ impl Word<'_> {
         let (at, word) = (hidden.span, self.at.span);
         let is_inside = word.start < at.start && at.end < word.end;
         file == hidden.file && span.start < at.end + u32::from(is_inside) && at.start < span.end.max(span.start + 1)
+    }
+
+    /// True if a sign that is meant can be one of the markup around the word, such as a quote.
+    fn has_markup(&self) -> bool {
+        self.hidden.iter().any(|(_, _, meant)| meant.is_some_and(|meant| "\"'<>&".contains(meant)))
     }
 
     /// The word as it seems to be.

@@ -176,11 +176,13 @@ impl Finder {
         };
         let near = near.into_iter().map(|near| format!("{}{near}", wanted.prefix)).collect();
         let mut searched = vec![self.index.searched(folder)];
-        // Editors for XML call files so.
-        let xml = folder.join(format!("{file}.xml"));
-        if xml.is_file() && head(&xml, context.sources.open()).is_some() {
-            let [xml, right] = [&xml, &xml.with_extension("composite")].map(|path| quoted(&path.display().to_string()));
-            searched.push(format!("rename {xml} to {right}: composites are looked for in files with this ending"));
+        // Editors call files so, those for XML and others.
+        let named = [".xml", ".composite.xml", ".composite.txt", ".Composite"];
+        let mut named = named.map(|ending| folder.join(format!("{file}{ending}"))).into_iter();
+        if let Some(found) = named.find(|path| path.is_file() && head(path, context.sources.open()).is_some()) {
+            let right = folder.join(format!("{file}.composite"));
+            let [found, right] = [found, right].map(|path| quoted(&path.display().to_string()));
+            searched.push(format!("rename {found} to {right}: composites are looked for in files with this ending"));
         }
         let other = seen.named(&wanted.local);
         let elsewhere = other.map(|other| other.namespace.clone());

@@ -173,7 +173,7 @@ codes! {
     CONSTRUCTION = "S3014" Error "construction" [AbsentPart]: "The class of a component rejects its values.";
     LIBRARY = "S3015" Error "library": "The library that an implementation names is not found, cannot be used, or has no such class.";
     ONLY_READ = "S3016" Error "only-read" [OutlivesExpansion]: "A fleet needs the code of a library that was found, but that no option names. A note if the fleet is only checked.";
-    EXPRESSION_UNREAD = "S3017" Warning "expression-unread" [OutlivesExpansion]: "A value contains an expression, but the component has no count: the expression is not evaluated.";
+    EXPRESSION_UNREAD = "S3017" Warning "expression-unread" [OutlivesExpansion]: "A value contains an expression, but the component has no count, or is the source of a property: it is not evaluated.";
     // S40: tasks and topics.
     TASK_ID_SHARED = "S4001" Warning "task-id-shared" [OutlivesExpansion]: "Two tasks have the same ID.";
     TOPIC_RENAME = "S4002" Error "topic-rename": "A `topicRename` is malformed or contradicts itself.";

@@ -63,7 +63,7 @@ pub fn words(text: &str) -> Vec<Range<usize>> {
 
 /// The tokens of `text[start..]` with their bytes, up to its end or to a `:`; and where that is.
 pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), ExpressionFault> {
-    let mut all = Vec::new();
+    let mut all: Vec<Placed> = Vec::new();
     let mut at = start;
     while let Some(first) = text[at..].chars().next() {
         let rest = &text[at..];
@@ -87,6 +87,14 @@ pub(super) fn tokens(text: &str, start: usize) -> Result<(Vec<Placed>, usize), E
             };
             (Token::Text(rest[1..=length].to_owned()), length + 2)
         } else if let Some(sign) = SIGNS.into_iter().find(|sign| rest.starts_with(sign)) {
+            if let ("(", Some((Token::Word(word), at))) = (sign, all.last())
+                && is_name(word)
+            {
+                let problem = ExpressionError::new(format!("there is no function {}", quoted(word)));
+                return Err(problem
+                    .help("expressions have operators and parentheses, and no functions")
+                    .at(at.clone()));
+            }
             (Token::Sign(sign), sign.len())
         } else {
             return Err(odd(rest, first, at));

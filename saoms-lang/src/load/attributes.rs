@@ -435,11 +435,21 @@ fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) 
     };
     let before = text[..attribute.name_span().start as usize].trim_end().len() as u32;
     let whole = Span::new(before, attribute.value_span().end + 1).in_file(file);
-    let edits = vec![
-        Edit { location: whole, replacement: String::new() },
-        Edit { location: Span::empty(end).in_file(file), replacement: format!("{gap}{written}") },
-    ];
+    let remove = Edit { location: whole, replacement: String::new() };
+    if let Some(given) = element.children().find(|child| child.local_name() == "property" && has_name(*child, name)) {
+        let text = given.attribute("value").map(Attribute::trimmed).or_else(|| given.trimmed_text());
+        return match text.is_some_and(|text| text.value == attribute.trimmed().value) {
+            true => one.suggest_edits("remove it: the component has this property", vec![remove]),
+            false => one.label(given.name_location(), "the property").help("keep one of the two, as a property"),
+        };
+    }
+    let edits = vec![remove, Edit { location: Span::empty(end).in_file(file), replacement: format!("{gap}{written}") }];
     one.suggest_edits(format!("write it as {what}: {}", quoted(&written)), edits)
+}
+
+/// True if an element has this name.
+fn has_name(element: Element<'_>, name: &str) -> bool {
+    element.attribute("name").is_some_and(|given| given.value().trim() == name)
 }
 
 /// True if a name can start with this.

@@ -1,19 +1,19 @@
 //! Components with their implementations and loops.
 
-use super::Loader;
 use super::children::{Family, is_defined, renaming, variant};
 use super::other_words::is_class_of_component;
 use super::vocabulary::{
     COMPONENT, COMPONENT_PROPERTY, COMPONENT_REFERENCE, COMPONENT_SERVICE, IMPLEMENTATION_COMPOSITE,
     IMPLEMENTATION_JAVA, IMPLEMENTATION_RUST, Kind, LOOP,
 };
+use super::{Loader, PassedOver};
 use crate::diagnostic::{Diagnostic, Severity, codes, meant_boolean, nearest, quoted};
 use crate::expression::{self, INDEX, has_expression};
 use crate::model::{
     ComponentElement, Implementation, ImplementationKind, LoopElement, MisreadCount, Origin, Replicas, SAOMS_NAMESPACE,
 };
 use crate::source::Text;
-use crate::syntax::{Element, is_local_name};
+use crate::syntax::{Attribute, Element, is_local_name};
 
 impl Loader<'_> {
     pub(super) fn component(&mut self, element: Element<'_>) -> ComponentElement {
@@ -31,7 +31,7 @@ impl Loader<'_> {
             services: Vec::with_capacity(number_of("service")),
             references: Vec::with_capacity(number_of("reference")),
             path: self.path(element),
-            site: self.own(element, "site"),
+            site: self.site(element),
             condition: self.own(element, "if"),
             replicas: replicas.map(Box::new),
             autowire: self.boolean(element, "autowire"),
@@ -95,9 +95,30 @@ impl Loader<'_> {
             return Some(MisreadCount::Attribute);
         }
         self.meant_namespace(meant.namespace(), element.document())?;
-        let names = || (meant.namespace().to_owned(), meant.name().to_owned());
-        self.passed_over.get_or_insert_with(names);
+        self.pass_over(meant, "gives the number of replicas, which are missing without it");
         Some(MisreadCount::Namespace)
+    }
+
+    /// The site of a component. One in a namespace that is nearly that of SAOMS is an error there, and counts here.
+    fn site(&mut self, element: Element<'_>) -> Option<Text> {
+        if let Some(site) = self.own(element, "site") {
+            return Some(site);
+        }
+        let named = |one: &Attribute<'_>| one.local_name() == "site";
+        let meant = element.attributes().find(|one| {
+            named(one) && self.meant_namespace(one.namespace(), element.document()) == Some(SAOMS_NAMESPACE)
+        })?;
+        self.pass_over(meant, "makes a site, and without it sites are mixed");
+        Some(meant.trimmed()).filter(|site| !site.is_empty())
+    }
+
+    /// Notes the first attribute without which there is another fleet.
+    fn pass_over(&mut self, attribute: Attribute<'_>, meaning: &'static str) {
+        self.passed_over.get_or_insert_with(|| PassedOver {
+            namespace: attribute.namespace().to_owned(),
+            name: attribute.name().to_owned(),
+            meaning,
+        });
     }
 
     /// The path that a component of an expanded composite keeps.

@@ -101,6 +101,14 @@ fn contradicts(fault: &Diagnostic, sources: &Sources, diagnostics: &Diagnostics)
     })
 }
 
+/// An attribute that is not read, since its namespace is only nearly that of SAOMS.
+struct PassedOver {
+    namespace: String,
+    name: String,
+    /// What it says, as in "its attribute `saoms:count` ...".
+    meaning: &'static str,
+}
+
 /// The state that the parts of the loader share.
 struct Loader<'d> {
     version: Version,
@@ -114,9 +122,8 @@ struct Loader<'d> {
     meant: Vec<(ElementId, &'static str, String)>,
     /// The attributes of the element at hand that it cannot have, which is an error.
     refused: Vec<Span>,
-    /// The first attribute that probably says how many replicas there are, and is passed over for its namespace: this
-    /// and its name.
-    passed_over: Option<(String, String)>,
+    /// The first attribute without which there is another fleet, and that is passed over for its namespace.
+    passed_over: Option<PassedOver>,
     /// The places of the faults of the text.
     faults: Vec<Span>,
     /// The severity settings.

@@ -323,6 +323,9 @@ fn near(path: &Path, ending: Option<&str>) -> Option<String> {
     let wanted = path.file_name()?.to_string_lossy();
     let names = names(folder);
     let all = names.iter().map(String::as_str);
+    if let Some(same) = all.clone().find(|name| name.to_lowercase() == wanted.to_lowercase()) {
+        return Some(format!("there is {}, in other upper and lower case", listed(&[same], parent)));
+    }
     let mut near = nearest_few(&wanted, all.clone(), OFFERED_NAMES);
     if near.is_empty() {
         // Many forget the ending, or write another one.

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::Loader;
 use super::children::renamed;
-use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
+use crate::diagnostic::{Diagnostic, Diagnostics, Edit, Severity, codes, nearest, quoted};
 use crate::model::{SAOMS_NAMESPACE, Version};
 use crate::source::{Location, Span};
 use crate::syntax::{Attribute, Document, Element};
@@ -55,9 +55,8 @@ impl Loader<'_> {
             let message = format!("unknown namespace {}: did you mean {}?", quoted(written), quoted(meant));
             let one = Diagnostic::new(&codes::NAMESPACE_NEAR, at, message);
             let mut one = one.mend(format!("replace it with {}", quoted(meant)), meant);
-            if let Some((_, name)) = self.passed_over.as_ref().filter(|(namespace, _)| namespace == written) {
-                let name = quoted(name);
-                let why = format!("its attribute {name} gives the number of replicas, which are missing without it");
+            if let Some(passed_over) = self.passed_over.as_ref().filter(|one| one.namespace == written) {
+                let why = format!("its attribute {} {}", quoted(&passed_over.name), passed_over.meaning);
                 one = one.severity(Severity::Error).help(why);
             }
             self.report(one);
@@ -76,6 +75,9 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
     let location = root.name_location();
     let mut one = Diagnostic::new(&codes::ROOT, location, message);
     let local = root.local_name();
+    if is_around_composites(root) {
+        return unwrapped(one, root);
+    }
     if let Some(meant) = meant_root(root) {
         return renamed(one, root, meant);
     }
@@ -95,8 +97,33 @@ fn wrong_root(root: Element<'_>, version: Option<Version>) -> Diagnostic {
     one.help(hint)
 }
 
+/// True if a root has nothing but composites in it.
+fn is_around_composites(root: Element<'_>) -> bool {
+    root.children().next().is_some() && root.children().all(|child| child.local_name() == "composite")
+}
+
+/// The fault of a root around composites, with what mends it if there is one composite alone.
+fn unwrapped(one: Diagnostic, root: Element<'_>) -> Diagnostic {
+    if root.children().nth(1).is_some() {
+        return one.help("write each composite into a file of its own: a file has exactly one");
+    }
+    let is_plain = root.attributes().next().is_none() && root.namespace_declarations().next().is_none();
+    let tags = [Some(root.start_tag_span()), root.end_tag_span()];
+    let file = root.document().file();
+    let edits = tags.into_iter().flatten();
+    let edits = edits.map(|tag| Edit { location: tag.in_file(file), replacement: String::new() }).collect();
+    let description = "remove its start tag and end tag: the composite in it is the root";
+    match is_plain {
+        true => one.suggest_edits(description, edits),
+        false => one.help("make the composite in it the root"),
+    }
+}
+
 /// The name that a root of SCA, or of no namespace, has by a slip of the pen.
 fn meant_root(root: Element<'_>) -> Option<&'static str> {
+    if is_around_composites(root) {
+        return None;
+    }
     let is_of_sca = Version::from_namespace(root.namespace()).is_some() || root.namespace().is_empty();
     nearest(root.local_name(), ["composite"]).filter(|_| is_of_sca)
 }

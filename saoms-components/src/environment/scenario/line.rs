@@ -134,10 +134,10 @@ pub(super) fn read_line(text: &str, line: &str, before: Before, vocabulary: Voca
     let every = words.take("every").then(|| every(&mut words)).transpose()?;
     if every.is_none() && start == "from" {
         let is_repeated = line.split_whitespace().any(|word| word == "every");
-        if let Some(next) = words.peek().filter(|next| is_repeated || *next == "until") {
+        if let Some(next) = words.peek().filter(|next| is_repeated || matches!(*next, "until" | "till" | "to")) {
             let message = match is_repeated {
                 true => format!("found `{next}` before `every`; `every` comes directly after the first time"),
-                false => "found `until` without `every`, which says how often this happens".to_owned(),
+                false => format!("found `{next}` without `every`, which says how often this happens"),
             };
             return Err(words.fault(next, message).help(REPEATED));
         }

@@ -14,6 +14,9 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("=>", "to"),
     ("→", "to"),
     ("into", "to"),
+    ("-", "to"),
+    ("–", "to"),
+    ("—", "to"),
     (",", " to"),
     ("till", "until"),
     ("package", "luggage"),
@@ -71,6 +74,7 @@ pub(super) fn proposed(
     let start = crate::text::bytes(text, part).start;
     let Some(bytes) = within(&fault.bytes, start, part.len()).filter(|_| fault.instead.is_none()) else { return fault };
     let (word, behind) = (&part[bytes.clone()], &part[bytes.end..]);
+    // `Some(true)` for a line that is right then, `None` for one that is no better.
     let leads_on = |meant: &String| {
         let is_comment = meant.starts_with('#');
         // A comment hides the rest, and what follows a `;` is another line.
@@ -78,12 +82,21 @@ pub(super) fn proposed(
         let (meant, rest) = end.map_or((meant.as_str(), behind), |end| (&meant[..end], ""));
         let changed = format!("{}{meant}{rest}", &part[..bytes.start]);
         match line::read_line(&changed, &changed, before, vocabulary) {
-            _ if changed.trim().is_empty() => is_comment,
-            Ok(_) => true,
-            Err(next) => next.bytes.start > bytes.start && next.bytes.start >= bytes.start + meant.len(),
+            _ if changed.trim().is_empty() => is_comment.then_some(true),
+            Ok(_) => Some(true),
+            Err(next) => {
+                let is_further = next.bytes.start > bytes.start && next.bytes.start >= bytes.start + meant.len();
+                is_further.then_some(false)
+            }
         }
     };
-    let meant = candidates(word, behind.split_whitespace().next()).into_iter().find(leads_on);
+    let all = candidates(word, behind.split_whitespace().next());
+    let mut better = all.into_iter().filter_map(|meant| Some((leads_on(&meant)?, meant)));
+    let first = better.next();
+    let meant = match first {
+        Some((false, first)) => Some(better.find(|(is_right, _)| *is_right).map_or(first, |(_, meant)| meant)),
+        right => right.map(|(_, meant)| meant),
+    };
     match meant {
         Some(meant) => fault.instead(Some(meant)),
         None => match moved(part, bytes.start).filter(|line| line::read_line(line, line, before, vocabulary).is_ok()) {

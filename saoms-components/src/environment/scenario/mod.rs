@@ -105,13 +105,18 @@ pub(in crate::environment) enum Before {
 /// Maximum number of wrong lines that are reported.
 const MOST_WRONG: usize = 1000;
 
-/// The fault of a text that is a table of replicas or a map: all its lines have one cause.
-fn table(text: &str) -> Option<TextFault> {
+/// The fault of a text that is a table of replicas, a map or XML: all its lines have one cause.
+fn other(text: &str) -> Option<TextFault> {
     let head = text.lines().map(str::trim).find(|line| !line.is_empty())?;
     let is_row = |line: &str| line.chars().all(|sign| matches!(sign, '.' | '@' | '#')) && line.len() > 1;
     if is_row(head) || head.starts_with("type octile") {
         let fault = TextFault::of(text, head, "this is a map, expected a scenario with one event a line");
         return Some(fault.help("a map is the property `map` of a `saoms.World`"));
+    }
+    if head.starts_with(['<', '{']) {
+        let what = if head.starts_with('<') { "XML" } else { "JSON" };
+        let fault = TextFault::of(text, head, format!("this is {what}, expected a scenario with one event a line"));
+        return Some(fault.help("`at 1s luggage (3,1) to (3,10)` is a line of a scenario"));
     }
     head.starts_with("index,").then(|| {
         let fault = TextFault::of(text, head, "this is a table of replicas, expected a scenario with one event a line");
@@ -141,7 +146,7 @@ impl Scenario {
         // What `then` counts from. A wrong line counts as one with a last event.
         let mut before = Before::Start;
         for (place, text) in texts.iter().enumerate() {
-            if let Some(fault) = table(text.as_ref()).or_else(|| TextFault::of_file_name(text.as_ref())) {
+            if let Some(fault) = other(text.as_ref()).or_else(|| TextFault::of_file_name(text.as_ref())) {
                 findings.push(fault.finding(property, place));
                 continue;
             }

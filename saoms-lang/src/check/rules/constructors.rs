@@ -109,7 +109,8 @@ fn findings(
             continue;
         }
         // The text of an expression that nobody reads is wrong for that alone.
-        if let Some(text) = subject.text(finding.place()).filter(|text| has_expression(text) && !report.has_index()) {
+        let is_unread = |text: &&str| has_expression(text) && !report.has_index() || unread::source(text).is_some();
+        if let Some(text) = subject.text(finding.place()).filter(is_unread) {
             let whole = subject.written(finding.place());
             [Some(one.location), whole].iter().flatten().for_each(|at| report.withdraw(&codes::EXPRESSION_UNREAD, *at));
             report.push(unread::diagnostic(&codes::CONSTRUCTION, text, one.location).help(one.message));

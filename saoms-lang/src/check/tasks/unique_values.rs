@@ -39,6 +39,10 @@ pub(crate) struct Unique<'a> {
     words: HashMap<(SmolStr, &'a str, SmolStr), User>,
     /// By site, the first task with each ID, and the word of its property.
     tasks: HashMap<(SmolStr, SmolStr), (User, Option<&'a str>)>,
+    /// The places of two tasks that are told to share an ID: in other sites it is the same mistake.
+    told: HashSet<[Location; 2]>,
+    /// The places of values that several uses of one composite have, which are told once.
+    of_uses: HashSet<Location>,
     pub(crate) repeated: RepeatedValues,
 }
 
@@ -196,7 +200,11 @@ impl<'a> Unique<'a> {
             if let Some(word) = word {
                 let first = *self.words.entry((site.clone(), word, value.clone())).or_insert(user);
                 if is_other(&first) && !self.repeated.is_of_site(fleet, &value, [first, user], Severity::Error) {
-                    *self.repeated.places.entry(place).or_default() |= fleet.members[member].is_copy;
+                    let is_copy = fleet.members[member].is_copy;
+                    *self.repeated.places.entry(place).or_default() |= is_copy;
+                    if first.place == place && !is_copy && !self.of_uses.insert(place) {
+                        continue;
+                    }
                     shared(&value, word, [first, user], entry.main, fleet, report);
                 }
             }
@@ -207,7 +215,10 @@ impl<'a> Unique<'a> {
                     && !is_reported
                     && !self.repeated.is_of_site(fleet, &value, [first, user], Severity::Warning)
                 {
-                    task(&value, [first, user], fleet, report);
+                    let places = [first.place, user.place];
+                    if first.place == user.place || self.told.insert(places) {
+                        task(&value, [first, user], fleet, report);
+                    }
                 }
             }
         }
@@ -232,6 +243,18 @@ fn shared(
         quoted(value)
     );
     let one = Diagnostic::new(&codes::NOT_UNIQUE, user.place, message);
+    let is_unread = later.instance.is_none() && has_expression(report.written(user.place));
+    let one = match is_unread {
+        // They are the same for that alone.
+        true => {
+            report.withdraw(&codes::EXPRESSION_UNREAD, user.place);
+            one.help(
+                "`${...}` is evaluated only in components with a `saoms:count`: put the value together in the component \
+                 around it, and take it with `source`",
+            )
+        }
+        false => one,
+    };
     let whose = if word.ends_with(&*declaration.name) { "component" } else { word };
     let one = one.help(format!("give every {whose} its own {}", quoted(&declaration.name)));
     let own = later.component.properties.iter().filter_map(Property::only_text);

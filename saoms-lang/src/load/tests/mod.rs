@@ -180,6 +180,16 @@ fn a_root_that_is_no_composite_is_told_what_it_has_to_be() {
         "1:2 [componentType] error S1001 the root element is `componentType`, expected `composite`",
     );
     assert!(loaded("<project/>").0.is_none());
+    let composite = format!("<composite xmlns='{OASIS}' name='c' targetNamespace='u'/>");
+    faults(
+        &format!("<composites>{composite}</composites>"),
+        "1:2 [composites] error S1001 the root element is `composites`, expected `composite` \
+         | remove its start tag and end tag: the composite in it is the root",
+    );
+    faults(
+        &format!("<composites>{composite}{composite}</composites>"),
+        "1:2 [composites] error S1001 the root element is `composites`, expected `composite`",
+    );
 }
 
 #[test]
@@ -241,6 +251,16 @@ fn unknown_names_come_with_the_nearest() {
         &format!("<component name='a' colour='red'>{JAVA}</component>"),
         "2:21 [colour] error S1007 `component` has no attribute `colour` | write it as a property: `<property name=\"colour\">red</property>`",
     );
+    // What is given already is not proposed a second time.
+    let given = |written: &str, proposed: &str| {
+        faults_1_1(
+            &format!("<component name='a' period='1s'>{JAVA}<property name='period'{written}</component>"),
+            &format!("2:21 [period] error S1007 `component` has no attribute `period`{proposed}"),
+        );
+    };
+    given(" value='1s'/>", " | remove it: the component has this property");
+    given(">1s</property>", " | remove it: the component has this property");
+    given(">2s</property>", "");
     faults_1_1(
         &format!("<component name='a' constrainingType='t'>{JAVA}</component>"),
         "2:21 [constrainingType] error S1007 `component` has no attribute `constrainingType`",

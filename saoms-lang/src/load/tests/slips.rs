@@ -23,6 +23,8 @@ fn a_namespace_that_is_nearly_one_of_ours_is_told() {
         with(&format!("xmlns:x='{written}'"), "x:if='false'", &ours(written));
         with(&format!("xmlns:x='{written}'"), "", "");
     }
+    // Mixed sites would be another fleet.
+    with("xmlns:x='urn:saoms'", "x:site='N'", &ours("urn:saoms").replace("warning", "error"));
     with("xmlns:x='urn:some:1'", "x:if='false'", "");
     let draft = "http://docs.oasis-open.org/ns/opencsa/sca/200712";
     with(&format!("xmlns:x='{draft}'"), "x:note=''", "");

@@ -2,7 +2,7 @@
 
 use expect_test::expect;
 
-use crate::check::mistakes::slips::{GPS, robot};
+use crate::check::mistakes::slips::{GPS, of, robot};
 use crate::check::support::{nested, outcome, part, shown};
 use crate::check::values::files::checked;
 
@@ -158,6 +158,7 @@ fn in_names_and_what_leads_to_them() {
           5:33-35 used here as `number`
           help: `-7` contains U+2212, which looks like `-`
           help: `number`: The number of the robot
+          fix: replace this character with `-` [2:35-36 "-"]
 
     "#]]
     .assert_eq(&with(">7<", &[">7\u{200b}<", ">7\u{a0}<", ">\u{ff17}<", ">\u{2212}7<"]));
@@ -242,4 +243,26 @@ fn in_tables_and_other_files() {
     "#]]
     .assert_eq(&with("index,num\u{200b}ber\n1,4\n"));
     expect![""].assert_eq(&with("\u{feff}index,number\n1,4\n"));
+}
+
+#[test]
+fn dashes_in_place_of_a_minus_have_a_fix() {
+    let with = |value: &str| {
+        of(&robot("R${index}", &format!("<property name=\"number\">{value}</property>"))
+            .replacen("<component", "<component saoms:count=\"1\"", 1))
+    };
+    expect![[r#"
+        3:25-27 error S3007: property `number`: `−1` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1)
+          help: `-1` contains U+2212, which looks like `-`
+          help: `number`: The number of the robot
+          fix: replace this character with `-` [3:25-26 "-"]
+        3:25-27 error S3007: property `number`: `–4` is not a whole number: expected a whole number from 1 to 99 (in `R1`, index 1)
+          help: `-4` contains U+2013, which looks like `-`
+          help: `number`: The number of the robot
+          fix: replace this character with `-` [3:25-26 "-"]
+        3:33-34 error S2045: unexpected `–` (in `R1`, index 1)
+          help: `-` contains U+2013, which looks like `-`
+          help: `docs/fleets.md` describes expressions
+          fix: replace this character with `-` [3:33-34 "-"]
+    "#]].assert_eq(&["\u{2212}1", "\u{2013}4", "${index \u{2013} 4}"].map(with).concat());
 }

@@ -316,6 +316,41 @@ fn an_expression_that_nobody_reads_is_told() {
     .assert_eq(&with("${other}"));
 }
 
+/// `$name` is for sources: as a text it stands for itself.
+#[test]
+fn a_property_of_the_composite_in_a_text_is_told() {
+    let with = |count: &str, title: &str| {
+        let component = format!("<component name=\"R{count}><implementation.java class=\"example.Reader\"/>");
+        let property = format!("<property name=\"title\" value=\"{title}\"/>");
+        of(&format!("<property name=\"n\">3</property>\n{component}{property}</component>"))
+    };
+    expect![[r#"
+        3:96-98 warning S3017: `$n` is a text here, not the value of the property `n`
+          help: write `source="$n"` to take that value
+        R (example.Reader) title=Text("$n")
+    "#]]
+    .assert_eq(&with("\"", "$n"));
+    expect![[r#"
+        3:120-122 warning S3017: `$n` is a text here, not the value of the property `n` (in `R1`, index 1, and in 1 more)
+          help: write `source="$n"` to take that value
+        R1 (example.Reader) title=Text("$n")
+        R2 (example.Reader) title=Text("$n")
+    "#]].assert_eq(&with("${index}\" saoms:count=\"2\"", "$n"));
+    // It may mean something to the class.
+    expect![[r#"
+        2:17-18 warning S2026: no component uses the property `n` of the composite
+          help: remove it, or use its value in a component with `source="$n"`
+        R (example.Reader) title=Text("$other")
+    "#]]
+    .assert_eq(&with("\"", "$other"));
+    expect![[r#"
+        2:17-18 warning S2026: no component uses the property `n` of the composite
+          help: remove it, or use its value in a component with `source="$n"`
+        R (example.Reader) title=Text("3 $n")
+    "#]]
+    .assert_eq(&with("\"", "3 $n"));
+}
+
 #[test]
 fn a_name_with_a_blank_is_told_once_wherever_it_is_used() {
     let robot = |target: &str| {

@@ -194,3 +194,71 @@ fn conditions_of_other_languages_are_told_in_this_one() {
           fix: replace `2` with `02` [2:120-121 "02"]
     "#]].assert_eq(&["%02d", "2"].map(named).concat());
 }
+
+#[test]
+fn a_function_is_told_by_its_name() {
+    let with = |value: &str| {
+        of(&robot("R${index}", &format!("<property name=\"number\">${{{value}}}</property>"))
+            .replacen("<component", "<component saoms:count=\"1\"", 1))
+    };
+    expect![[r#"
+        3:27-30 error S2045: there is no function `max` (in `R1`, index 1)
+          help: expressions have operators and parentheses, and no functions
+        3:31-34 error S2045: there is no function `abs` (in `R1`, index 1)
+          help: expressions have operators and parentheses, and no functions
+        3:35-38 error S2045: `not` must be before a comparison (in `R1`, index 1)
+          help: write `(not ...)`
+    "#]]
+    .assert_eq(&["max(index, 2)", "2 * abs (index)", "index + not(index)"].map(with).concat());
+}
+
+/// What is wrong in a composite is one mistake, however often the composite is used.
+#[test]
+fn a_task_id_of_two_components_is_told_once_for_all_sites() {
+    let clock = |name: &str| {
+        format!(
+            "<component name=\"{name}\"><implementation.java class=\"example.Clock\"/>\n<property name=\"ID\">C</property><property name=\"period\">1</property></component>"
+        )
+    };
+    let site = |name: &str| {
+        format!(
+            "<component name=\"{name}\" saoms:site=\"{name}\"><implementation.composite name=\"t:inner\"/></component>"
+        )
+    };
+    let outer = part("outer", "xmlns:saoms=\"urn:saoms:1\"", &(site("N") + &site("S")));
+    let inner = part("inner", "", &(clock("A") + &clock("B")));
+    expect![[r#"
+        inner:4:21-22 warning S4001: components `N/A` and `N/B` share the ID `C`
+          inner:3:21-22 the first
+          help: give each its own ID: messages and reports name tasks by their ID
+        N/A (example.Clock)
+        N/B (example.Clock)
+        S/A (example.Clock)
+        S/B (example.Clock)
+    "#]]
+    .assert_eq(&outcome(&[&outer, &inner], &[]));
+}
+
+#[test]
+fn an_expression_that_nobody_reads_and_makes_ids_equal_is_told_once() {
+    let used = |number: u8| {
+        format!(
+            "<component name=\"U{number}\"><implementation.composite name=\"t:inner\"/><property name=\"n\">{number}</property></component>"
+        )
+    };
+    let outer = part("outer", "", &[1, 2, 3].map(used).concat());
+    let inside = "<implementation.java class=\"example.Robot\"/><property name=\"ID\">R${n}</property><property name=\"period\">1</property><property name=\"number\" source=\"$n\"/>";
+    let inner = part(
+        "inner",
+        "",
+        &format!("<property name=\"n\" mustSupply=\"true\"/>\n<component name=\"R\">{inside}</component>"),
+    );
+    expect![[r#"
+        inner:3:85-90 error S3013: components `U1/R` and `U2/R` have the same `ID` `R${n}`
+          2:18-20 used here
+          2:124-126 used here
+          help: `${...}` is evaluated only in components with a `saoms:count`: put the value together in the component around it, and take it with `source`
+          help: give every robot its own `ID`
+          help: both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`
+    "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
+}
