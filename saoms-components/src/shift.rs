@@ -24,7 +24,8 @@ pub struct ShiftProperties {
 /// Schedules other components in shifts: it starts them, and they stop after the time that it gives them.
 ///
 /// Their `runOnStartup` is `false`, so that they wait for their first shift. Its reference `tasks` leads to any
-/// periodic component. A new shift starts in the first execution that is due at its time or later.
+/// periodic component. A new shift starts in the first execution that is due at its time or later. The first
+/// one starts, and is counted from, no earlier than the first execution, which a `delay` can put off.
 #[derive(Debug, Class)]
 #[class(name = "saoms.Shift", periodic)]
 pub struct Shift {
@@ -34,6 +35,8 @@ pub struct Shift {
     tasks: Vec<TaskInterfaceReference>,
     /// Time of the next shift; `None` after the last one.
     next: Option<Time>,
+    /// True from the first execution on.
+    is_on_duty: bool,
     /// End of the present shift.
     ends: Option<Time>,
     begun: u32,
@@ -48,6 +51,9 @@ impl Component for Shift {
     }
 
     fn execute(&mut self, context: &mut Context<'_>) -> Result<(), Failure> {
+        if !std::mem::replace(&mut self.is_on_duty, true) {
+            self.next = self.next.max(Some(context.now()));
+        }
         let is_due = |time: &Time| *time <= context.now();
         let (due, is_over) = (self.next.filter(is_due), self.ends.take_if(|end| is_due(end)).is_some());
         // Another shift without a pause goes on with the same components.

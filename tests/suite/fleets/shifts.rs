@@ -26,6 +26,18 @@ fn luggage_of_two_shifts_waits_for_help_at_once() {
     }
 }
 
+/// A `delay` puts off the first shift and those that follow it; otherwise, shifts in the past would be cut short.
+#[test]
+fn a_delay_puts_off_the_first_shift() {
+    let text = shifts(
+        "at 1s luggage (3,1) to (5,5)\nat 90s luggage (2,2) to (2,6)",
+        "<property name=\"delay\" value=\"20s\"/>",
+    );
+    let run = Fleet::of_text(text).run(0, Duration::from_mins(10));
+    let robot = run.components.iter().find(|component| component.name == "Robot2").unwrap();
+    assert_eq!(robot.executions, 450, "{:?}", run.log_of("Shift"));
+}
+
 /// The shipped fleet of shifts with other work and another first shift.
 fn shifts(work: &str, first: &str) -> String {
     let text = std::fs::read_to_string(crate::support::root().join("composites/shift.composite")).unwrap();
