@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use saoms_lang::diagnostic::{Diagnostic, Severity};
+use saoms_lang::diagnostic::{Diagnostic, Severity, codes};
 use saoms_lang::project::{INPUT, SET, SEVERITY};
 use saoms_tools::diagnostics::Human;
 use saoms_tools::graph::{Diagram, dot, mermaid, svg};
@@ -80,10 +80,17 @@ pub(crate) fn graph(arguments: &GraphArguments) -> Exit {
     let found: Vec<&Diagnostic> = compilation.reported().collect();
     let is_of_option = |one: &&&Diagnostic| matches!(sources.get(one.location.file).path(), SET | SEVERITY);
     let of_options: Vec<&Diagnostic> = found.iter().filter(is_of_option).copied().collect();
+    // A file of the command that is not there has no part in a picture.
+    let is_unread = |one: &&&Diagnostic| {
+        let path = Path::new(sources.get(one.location.file).path());
+        one.code == &codes::FILE_NOT_FOUND && one.location.span.end == 0 && fleet.files.iter().any(|file| file == path)
+    };
+    let unread: Vec<&Diagnostic> = found.iter().filter(is_unread).copied().collect();
+    let refused = [of_options, unread].concat();
     let census = match &compilation.output {
-        Some(census) if !contribution.composites().is_empty() && of_options.is_empty() => census,
+        Some(census) if !contribution.composites().is_empty() && refused.is_empty() => census,
         _ => {
-            let shown = if of_options.is_empty() { found } else { of_options };
+            let shown = if refused.is_empty() { found } else { refused };
             eprint_coloured(&Human::of(shown, sources, io::stderr().is_terminal()));
             return Exit::WrongInput;
         }

@@ -76,6 +76,8 @@ fn mistakes_are_drawn_and_what_is_no_composite_is_told() {
     );
     let (code, picture, error) = graph(&[&file("page.composite", "<html><body/></html>")]);
     assert!((code, picture.as_str()) == (2, "") && error.contains("error[S1001]"), "{error}");
+    let (code, picture, error) = graph(&["composites/hall.composite", "no-such.png"]);
+    assert!((code, picture.as_str()) == (2, "") && error.starts_with("error[S0001]"), "{error}");
     let (code, _, error) = graph(&["composites/hall.composite", "-o", "hall.jpeg"]);
     assert!(code == 2 && error.contains("`hall.jpeg` is not that of a format"), "{error}");
     let (code, _, error) = graph(&["composites/hall.composite", "-o", "no/such/folder/hall.svg"]);
