@@ -62,6 +62,7 @@ pub(crate) fn install() {
         stray::install();
         watch_ends();
         signals::keep_for(libc::SIGPIPE, "SIGPIPE", UseAs::Pipe);
+        signals::keep_for(libc::SIGCHLD, "SIGCHLD", UseAs::Child);
         present::look_after(look);
         keep_from_libraries();
         hardware::prepare();

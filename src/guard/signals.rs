@@ -1,6 +1,6 @@
-//! Signals that the program handles: those that end a run, those of a crash, and that of a reader that went away. Code
-//! of a library may take them over or block them, as middleware for robots does; nobody could end the run any more, or
-//! would hear of a crash.
+//! Signals that the program handles: those that end a run, those of a crash, that of a reader that went away, and that
+//! of a command that ended. Code of a library may take them over or block them, as middleware for robots does; nobody
+//! could end the run any more, or would hear of a crash.
 
 use std::ffi::c_int;
 use std::mem::MaybeUninit;
@@ -24,6 +24,8 @@ pub(super) enum UseAs {
     End,
     Crash,
     Pipe,
+    /// To hear how commands ended.
+    Child,
 }
 
 static KEPT: Mutex<Vec<Kept>> = Mutex::new(Vec::new());
@@ -113,8 +115,9 @@ pub(super) fn take_back(who: &str, place: &str) {
             // Runtimes of other languages need theirs: those of Go and Java find null pointers so.
             UseAs::Crash if is_function => "a crash may not be reported with the name of the library",
             UseAs::Crash => "crashes are reported with the name of the library again",
-            UseAs::Pipe if is_function => continue,
+            UseAs::Pipe | UseAs::Child if is_function => continue,
             UseAs::Pipe => "it is ignored again",
+            UseAs::Child => "the ends of commands are heard again",
         };
         if kept.use_as != UseAs::Crash || !is_function {
             // SAFETY: the action was that of the program before.
@@ -136,7 +139,7 @@ pub(super) fn unblock(who: &str, place: &str) {
         libc::pthread_sigmask(libc::SIG_BLOCK, ptr::null(), &raw mut now);
         libc::sigemptyset(&raw mut back);
         for kept in KEPT.lock().unwrap_or_else(PoisonError::into_inner).iter() {
-            if kept.use_as != UseAs::Pipe && libc::sigismember(&raw const now, kept.signal) == 1 {
+            if matches!(kept.use_as, UseAs::End | UseAs::Crash) && libc::sigismember(&raw const now, kept.signal) == 1 {
                 libc::sigaddset(&raw mut back, kept.signal);
                 blocked.push(kept.name);
             }

@@ -58,7 +58,8 @@ fn input(text: &str) -> io::Result<File> {
     Ok(file)
 }
 
-fn wait(child: &mut Child, run: &End) -> Result<(), String> {
+/// Waits until a command has ended; `Err` says how it failed.
+pub(super) fn wait(child: &mut Child, run: &End) -> Result<(), String> {
     let begun = Instant::now();
     loop {
         match child.try_wait() {
@@ -73,6 +74,8 @@ fn wait(child: &mut Child, run: &End) -> Result<(), String> {
                 return Err("it did not end before the run did".to_owned());
             }
             Ok(None) => thread::sleep(LOOK),
+            // It has ended, and other code of the process has taken its status: nobody knows it.
+            Err(error) if error.raw_os_error() == Some(libc::ECHILD) => return Ok(()),
             Err(error) => return Err(error.to_string()),
         }
     }

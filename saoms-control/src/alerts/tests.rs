@@ -265,6 +265,16 @@ fn a_command_that_cannot_be_started_is_told() {
     assert_eq!(alerts.list.finish(LONG), 1);
 }
 
+/// Other code of the process can wait for any child, or let the system forget how they ended.
+#[test]
+fn a_command_whose_end_somebody_else_took_has_ended() {
+    let mut child = std::process::Command::new("true").spawn().unwrap();
+    let mut status = 0;
+    // SAFETY: the status is written to where there is room for it.
+    unsafe { libc::waitpid(libc::pid_t::try_from(child.id()).unwrap(), &raw mut status, 0) };
+    assert_eq!(super::command::wait(&mut child, &delivery::End::default()), Ok(()));
+}
+
 #[test]
 fn a_token_that_no_header_can_hold_is_none() {
     for wrong in ["", "two words", "line\r\nX: y", "grün", &"x".repeat(1025)] {

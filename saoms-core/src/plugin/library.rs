@@ -1,6 +1,8 @@
 //! The code of a library.
 
-use std::ffi::{c_int, c_void};
+use std::ffi::{CStr, OsStr, OsString, c_int, c_void};
+use std::mem::MaybeUninit;
+use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -24,9 +26,14 @@ pub(super) fn load(path: &Path, metadata: &Metadata, text: &str) -> Result<Code,
     let _entered = enter(owner, Function::Load);
     let library = loaded(path).map_err(unloadable)?;
     let table = {
+        let missing = |why: &str| unloadable(format!("it has no function `{}`: {why}", metadata.entry));
         // SAFETY: by the rules of the boundary, what the metadata call the entry is a function of this type.
-        let entry: Symbol<EntryPoint> = unsafe { library.get(metadata.entry.as_bytes()) }
-            .map_err(|error| unloadable(format!("it has no function `{}`: {}", metadata.entry, with_causes(&error))))?;
+        let entry: Symbol<EntryPoint> =
+            unsafe { library.code.get(metadata.entry.as_bytes()) }.map_err(|error| missing(&with_causes(&error)))?;
+        // The system also finds those of the libraries that it depends on, such as `_exit`.
+        if !library.has(*entry as usize) {
+            return Err(missing("it is one of another library"));
+        }
         note_code(name, *entry as usize);
         // SAFETY: the same.
         unsafe { entry(VERSION) }
@@ -114,11 +121,33 @@ fn note_code(library: &'static str, address: usize) {
     unsafe { libc::dl_iterate_phdr(Some(look), (&raw mut asked).cast()) };
 }
 
+/// A library that is loaded.
+struct Loaded {
+    code: Library,
+    /// The name of the file that it was loaded from, which no other library has.
+    file: Option<OsString>,
+}
+
+impl Loaded {
+    /// True if this address lies in it.
+    fn has(&self, address: usize) -> bool {
+        let mut about = MaybeUninit::<libc::Dl_info>::zeroed();
+        // SAFETY: all zeros are such a value; where the call finds something, it has written a name that stays.
+        let name = unsafe {
+            if libc::dladdr(address as *const c_void, about.as_mut_ptr()) == 0 {
+                return false;
+            }
+            CStr::from_ptr(about.assume_init().dli_fname)
+        };
+        Path::new(OsStr::from_bytes(name.to_bytes())).file_name() == self.file.as_deref()
+    }
+}
+
 /// The code of a file: that which is loaded already, if it is the same file.
-fn loaded(path: &Path) -> Result<&'static Library, String> {
+fn loaded(path: &Path) -> Result<&'static Loaded, String> {
     /// Device, inode, size, and the times of the last change of content and file.
     type Stamp = (u64, u64, u64, [i64; 4]);
-    static LOADED: Mutex<Vec<(Stamp, &'static Library)>> = Mutex::new(Vec::new());
+    static LOADED: Mutex<Vec<(Stamp, &'static Loaded)>> = Mutex::new(Vec::new());
     let about = fs::metadata(path).map_err(|error| error.to_string())?;
     let times = [about.mtime(), about.mtime_nsec(), about.ctime(), about.ctime_nsec()];
     let stamp = (about.dev(), about.ino(), about.size(), times);
@@ -132,7 +161,9 @@ fn loaded(path: &Path) -> Result<&'static Library, String> {
     // SAFETY: whoever names a library wants its code to run; its metadata say that it was made for this program.
     let library = unsafe { Library::open(Some(&copy.path), FLAGS) };
     // Never unloaded: its functions, texts and threads are in use until the program ends.
-    let library: &'static Library = Box::leak(Box::new(library.map_err(|error| why(&error, &copy.path))?));
+    let code = library.map_err(|error| why(&error, &copy.path))?;
+    let file = copy.path.file_name().map(ToOwned::to_owned);
+    let library: &'static Loaded = Box::leak(Box::new(Loaded { code, file }));
     loaded.push((stamp, library));
     Ok(library)
 }

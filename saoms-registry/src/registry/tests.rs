@@ -149,6 +149,15 @@ fn a_malformed_declaration_is_refused_with_its_class() {
         malformed("the bound `soon` of property `patience` is not a duration")
     );
     assert_eq!(
+        refused(|eye| {
+            eye["properties"][1]["default"] = json!(null);
+            eye["properties"][1]["min"] = json!("9.5");
+        }),
+        malformed(
+            "property `reach` can have no value: `9.5` is out of range: expected a number from 9.5 to below 1.0 [m]"
+        )
+    );
+    assert_eq!(
         refused(|eye| eye["properties"][1]["name"] = json!("number")),
         malformed("property `number` is declared twice")
     );

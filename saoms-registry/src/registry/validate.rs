@@ -136,6 +136,9 @@ fn properties(all: &[PropertyDeclaration]) -> Result<(), String> {
                 return Err(format!("the bound `{bound}` of property `{name}` is not a {}", property.kind.name()));
             }
         }
+        if let Some(min) = &property.min {
+            property.check(min).map_err(|message| format!("property `{name}` can have no value: {message}"))?;
+        }
         properties(&property.properties)?;
     }
     Ok(())

@@ -232,6 +232,8 @@ static void act_on_process(const char *does) {
         signal(SIGSEGV, SIG_DFL);
     } else if (strcmp(does, "resets SIGPIPE") == 0) {
         signal(SIGPIPE, SIG_DFL);
+    } else if (strcmp(does, "ignores SIGCHLD") == 0) {
+        signal(SIGCHLD, SIG_IGN);
     } else if (strcmp(does, "takes SIGINT") == 0) {
         signal(SIGINT, SIG_IGN);
     } else if (strcmp(does, "aborts later") == 0) {

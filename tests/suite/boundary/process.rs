@@ -218,6 +218,10 @@ fn signals_that_a_library_takes_over_or_blocks_at_its_start_are_given_back_by_na
         ),
         ("made: resets SIGPIPE", "took over the signal SIGPIPE in the constructor: it is ignored again"),
         (
+            "made: ignores SIGCHLD",
+            "took over the signal SIGCHLD in the constructor: the ends of commands are heard again",
+        ),
+        (
             "made: takes SIGSEGV",
             "took over the signal SIGSEGV in the constructor: a crash may not be reported with the name of the library",
         ),

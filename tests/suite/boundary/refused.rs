@@ -221,6 +221,8 @@ fn a_library_that_lacks_another_library() {
 fn a_library_whose_code_is_not_what_its_metadata_say() {
     let path = from_c("empty", Some(METADATA), &[]);
     assert_says(&refused(&path), &["empty.so` (from-c) cannot be loaded: it has no function `enter`"]);
+    let path = from_c("foreign", Some(&METADATA.replace("\"enter\"", "\"_exit\"")), &["-Wl,--no-as-needed", "-lc"]);
+    assert_says(&refused(&path), &["it has no function `_exit`: it is one of another library"]);
     let path = said("entry2.so", "saoms_plugin_test_good", b"saoms_plugin_test_bood");
     assert_says(&refused(&path), &["it has no function `saoms_plugin_test_bood`"]);
 }
