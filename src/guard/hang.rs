@@ -15,6 +15,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// The time between two looks.
 const LOOK: Duration = Duration::from_millis(250);
 
+/// What still runs after so long is named where the program ends in spite of it.
+const MOMENT: Duration = Duration::from_millis(50);
+
 /// Begins to watch, on a thread of its own.
 pub(super) fn watch() -> io::Result<()> {
     start_thread("saoms-hang", look_for_ever).map(drop)
@@ -49,7 +52,17 @@ fn waits(owner: &Owner, function: Function) -> String {
 }
 
 /// What the program waits for now, if it is code of a library; for the message of a program that ends in spite of it.
+/// An execution that goes on in the meantime is named, too: a run that ends waits for it.
 pub(crate) fn waited_for() -> Option<String> {
-    let calls = everywhere().into_iter().filter_map(|(_, call)| call);
-    calls.filter(|(_, function)| function.holds_up()).map(|(owner, function)| waits(owner, function)).next()
+    let told = |(owner, function)| Some(waits(owner, function));
+    let before = everywhere();
+    let calls = before.iter().filter_map(|(_, call)| *call);
+    if let Some((owner, function)) = calls.clone().find(|(_, function)| function.holds_up()) {
+        return told((owner, function));
+    }
+    calls.clone().next()?;
+    thread::sleep(MOMENT);
+    let after = everywhere();
+    let lasts = before.iter().zip(&after).find(|((number, _), (now, call))| number == now && call.is_some());
+    lasts.and_then(|(_, (_, call))| *call).and_then(told)
 }

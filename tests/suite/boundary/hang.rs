@@ -3,7 +3,7 @@
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use tempfile::TempDir;
 
@@ -20,9 +20,14 @@ fn hanging(subcommand: &[&str], at: &str) -> Waiting {
     waiting(subcommand, &folder, &library)
 }
 
-fn waiting(subcommand: &[&str], folder: &TempDir, library: &Path) -> Waiting {
+fn started(subcommand: &[&str], folder: &TempDir, library: &Path) -> Command {
     let mut command = command(subcommand);
     command.current_dir(folder.path()).args(["t.composite", "--plugin"]).arg(library);
+    command
+}
+
+fn waiting(subcommand: &[&str], folder: &TempDir, library: &Path) -> Waiting {
+    let mut command = started(subcommand, folder, library);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let mut errors = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();
@@ -36,6 +41,16 @@ fn waiting(subcommand: &[&str], folder: &TempDir, library: &Path) -> Waiting {
 fn signal(child: &Child, signal: i32) {
     // SAFETY: `kill` takes no pointers; the process is our own child, not yet waited for.
     assert_eq!(unsafe { libc::kill(i32::try_from(child.id()).unwrap(), signal) }, 0);
+}
+
+/// Sends signals until the process has ended.
+fn end(child: &mut Child) {
+    signal(child, libc::SIGINT);
+    // Two would be one if they came together.
+    while child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        signal(child, libc::SIGINT);
+    }
 }
 
 #[test]
@@ -68,16 +83,30 @@ fn a_library_that_hangs_while_it_is_loaded_is_told() {
 fn a_start_that_hangs_ends_at_the_second_signal() {
     let (mut child, mut errors, line) = hanging(&["run", "--grace", "1h"], "initialize");
     assert!(line.contains("waits for `initialize` of component `Bad` of library `"), "{line}");
-    signal(&child, libc::SIGINT);
-    // Both would be one if they came together.
-    while child.try_wait().unwrap().is_none() {
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        signal(&child, libc::SIGINT);
-    }
+    end(&mut child);
     let mut last = String::new();
     while errors.read_line(&mut last).unwrap() > 0 {}
     assert_eq!(child.wait().unwrap().code(), Some(130), "{last}");
     assert!(last.contains("error: interrupted while the program waits for `initialize` of component `Bad`"), "{last}");
+}
+
+#[test]
+fn a_component_that_hangs_is_told_at_the_second_signal() {
+    let folder = in_folder(&component("Bad", "c.Actor", &(property("at", "execute") + &property("does", "hang"))));
+    let library = c_library(folder.path(), &[]);
+    let mut command = started(&["run", "--grace", "1h"], &folder, &library);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut output = BufReader::new(child.stdout.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("an execution takes longer than") {
+        line.clear();
+        assert!(output.read_line(&mut line).unwrap() > 0, "it ended without a word");
+    }
+    end(&mut child);
+    let told = std::io::read_to_string(child.stderr.take().unwrap()).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{told}");
+    let expected = "error: interrupted while the program waits for `execute` of component `Bad` of library `";
+    assert!(told.contains(expected), "{expected} is missing in\n{told}");
 }
 
 #[test]
