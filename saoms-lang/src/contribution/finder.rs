@@ -112,6 +112,29 @@ pub enum SideFile {
     ComponentType(Option<Box<ComponentType>>),
 }
 
+/// Names that people give to the description of a contribution, which is not found by them.
+const NEAR_DESCRIPTIONS: [&str; 6] = [
+    "contribution.xml", "sca_contribution.xml", "sca-contributions.xml", "sca.contribution.xml",
+    "SCA-Contribution.xml", "sca-contribution.xml.txt",
+];
+
+/// Reports a file in a folder without a description that is meant as one: what it says would be passed over silently.
+pub(super) fn misnamed_in(folder: &Path, context: &mut ReadContext<'_>) {
+    let mut named = NEAR_DESCRIPTIONS.iter().map(|name| folder.join(name));
+    let is_meant = |path: &PathBuf| {
+        path.is_file()
+            && head::root(path, context.sources.open())
+                .is_some_and(|(local, namespace)| local == "contribution" && is_of_sca(namespace.as_deref()))
+    };
+    if let Some(path) = named.find(is_meant) {
+        misnamed(&path, context);
+    }
+}
+
+fn is_of_sca(namespace: Option<&str>) -> bool {
+    namespace.is_some_and(|namespace| Version::from_namespace(namespace).is_some())
+}
+
 /// Reports the description of a contribution in a file where none is looked for.
 fn misnamed(path: &Path, context: &mut ReadContext<'_>) {
     if DESCRIPTIONS.iter().any(|name| path.ends_with(name)) {

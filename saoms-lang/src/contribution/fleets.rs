@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::finder::Finder;
+use super::finder::{Finder, misnamed_in};
 use super::index::{DEPLOYABLES, Index, describes};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes, nearest, quoted};
 use crate::limits::ASKED_FOLDER_ENTRIES;
@@ -57,6 +57,9 @@ impl Finder {
             let contents = self.index.contents(&root);
             waiting.extend(contents.folders.into_iter().rev());
             let description = Description::of(&root, context);
+            if description.is_none() {
+                misnamed_in(&root, context);
+            }
             let contribution = Files::read(contents.composites, context);
             let repeated = contribution.repeated(describes(&root), context);
             self.repeated.extend(repeated.iter().map(|path| identity(path)));

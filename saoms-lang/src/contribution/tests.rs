@@ -95,3 +95,22 @@ fn below_the_root_of_the_file_system_nothing_is_searched() {
     let mut index = Index::new(OpenTexts::default());
     assert_eq!(index.folders(Path::new("/"), |_| true).0, [Path::new("/")]);
 }
+
+#[test]
+fn a_description_of_another_name_is_told_in_a_folder() {
+    let told = |name: &str, text: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("fleet.composite"), composite("fleet", &[])).unwrap();
+        fs::write(folder.path().join(name), text).unwrap();
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        Finder::new(OpenTexts::default()).load_folder(folder.path(), MAX_SIZE, &mut sources, &mut diagnostics);
+        diagnostics.iter().map(|one| format!("{} {}", one.code.id, one.help.join("; "))).collect::<String>()
+    };
+    let text = format!("<contribution xmlns='{}'/>", Version::Osoa10.namespace());
+    let expected = "S1001 rename the file to `sca-contribution.xml`";
+    assert_eq!(told("sca_contribution.xml", &text), expected);
+    assert_eq!(told("contribution.xml", &text), expected);
+    assert_eq!(told("sca-contribution.xml", &text), "");
+    // Other programs have contributions of their own.
+    assert_eq!(told("contribution.xml", "<contribution/>"), "");
+}

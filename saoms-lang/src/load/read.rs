@@ -100,7 +100,10 @@ pub(crate) fn value(path: &Path, max_size: u64, written: &Text, open: &OpenTexts
         let mut one = failure.diagnostic(path, max_size, named, &VALUE);
         if one.code == &codes::FILE_NOT_FOUND {
             let with_slashes = written.replace('\\', "/");
-            if with_slashes != written.as_str() {
+            if written.contains("${") {
+                one.help
+                    .insert(0, "the path of a `file` has no expressions: `${...}` is not evaluated in it".to_owned());
+            } else if with_slashes != written.as_str() {
                 // What it leads to is one file.
                 if Path::new(&path.display().to_string().replace('\\', "/")).is_file() {
                     one.help.clear();

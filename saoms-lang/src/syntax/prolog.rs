@@ -3,6 +3,7 @@
 use super::characters::{is_local_name, name_length};
 use super::document::TokenKind;
 use super::fault::Input;
+use super::unseen::looks_like;
 use super::value::is_space;
 use crate::diagnostic::{Diagnostic, Edit, codes, quoted};
 use crate::limits::SUGGESTED_EDITS;
@@ -20,7 +21,12 @@ pub(super) fn instruction(input: Input<'_>, start: u32, end: u32) -> Option<Diag
         }
         let message = "the XML declaration is not at the very start of the file";
         let one = input.fault(&codes::XML_DECLARATION, start, end, message);
-        if !input.slice(first, start).trim().is_empty() {
+        let before = input.slice(first, start);
+        // That there is text before the root element is reported.
+        if before.contains(|sign: char| !is_space(sign)) && !before.contains('<') {
+            return None;
+        }
+        if !before.trim().is_empty() {
             return Some(one);
         }
         let gap = input.at(first, start);
@@ -132,7 +138,13 @@ fn declaration(input: Input<'_>, start: u32, end: u32) -> Option<Diagnostic> {
         }
         let item = at + (text.len() - trimmed.len()) as u32;
         let Some((name_len, value, len)) = pseudo_attribute(trimmed) else {
-            return fault(item, end, "expected `version`, `encoding` or `standalone` here".to_owned());
+            let one = fault(item, end, "expected `version`, `encoding` or `standalone` here".to_owned());
+            let meant: String = trimmed.chars().map(|sign| looks_like(sign).unwrap_or(sign)).collect();
+            let is_better = meant != trimmed && pseudo_attribute(&meant).is_some();
+            return one.map(|one| match is_better {
+                true => one.suggest(format!("replace it with {}", quoted(&meant)), input.at(item, end), meant),
+                false => one,
+            });
         };
         let name = &trimmed[..name_len];
         let position = expected.iter().position(|known| *known == name);

@@ -282,13 +282,17 @@ pub(crate) fn with_index(text: &str) -> String {
 /// A text with the index in place of what looks like it.
 pub(crate) fn as_index(text: &str) -> Option<String> {
     /// Other spellings of it.
-    const WRITTEN: [(&str, &str); 6] = [
+    const WRITTEN: [(&str, &str); 10] = [
         ("#{index", "${index"),
         ("$(index)", "${index}"),
         ("%index%", "${index}"),
         ("$index", "${index}"),
         ("{index", "${index"),
         ("[index]", "${index}"),
+        ("%d", "${index}"),
+        ("%02d", "${index:02}"),
+        ("%03d", "${index:03}"),
+        ("{}", "${index}"),
     ];
     if text.contains("{{index") {
         return Some(text.replace("{{index", "${index").replace("}}", "}"));

@@ -70,6 +70,8 @@ fn what_is_not_well_formed_is_found_at_its_place() {
         "<!DOCTYPE a [<!ENTITY x '<a/>",
         "<!doctype a><a/>",
         "<a><?xml version='1.0'?></a>",
+        "x <?xml version='1.0'?><a/>",
+        "<?xml version=\u{201d}1.0\u{201d}?><a/>",
         "<?xml?><a/>",
         "<?xml encoding='UTF-8'?><a/>",
         "<?xml version='2.0'?><a/>",
@@ -226,6 +228,10 @@ fn what_is_not_well_formed_is_found_at_its_place() {
             1:1 [<!doctype] S0110 a document type declaration is not allowed here
         <a><?xml version='1.0'?></a>
             1:4 [<?xml version='1.0'?>] S0111 the XML declaration is not at the very start of the file
+        x <?xml version='1.0'?><a/>
+            1:1 [x] S0104 text outside of the root element
+        <?xml version=”1.0”?><a/>
+            1:7 [version=”1.0”] S0111 expected `version`, `encoding` or `standalone` here | replace it with `version="1.0"`
         <?xml?><a/>
             1:3 [xml] S0111 the XML declaration must start with `version`
         <?xml encoding='UTF-8'?><a/>
