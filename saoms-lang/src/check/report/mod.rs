@@ -33,6 +33,8 @@ pub(crate) struct Report<'a> {
     /// Diagnostics about replicas, and where each is by its place and code.
     copies: Vec<ReplicaDiagnostic>,
     known_copies: HashMap<(Location, &'static str), usize>,
+    /// What is not to be said of replicas, since something else says it better.
+    withdrawn_copies: HashSet<(Location, &'static str)>,
     /// The lines of tables that are about replicas that are there.
     lines: HashSet<Location>,
     /// Diagnostics about lines without a replica: the same composite may have the replica where it is there another
@@ -69,6 +71,7 @@ impl<'a> Report<'a> {
             help: None,
             copies: Vec::new(),
             known_copies: HashMap::new(),
+            withdrawn_copies: HashSet::new(),
             lines: HashSet::new(),
             lines_without_replica: Vec::new(),
         }
@@ -85,6 +88,9 @@ impl<'a> Report<'a> {
     /// Withdraws what was reported of this code at this place, since something else says it better.
     pub(crate) fn withdraw(&mut self, code: &'static Code, at: Location) {
         self.diagnostics.withdraw(code, at);
+        if self.known_copies.contains_key(&(at, code.id)) {
+            self.withdrawn_copies.insert((at, code.id));
+        }
     }
 
     /// Lets what follows be about the replica of this path, or a component inside one, which has no index of its own.
@@ -146,6 +152,9 @@ impl<'a> Report<'a> {
             }
         }
         for kept in std::mem::take(&mut self.copies) {
+            if self.withdrawn_copies.contains(&(kept.one.location, kept.one.code.id)) {
+                continue;
+            }
             let ReplicaDiagnostic { mut one, first: Copied { path, index }, more, .. } = kept;
             // What is reported of a component around them at this place is the same mistake.
             if self.said.contains(&said(&one)) {

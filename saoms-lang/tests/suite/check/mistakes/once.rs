@@ -261,4 +261,13 @@ fn an_expression_that_nobody_reads_and_makes_ids_equal_is_told_once() {
           help: give every robot its own `ID`
           help: both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`
     "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
+    let replicas = used(1).replace("\"U1\"", "\"U${index}\" saoms:count=\"3\"").replace(">1<", ">${index}<");
+    let outer = part("outer", "xmlns:saoms=\"urn:saoms:1\"", &replicas);
+    expect![[r#"
+        inner:3:85-90 error S3013: components `U1/R` and `U2/R` have the same `ID` `R${n}` (and in 1 more)
+          2:18-27 used here
+          help: `${...}` is evaluated only in components with a `saoms:count`: put the value together in the component around it, and take it with `source`
+          help: give every robot its own `ID`
+          help: both take this value from here: give each use of the composite a value of its own, or make it a site with `saoms:site`
+    "#]].assert_eq(&outcome(&[&outer, &inner], &[]));
 }
