@@ -1,8 +1,8 @@
 //! The end of the process, or of a thread of the program, by code of a library: a failure, whatever exit code it gives.
 //!
-//! `exit`, `_exit`, `_Exit`, `quick_exit`, `daemon`, `pthread_exit` and `pthread_cancel` are defined here, where the linker
-//! finds them before those of the system when it binds a library. What calls the system itself (`exit_group`) cannot be
-//! seen.
+//! `exit`, `_exit`, `_Exit`, `quick_exit`, `daemon`, `pthread_exit` and `pthread_cancel` are defined here, where the
+//! linker finds them before those of the system when it binds a library. What calls the system itself (`exit_group`)
+//! cannot be seen.
 
 use std::ffi::{c_int, c_void};
 use std::mem::transmute;

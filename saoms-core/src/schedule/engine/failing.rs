@@ -1,5 +1,5 @@
-//! Failures of components: told before the instance is dropped, whose destructor may hang, and handled afterwards by the
-//! policy of the component.
+//! Failures of components: told before the instance is dropped, whose destructor may hang, and handled afterwards by
+//! the policy of the component.
 
 use std::time::Duration;
 
