@@ -29,6 +29,7 @@ use crate::validation::MessageValidator;
 use player::Player;
 
 pub use player::ScenarioEvent;
+pub(crate) use scenario::bare_times;
 pub use scenario::{Continuation, EventSpec, Line, RandomRange, Scenario, Spanned, Spot, continuations};
 
 /// Properties of an environment.

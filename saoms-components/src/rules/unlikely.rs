@@ -8,13 +8,15 @@ use saoms_api::rule::{Code, ComponentView, FleetRule, FleetView, Severity};
 use saoms_api::{Finding, Place};
 
 use super::robots::{FleetRobot, robots};
+use crate::environment::{Environment, bare_times};
+use crate::text::bytes;
 
 pub(super) static RULE: FleetRule = FleetRule {
     code: Code {
         id: "S5020",
         name: "unlikely-value",
         meaning: "A value probably has the wrong unit: a component has a period of more than a minute or a time of less than a \
-            millisecond, or a robot starts with a battery of 1 % or less.",
+            millisecond, a scenario a time of less than 100 without a unit, or a robot starts with a battery of 1 % or less.",
         severity: Severity::Warning,
         rule: None,
     },
@@ -33,7 +35,30 @@ fn check(fleet: &FleetView<'_>) -> Vec<Finding> {
     let mut findings = long_periods(fleet);
     findings.extend(short_times(fleet));
     findings.extend(fractions(fleet));
+    findings.extend(scenario_times(fleet));
     findings
+}
+
+/// Findings about times of scenarios that are probably given in seconds: one for each text.
+fn scenario_times(fleet: &FleetView<'_>) -> Vec<Finding> {
+    let texts = fleet.all::<Environment>().flat_map(|(index, properties)| {
+        let texts = properties.scenario.into_iter().enumerate();
+        texts.map(move |(place, text)| (index, place, text))
+    });
+    let finding = |(index, place, text): (usize, usize, String)| {
+        let mut times = bare_times(&text);
+        let first = times.next()?;
+        let also = match times.count() {
+            0 => String::new(),
+            more => format!(" (and so are {more} more here)"),
+        };
+        let message = format!("`{first}` is a time in milliseconds, since it has no unit{also}");
+        let place = Place::property("scenario").part(place, bytes(&text, first)).in_component(index);
+        let meant = |unit: &str| first.split("..").map(|end| format!("{end}{unit}")).collect::<Vec<_>>().join("..");
+        let (seconds, exact) = (meant("s"), meant("ms"));
+        Some(Finding::new(place, message).help(format!("write `{seconds}` for seconds, or `{exact}`")))
+    };
+    texts.filter_map(finding).collect()
 }
 
 /// The components of this crate; the class of a plugin may have reasons for a value.

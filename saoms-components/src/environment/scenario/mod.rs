@@ -1,5 +1,6 @@
 //! Scenarios: lines of events, as `docs/scenarios.md` describes them.
 
+mod bare_times;
 mod complete;
 mod continuation;
 mod event;
@@ -15,6 +16,7 @@ use std::time::Duration;
 
 use saoms_api::Finding;
 
+pub(crate) use bare_times::bare_times;
 pub use continuation::{Continuation, continuations};
 pub use random::{RandomRange, Spot};
 pub(in crate::environment) use vocabulary::Vocabulary;
