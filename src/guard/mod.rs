@@ -38,8 +38,9 @@ static ENDS: AtomicBool = AtomicBool::new(false);
 
 static INSTALLED: Once = Once::new();
 
-/// How long the program waits for the ends of its threads with thread-local variables of libraries.
-const THREADS_PATIENCE: Duration = Duration::from_millis(200);
+/// How long the program waits for the ends of its threads with thread-local variables of libraries, and how long while
+/// one of their destructors runs.
+const THREADS_PATIENCE: (Duration, Duration) = (Duration::from_millis(200), Duration::from_secs(5));
 
 /// How long what libraries printed with the functions of C may take to be written at the end.
 const FLUSH_PATIENCE: Duration = Duration::from_millis(200);
@@ -123,7 +124,10 @@ pub(crate) fn ends_by_itself() {
 pub(crate) fn exit(code: i32) -> ! {
     let mut code = code;
     if INSTALLED.is_completed() {
-        thread_end::wait(THREADS_PATIENCE);
+        if let Some(owner) = thread_end::wait(THREADS_PATIENCE) {
+            let place = Function::ThreadEnd.place();
+            eprint(&format!("warning: {} has not returned {place}\n", owner.text));
+        }
         look_again();
         if code == Exit::Done as i32 && has_failed() {
             code = Exit::Failed as i32;

@@ -9,7 +9,7 @@ use std::ffi::{c_int, c_void};
 use std::mem::transmute;
 use std::ptr;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicPtr, AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -39,14 +39,23 @@ thread_local! {
 /// The number of threads for whose end destructors of libraries wait.
 static WITH_LIBRARY: AtomicUsize = AtomicUsize::new(0);
 
+/// The number of destructors of libraries that run, and the library of the last one that began.
+static RUNNING: AtomicUsize = AtomicUsize::new(0);
+static LAST: AtomicPtr<Owner> = AtomicPtr::new(ptr::null_mut());
+
 /// Waits for the ends of other threads that call destructors of libraries, as those of a run that has ended: what these
-/// do is told. Not for long: some threads end with the process.
-pub(super) fn wait(patience: Duration) {
+/// do is told. Not for long: some threads end with the process. Longer for a destructor that runs: a panic in it needs
+/// time to be told. The library of one that still runs.
+pub(super) fn wait((patience, running): (Duration, Duration)) -> Option<&'static Owner> {
     let own = usize::from(HAS_OF_LIBRARY.get());
-    let deadline = Instant::now() + patience;
-    while WITH_LIBRARY.load(Ordering::SeqCst) > own && Instant::now() < deadline {
+    let start = Instant::now();
+    let is_patient = || start.elapsed() < if RUNNING.load(Ordering::SeqCst) > 0 { running } else { patience };
+    while WITH_LIBRARY.load(Ordering::SeqCst) > own && is_patient() {
         thread::sleep(LOOK);
     }
+    // SAFETY: what is noted there lasts as long as the program.
+    let last = unsafe { LAST.load(Ordering::SeqCst).as_ref() };
+    last.filter(|_| RUNNING.load(Ordering::SeqCst) > 0)
 }
 
 /// The time between two looks.
@@ -124,10 +133,16 @@ unsafe extern "C" fn run(_: *mut c_void) {
         // SAFETY: it was made by `Box::into_raw`, and is taken out of the list once.
         let node = unsafe { Box::from_raw(NEWEST.get()) };
         NEWEST.set(node.before);
-        RUNS.set(library_at(node.destructor as usize).map(Owner::of_library));
+        let library = library_at(node.destructor as usize).map(Owner::of_library);
+        if let Some(library) = library {
+            LAST.store(ptr::from_ref(library).cast_mut(), Ordering::SeqCst);
+            RUNNING.fetch_add(1, Ordering::SeqCst);
+        }
+        RUNS.set(library);
         // SAFETY: its code is of the program or of a library that is never unloaded; the pointer is its own.
         unsafe { (node.destructor)(node.of) };
         RUNS.set(None);
+        RUNNING.fetch_sub(usize::from(library.is_some()), Ordering::SeqCst);
     }
     if HAS_OF_LIBRARY.take() {
         WITH_LIBRARY.fetch_sub(1, Ordering::SeqCst);

@@ -132,6 +132,13 @@ fn a_panic_that_no_call_contains_names_the_library() {
     let run = second(&acts("execute", "local"), &libraries());
     assert!(run.text.contains("` crashed in the destructor of a thread-local variable: SIGABRT"), "{}", run.text);
     assert_ne!(run.code, Some(0), "{}", run.text);
+    // One that does not return is not waited for without end.
+    let run = second(&acts("execute", "endless local"), &libraries());
+    let expected = format!(
+        "warning: library `{}` has not returned in the destructor of a thread-local variable\n",
+        library("bad").display()
+    );
+    assert!(run.text.contains(&expected), "{}", run.text);
     // What a call contains is told by its failure alone.
     assert!(!beside_honest(&acts("execute", "panic")).text.contains(&of_library));
 }

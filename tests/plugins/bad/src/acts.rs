@@ -25,6 +25,19 @@ thread_local! {
     static LOCAL: RefCell<Option<Nasty>> = const { RefCell::new(None) };
 }
 
+/// Its destructor does not return.
+struct Endless;
+
+impl Drop for Endless {
+    fn drop(&mut self) {
+        thread::sleep(Duration::from_secs(3600));
+    }
+}
+
+thread_local! {
+    static ENDLESS: RefCell<Option<Endless>> = const { RefCell::new(None) };
+}
+
 /// Held for ever.
 static LOCK: Mutex<()> = Mutex::new(());
 
@@ -68,6 +81,7 @@ pub fn act(does: &str, place: &str) -> Result<(), Failure> {
             (0..10_000).for_each(|_| one());
         }
         "local" => LOCAL.set(Some(Nasty(1))),
+        "endless local" => ENDLESS.set(Some(Endless)),
         "local of a thread" => drop(thread::spawn(|| LOCAL.set(Some(Nasty(1)))).join()),
         "lock" => {
             let _held = LOCK.lock();
