@@ -82,6 +82,7 @@ fn a_component_that_hangs_is_shown_as_it_was_and_the_others_answer() {
     // It runs on a worker thread from now on, and is asked there.
     let status = handle.status();
     assert!(status.components[0].values_s.unwrap() > 0.7, "{status:?}");
-    assert_eq!(status.components[0].in_code_s, None);
+    // Beside other work it may be in its next execution, for a moment.
+    assert!(status.components[0].in_code_s.is_none_or(|time| time < 0.5), "{status:?}");
     let _ = fleet.run_to_end();
 }
