@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::Loader;
 use super::children::is_known;
 use super::other_words::{
-    given_already, is_class_beside_implementation, is_class_of_component, is_class_without_implementation, is_word_for,
+    as_property, given_already, is_class_beside_implementation, is_class_without_implementation, is_word_for,
 };
 use super::vocabulary::{self, Holds, Kind, Known};
 use crate::diagnostic::{Diagnostic, Edit, Severity, codes, meant_boolean, nearest, quoted};
@@ -405,51 +405,6 @@ fn own_without_prefix(one: Diagnostic, attribute: Attribute<'_>, element: Elemen
     let edits = declaration.into_iter().chain([edit]).collect();
     one.help(format!("write it with a prefix of the namespace `{SAOMS_NAMESPACE}`: it is an attribute of SAOMS"))
         .suggest_edits(format!("replace {} with {}", quoted(attribute.name()), quoted(&whole)), edits)
-}
-
-/// Help for an attribute that may be meant as a property of a component, or as a reference to another one.
-fn as_property(one: Diagnostic, element: Element<'_>, attribute: Attribute<'_>) -> Diagnostic {
-    let (text, file) = (element.document().text(), element.document().file());
-    let (start, end) = match element.local_name() {
-        // However an empty one is written, there is nothing to do for it first.
-        "component" if element.children().next().is_some() => (element.span().start, element.start_tag_span().end),
-        "implementation.java" | "implementation.rust" => (element.span().start, element.span().end),
-        _ => return one,
-    };
-    let line = text[..start as usize].rfind('\n').map_or(0, |at| at + 1);
-    let indent = Some(&text[line..start as usize]).filter(|indent| indent.trim().is_empty());
-    let deeper = if element.local_name() == "component" { "  " } else { "" };
-    let gap = indent.map(|indent| format!("\n{indent}{deeper}")).unwrap_or_default();
-    let prefix = element.prefix().map(|prefix| format!("{prefix}:")).unwrap_or_default();
-    let (name, value) = (attribute.name(), attribute.raw_value());
-    let target = attribute.trimmed();
-    let target = target.split('/').next().unwrap_or_default();
-    let is_named = |one: Element<'_>| one.attribute("name").is_some_and(|name| name.value().trim() == target);
-    let is_reference = element.parent().is_some_and(|around| around.children().any(is_named));
-    let has_class = || element.children().any(|child| child.local_name().starts_with("implementation."));
-    let is_class = is_class_of_component(attribute) && !has_class();
-    let (what, written) = match is_reference {
-        _ if is_class => ("an implementation", format!("<{prefix}implementation.rust class=\"{value}\"/>")),
-        true => ("a reference", format!("<{prefix}reference name=\"{name}\" target=\"{value}\"/>")),
-        false => ("a property", format!("<{prefix}property name=\"{name}\">{value}</{prefix}property>")),
-    };
-    let before = text[..attribute.name_span().start as usize].trim_end().len() as u32;
-    let whole = Span::new(before, attribute.value_span().end + 1).in_file(file);
-    let remove = Edit { location: whole, replacement: String::new() };
-    if let Some(given) = element.children().find(|child| child.local_name() == "property" && has_name(*child, name)) {
-        let text = given.attribute("value").map(Attribute::trimmed).or_else(|| given.trimmed_text());
-        return match text.is_some_and(|text| text.value == attribute.trimmed().value) {
-            true => one.suggest_edits("remove it: the component has this property", vec![remove]),
-            false => one.label(given.name_location(), "the property").help("keep one of the two, as a property"),
-        };
-    }
-    let edits = vec![remove, Edit { location: Span::empty(end).in_file(file), replacement: format!("{gap}{written}") }];
-    one.suggest_edits(format!("write it as {what}: {}", quoted(&written)), edits)
-}
-
-/// True if an element has this name.
-fn has_name(element: Element<'_>, name: &str) -> bool {
-    element.attribute("name").is_some_and(|given| given.value().trim() == name)
 }
 
 /// True if a name can start with this.
