@@ -4,8 +4,9 @@ use std::ops::Range;
 use std::time::Duration;
 
 use saoms_api::Time;
-use saoms_core::fault::{MessageFault, MessageFaultKind, TaskFault, TaskFaultKind};
-use saoms_lang::assembly::{Assembly, Traffic};
+use saoms_api::event::fault::{FaultCall, FaultKind, Rate};
+use saoms_core::fault::TimedFault;
+use saoms_lang::assembly::{Assembly, fault_subjects};
 
 use crate::Fleet;
 
@@ -32,9 +33,8 @@ impl Fleet {
     /// assert_eq!(robot.missed, 49, "all that were due while the execution ran, but the last");
     /// ```
     #[must_use]
-    pub fn slow(mut self, component: &str, at: Duration, lasting: Duration) -> Fleet {
-        self.faults.tasks.push(task_fault(component, at, TaskFaultKind::Stalls(lasting)));
-        self
+    pub fn slow(self, component: &str, at: Duration, lasting: Duration) -> Fleet {
+        self.with(at, FaultCall::new(FaultKind::Stall).lasting(lasting).to(component))
     }
 
     /// The same fleet, in which the first execution of a component at a time of the run or later is a failure. Its
@@ -51,13 +51,12 @@ impl Fleet {
     /// assert_eq!(run.components.iter().find(|one| one.name == "World").unwrap().failures, 1);
     /// ```
     #[must_use]
-    pub fn fail(mut self, component: &str, at: Duration) -> Fleet {
-        self.faults.tasks.push(task_fault(component, at, TaskFaultKind::Fails));
-        self
+    pub fn fail(self, component: &str, at: Duration) -> Fleet {
+        self.with(at, FaultCall::new(FaultKind::Fail).to(component))
     }
 
-    /// The same fleet, in which messages of a topic that are sent in this part of the run reach no reader. The topic
-    /// has the name that it has after `topicRename`.
+    /// The same fleet, in which messages of a topic that are sent in this part of the run reach no other component. The
+    /// topic has the name that it has after `topicRename`.
     ///
     /// ```
     /// use std::time::Duration;
@@ -76,54 +75,66 @@ impl Fleet {
     /// ```
     #[must_use]
     pub fn lose(self, topic: &str, during: Range<Duration>) -> Fleet {
-        self.disturb(topic, during, MessageFaultKind::Lost)
+        self.disturb(topic, during, FaultKind::Violate(Rate::ALL))
     }
 
     /// The same fleet, in which messages of a topic that are sent in this part of the run reach it later by this time.
     #[must_use]
     pub fn delay(self, topic: &str, during: Range<Duration>, by: Duration) -> Fleet {
-        self.disturb(topic, during, MessageFaultKind::Late(by))
+        self.disturb(topic, during, FaultKind::Delay(by, by))
     }
 
     /// The same fleet, in which messages of a topic that are sent in this part of the run reach it twice.
     #[must_use]
     pub fn duplicate(self, topic: &str, during: Range<Duration>) -> Fleet {
-        self.disturb(topic, during, MessageFaultKind::Duplicated)
+        self.disturb(topic, during, FaultKind::Duplicate(Rate::ALL))
     }
 
-    fn disturb(mut self, topic: &str, during: Range<Duration>, kind: MessageFaultKind) -> Fleet {
-        let (from, until) = (time(during.start), time(during.end));
-        self.faults.messages.push(MessageFault { topic: topic.to_owned(), from, until, kind });
+    /// The same fleet with a fault as a scenario writes it, from a time of the run on.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    ///
+    /// use saoms_components as _;
+    /// use saoms_testkit::Fleet;
+    ///
+    /// let fleet = Fleet::of_file("../composites/hall.composite");
+    /// let cut = fleet.with_fault(Duration::from_secs(1), "for 5s cut Robot7 from Master");
+    /// let run = cut.run(0, Duration::from_secs(60));
+    /// assert_eq!(run.count("luggage.delivered"), 1, "the request comes later");
+    /// ```
+    ///
+    /// # Panics
+    /// The line is none of a fault.
+    #[must_use]
+    #[expect(clippy::panic, reason = "a test with a slip in its fault has failed")]
+    pub fn with_fault(self, at: Duration, line: &str) -> Fleet {
+        match FaultCall::read(line) {
+            Ok(call) => self.with(at, call),
+            Err(fault) => panic!("the fault `{line}`: {fault}"),
+        }
+    }
+
+    fn disturb(self, topic: &str, during: Range<Duration>, kind: FaultKind) -> Fleet {
+        let lasting = during.end.saturating_sub(during.start);
+        self.with(during.start, FaultCall::new(kind).lasting(lasting).on(topic))
+    }
+
+    fn with(mut self, at: Duration, call: FaultCall) -> Fleet {
+        self.faults.push(TimedFault::new(time(at), call));
         self
     }
 
     /// Checks that faults are of components and topics that the fleet has: a slip would let every test pass.
     #[expect(clippy::panic, reason = "a test with faults of nothing has failed")]
     pub(crate) fn expect_faults_to_apply(&self, assembly: &Assembly) {
-        if self.faults.is_empty() {
-            return;
-        }
-        let components: Vec<&str> = assembly.components.iter().map(|one| one.path.as_str()).collect();
-        let traffic = Traffic::of(assembly);
-        let topics: Vec<&str> = traffic.topics.iter().map(|topic| topic.name.as_str()).collect();
-        for fault in &self.faults.tasks {
-            let name = &fault.component;
-            assert!(
-                components.contains(&name.as_str()),
-                "a fault is of the component `{name}`, but the fleet has {}",
-                components.join(", ")
-            );
-        }
-        for MessageFault { topic, .. } in &self.faults.messages {
-            if !topics.contains(&topic.as_str()) {
-                panic!("a fault is of the topic `{topic}`, but the fleet has {}", topics.join(", "));
+        let subjects = fault_subjects(&assembly.components);
+        for TimedFault { call, .. } in &self.faults {
+            if let Err(fault) = subjects.check(call) {
+                panic!("the fault `{call}`: {fault}");
             }
         }
     }
-}
-
-fn task_fault(component: &str, at: Duration, kind: TaskFaultKind) -> TaskFault {
-    TaskFault { component: component.to_owned(), at: time(at), kind }
 }
 
 fn time(since_start: Duration) -> Time {

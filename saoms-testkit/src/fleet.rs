@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use saoms_core::fault::Faults;
+use saoms_core::fault::TimedFault;
 use saoms_core::observe::Observer;
 use saoms_core::plugin::Search;
 use saoms_core::report::RunReport;
@@ -27,7 +27,7 @@ pub struct Fleet {
     settings: Vec<String>,
     variables: Vec<(String, String)>,
     severities: Vec<String>,
-    pub(crate) faults: Faults,
+    pub(crate) faults: Vec<TimedFault>,
 }
 
 #[derive(Clone, Debug)]

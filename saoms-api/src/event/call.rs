@@ -50,7 +50,12 @@ impl Word {
         Word { text: text[bytes.clone()].to_owned(), bytes }
     }
 
-    fn moved(&mut self, by: usize) {
+    /// A word that stands in no text.
+    pub(super) fn unplaced(text: &str) -> Word {
+        Word { text: text.to_owned(), bytes: 0..0 }
+    }
+
+    pub(super) fn moved(&mut self, by: usize) {
         self.bytes = self.bytes.start + by..self.bytes.end + by;
     }
 }

@@ -40,6 +40,7 @@
 
 mod call;
 mod draw;
+pub mod fault;
 mod field;
 mod known;
 mod receiver;

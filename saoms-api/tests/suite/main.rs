@@ -5,5 +5,6 @@
 mod author;
 mod components;
 mod declarations;
+mod faults;
 mod refused;
 mod view;

@@ -7,7 +7,7 @@ use saoms_api::host::SharedMessage;
 ///
 /// Messages are numbered from 0. Messages that all readers have read are removed in batches, so that neither publishing
 /// nor reading looks at other readers.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct EventLog {
     /// The number of the first message held.
     first: u64,
@@ -18,6 +18,7 @@ pub(super) struct EventLog {
     tidy_at: usize,
 }
 
+#[derive(Clone)]
 struct EventReader {
     /// The number of the next message to read.
     next: u64,
@@ -61,6 +62,18 @@ impl EventLog {
                 (self.readers.len() - 1) as u32
             }
         }
+    }
+
+    /// Frees the places of all readers but one.
+    pub(super) fn keep(&mut self, place: Option<u32>) {
+        self.free.clear();
+        for (other, reader) in (0..).zip(&mut self.readers) {
+            if Some(other) != place {
+                reader.queue = 0;
+                self.free.push(other);
+            }
+        }
+        self.tidy();
     }
 
     pub(super) fn resize(&mut self, place: u32, queue: usize) {

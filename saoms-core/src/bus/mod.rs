@@ -12,6 +12,7 @@
 
 mod events;
 mod hash;
+mod links;
 mod regions;
 #[cfg(test)]
 mod regions_tests;
@@ -27,6 +28,7 @@ use std::sync::Arc;
 use saoms_api::host::{SharedMessage, TopicDeclaration, TopicKind};
 use saoms_api::{Departed, Region};
 
+pub use links::Link;
 pub(crate) use state::MOST_KEYS;
 use topic::{BusTopic, ReadPosition};
 
@@ -35,16 +37,27 @@ use topic::{BusTopic, ReadPosition};
 pub struct Bus {
     topics: Vec<BusTopic>,
     names: HashMap<Arc<str>, TopicId>,
+    /// Number of readers so far.
+    readers: u32,
 }
 
 /// A topic of a [`Bus`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TopicId(u32);
+
+impl TopicId {
+    /// Its number, in the order of the creation of topics.
+    pub fn number(self) -> u32 {
+        self.0
+    }
+}
 
 /// One reader's place in a topic. Give it back with [`Bus::unsubscribe`].
 #[derive(Debug)]
 pub struct TopicReader {
     topic: TopicId,
+    /// Its number among the readers of all topics.
+    number: u32,
     reader: ReadPosition,
     /// The component that the topic's messages trigger.
     triggers: Option<u32>,
@@ -112,7 +125,7 @@ impl Bus {
 
     /// Number of messages that wait for a reader of an event topic, and of those that may wait.
     pub fn waiting(&self, subscription: &TopicReader) -> Option<(u64, u64)> {
-        self.topics[subscription.topic.0 as usize].waiting(&subscription.reader)
+        self.topics[self.read_by(subscription)].waiting(&subscription.reader)
     }
 
     /// The schema of the topic's messages, as text.
@@ -140,17 +153,21 @@ impl Bus {
         let id = self.user(name, declared, by)?;
         let topic = &mut self.topics[id.0 as usize];
         let reader = topic.reader(queue);
-        Ok(TopicReader { topic: id, reader, triggers: None })
+        self.readers = self.readers.wrapping_add(1);
+        Ok(TopicReader { topic: id, number: self.readers, reader, triggers: None })
     }
 
     /// Takes a reader off its topic. Returns the number of messages that it lost since it last collected.
     pub fn unsubscribe(&mut self, subscription: TopicReader) -> u64 {
-        let topic = &mut self.topics[subscription.topic.0 as usize];
-        topic.users -= 1;
+        self.topics[subscription.topic.0 as usize].users -= 1;
+        let own = self.read_by(&subscription);
+        let topic = &mut self.topics[own];
         if let Some(place) = topic.triggers.iter().position(|number| Some(*number) == subscription.triggers) {
             topic.triggers.remove(place);
         }
-        topic.leave(subscription.reader)
+        let lost = topic.leave(subscription.reader);
+        self.forget(&subscription);
+        lost
     }
 
     /// Puts a message into a topic. False if a state topic cannot keep it, since its publisher has too many keys.
@@ -163,7 +180,8 @@ impl Bus {
     /// Notes that the messages that a reader gets trigger the component with this number.
     pub fn set_trigger(&mut self, subscription: &mut TopicReader, component: u32) {
         if subscription.triggers.replace(component).is_none() {
-            self.topics[subscription.topic.0 as usize].triggers.push(component);
+            let own = self.read_by(subscription);
+            self.topics[own].triggers.push(component);
         }
     }
 
@@ -198,14 +216,15 @@ impl Bus {
 
     /// True if there are messages that a reader has not collected.
     pub fn has_news(&self, subscription: &TopicReader) -> bool {
-        self.topics[subscription.topic.0 as usize].has_news(&subscription.reader)
+        self.topics[self.read_by(subscription)].has_news(&subscription.reader)
     }
 
     /// Appends the messages that are new to a reader, oldest first. Returns the number of messages that it lost since
     /// it last collected.
     #[inline]
     pub fn collect(&mut self, subscription: &mut TopicReader, inbox: &mut Vec<SharedMessage>) -> u64 {
-        self.topics[subscription.topic.0 as usize].collect(&mut subscription.reader, inbox)
+        let own = self.read_by(subscription);
+        self.topics[own].collect(&mut subscription.reader, inbox)
     }
 
     /// The same for a reader that has a region, with the messages that are not in it any more.
@@ -216,7 +235,8 @@ impl Bus {
         inbox: &mut Vec<SharedMessage>,
         departed: &mut Vec<Departed>,
     ) -> u64 {
-        self.topics[subscription.topic.0 as usize].collect_in_region(&subscription.reader, inbox, departed)
+        let own = self.read_by(subscription);
+        self.topics[own].collect_in_region(&subscription.reader, inbox, departed)
     }
 
     /// True if a reader gets the messages of a region alone.
@@ -227,14 +247,21 @@ impl Bus {
 
     /// Lets a reader get the messages of a region alone, of which at most `queue` events wait, or all again.
     pub fn set_region(&mut self, subscription: &mut TopicReader, region: Option<Region>, queue: usize) {
-        self.topics[subscription.topic.0 as usize].set_region(&mut subscription.reader, region, queue);
+        let own = self.read_by(subscription);
+        let topic = &mut self.topics[own];
+        let before = subscription.reader;
+        topic.set_region(&mut subscription.reader, region, queue);
+        if subscription.reader != before {
+            topic.readers.moved(subscription.number, subscription.reader);
+        }
     }
 
     /// Puts back what the last [`collect`](Bus::collect) put into an inbox. Events stay in the inbox, since their topic
     /// does not keep them; of a state topic the next collection has the newest messages. Returns the number of messages
     /// that left the inbox.
     pub fn put_back(&mut self, subscription: &mut TopicReader, inbox: &mut Vec<SharedMessage>) -> u64 {
-        if !self.topics[subscription.topic.0 as usize].put_back(&mut subscription.reader) {
+        let own = self.read_by(subscription);
+        if !self.topics[own].put_back(&mut subscription.reader) {
             return 0;
         }
         let back = inbox.len() as u64;
@@ -244,12 +271,14 @@ impl Bus {
 
     /// Resets a reader: on a state topic it gets all retained messages again, on an event topic it has lost none.
     pub fn rewind(&mut self, subscription: &mut TopicReader) {
-        self.topics[subscription.topic.0 as usize].rewind(&mut subscription.reader);
+        let own = self.read_by(subscription);
+        self.topics[own].rewind(&mut subscription.reader);
     }
 
     /// Gives a reader another bound for the events that wait for it.
     pub fn resize(&mut self, subscription: &TopicReader, queue: usize) {
-        self.topics[subscription.topic.0 as usize].resize(&subscription.reader, queue);
+        let own = self.read_by(subscription);
+        self.topics[own].resize(&subscription.reader, queue);
     }
 
     /// The topic that a subscription reads.

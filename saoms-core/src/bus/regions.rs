@@ -20,7 +20,7 @@ type Cell = (i32, i32);
 type Block = (i32, i32);
 
 /// The readers of a topic that have a region.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct RegionReaders {
     readers: Vec<RegionReader>,
     free: Vec<u32>,
@@ -31,6 +31,7 @@ pub(super) struct RegionReaders {
     entries: HashMap<Cell, Vec<u32>>,
 }
 
+#[derive(Clone)]
 struct RegionReader {
     region: Region,
     is_in_use: bool,
@@ -117,6 +118,14 @@ impl RegionReaders {
         reader.is_in_use = false;
         (reader.events, reader.known, reader.changed) = Default::default();
         std::mem::take(&mut reader.lost)
+    }
+
+    /// Removes all readers but one.
+    pub(super) fn keep(&mut self, place: u32) {
+        let others = (0..self.readers.len() as u32).filter(|other| *other != place);
+        for other in others.filter(|other| self.readers[*other as usize].is_in_use).collect::<Vec<_>>() {
+            self.leave(other);
+        }
     }
 
     /// Gives a reader another region.

@@ -18,6 +18,7 @@ pub(crate) const MOST_KEYS: u32 = 100_000;
 ///
 /// A change moves its entry to the end, whatever the number of readers. A reader walks back from the end to the last
 /// change it knows.
+#[derive(Clone)]
 pub(super) struct StateTable {
     entries: Vec<Entry>,
     /// Place of the message of a publisher and key.
@@ -28,6 +29,7 @@ pub(super) struct StateTable {
     changes: u64,
 }
 
+#[derive(Clone)]
 struct Entry {
     message: SharedMessage,
     change: u64,

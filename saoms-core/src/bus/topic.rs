@@ -5,6 +5,7 @@ use saoms_api::{Departed, Region};
 
 use super::Mismatch;
 use super::events::EventLog;
+use super::links::Readers;
 use super::regions::RegionReaders;
 use super::state::StateTable;
 use crate::hash::fold;
@@ -25,17 +26,20 @@ pub(super) struct BusTopic {
     schema: String,
     first_user: Arc<str>,
     store: Store,
+    /// Its readers, and those with links of their own.
+    pub(super) readers: Readers,
     /// The readers that have a region, once there was one.
     regions: Option<Box<RegionReaders>>,
 }
 
+#[derive(Clone)]
 enum Store {
     State(StateTable),
     Event(EventLog),
 }
 
 /// A reader's place in a topic.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ReadPosition {
     /// In a state topic: numbers of the last change that was read, and of that before the last collection.
     State { read: u64, before: u64 },
@@ -58,8 +62,47 @@ impl BusTopic {
             schema: declared.schema.to_owned(),
             first_user: Arc::clone(by),
             store: store(declared.kind),
+            readers: Readers::default(),
             regions: None,
         }
+    }
+
+    /// A copy without users, with what readers have not read.
+    pub(super) fn copied(&self) -> BusTopic {
+        BusTopic {
+            name: Arc::clone(&self.name),
+            name_hash: self.name_hash,
+            users: 0,
+            triggers: Vec::new(),
+            is_addressed: self.is_addressed,
+            observers: None,
+            message: self.message.clone(),
+            schema: self.schema.clone(),
+            first_user: Arc::clone(&self.first_user),
+            store: self.store.clone(),
+            readers: Readers::default(),
+            regions: self.regions.clone(),
+        }
+    }
+
+    /// Forgets all readers but one.
+    pub(super) fn keep_reader(&mut self, position: &ReadPosition) {
+        if let Store::Event(log) = &mut self.store {
+            log.keep(match position {
+                ReadPosition::Event(place) => Some(*place),
+                _ => None,
+            });
+        }
+        match (&mut self.regions, position) {
+            (Some(regions), ReadPosition::Region(place)) => regions.keep(*place),
+            _ => self.regions = None,
+        }
+    }
+
+    /// Forgets all messages.
+    pub(super) fn empty(&mut self) {
+        self.store = store(self.kind());
+        self.regions = None;
     }
 
     pub(super) fn schema(&self) -> &str {

@@ -1,88 +1,40 @@
 //! Fault injection: faults that are put into a run on purpose, to test how a fleet handles them.
 //!
 //! The engine looks for them at two places only: when an execution begins, and when messages go from their sender to
-//! their topic. An empty list costs one comparison there. In virtual time a run with faults is as deterministic as one
-//! without.
+//! their topic. Until the first fault begins, that costs one comparison. In virtual time a run with faults is as
+//! deterministic as one without: all chance is from the seed of the run, each fault with numbers of its own.
+//!
+//! Faults of messages act on links, the ways from a sender to a reader by a topic: a reader that is concerned reads a
+//! copy of the topic of its own ([`Bus::link`](crate::bus::Bus::link)). What is retained for late readers stays as it
+//! is, and so does what a component hears of itself.
 
+mod flight;
+mod named;
+mod play;
+mod tasks;
 #[cfg(test)]
 mod tests;
 
-use std::time::Duration;
-
 use saoms_api::Time;
+use saoms_api::event::fault::FaultCall;
 
-/// A list of faults.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Faults {
-    /// Faults of messages. Of several that apply to one message, the first counts.
-    pub messages: Vec<MessageFault>,
-    /// Faults of components. Of several that apply to one execution, the first counts.
-    pub tasks: Vec<TaskFault>,
-}
+pub(crate) use play::{Arrival, End, FaultPlay, OnLink};
+pub(crate) use tasks::TaskFault;
 
-/// A fault of the messages on a topic.
+/// A fault with the time at which it begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MessageFault {
-    /// The topic, by the name that it has after renaming.
-    pub topic: String,
-    /// The first instant at which messages are affected.
-    pub from: Time,
-    /// The first instant at which they are not affected any more.
-    pub until: Time,
-    /// Kind of the fault.
-    pub kind: MessageFaultKind,
-}
-
-/// Kinds of faults of messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MessageFaultKind {
-    /// They reach no reader.
-    Lost,
-    /// They reach their topic later by this duration.
-    Late(Duration),
-    /// They reach their topic twice.
-    Duplicated,
-}
-
-/// A fault of one execution of a component.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TaskFault {
-    /// The path of the component.
-    pub component: String,
-    /// The first execution that starts at this time or later is affected.
+pub struct TimedFault {
+    /// The time, in that of the run.
     pub at: Time,
-    /// Kind of the fault.
-    pub kind: TaskFaultKind,
+    /// The site whose components it concerns; empty for all components.
+    pub site: String,
+    /// The fault.
+    pub call: FaultCall,
 }
 
-/// Kinds of faults of executions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TaskFaultKind {
-    /// It returns an error.
-    Fails,
-    /// It panics.
-    Panics,
-    /// It takes longer by this duration: on the machine's clock, or in virtual time on that of the run. Meanwhile it is
-    /// busy for callers, and its due executions are late.
-    Stalls(Duration),
-}
-
-impl Faults {
-    /// True if there is no fault left.
-    #[inline]
-    pub fn is_empty(&self) -> bool {
-        self.messages.is_empty() && self.tasks.is_empty()
-    }
-
-    /// The fault of a message that is sent on this topic at this time.
-    pub(crate) fn of_message(&self, topic: &str, now: Time) -> Option<MessageFaultKind> {
-        let applies = |fault: &&MessageFault| fault.topic == topic && (fault.from..fault.until).contains(&now);
-        self.messages.iter().find(applies).map(|fault| fault.kind)
-    }
-
-    /// The fault of an execution that starts at this time. Each comes once.
-    pub(crate) fn take_of_execution(&mut self, component: &str, now: Time) -> Option<TaskFaultKind> {
-        let place = self.tasks.iter().position(|fault| fault.component == component && fault.at <= now)?;
-        Some(self.tasks.remove(place).kind)
+impl TimedFault {
+    /// A fault of a fleet without sites.
+    pub fn new(at: Time, call: FaultCall) -> TimedFault {
+        TimedFault { at, site: String::new(), call }
     }
 }

@@ -4,6 +4,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use saoms_api::event::EventCall;
+use saoms_api::event::fault::FaultCall;
 use saoms_api::{Level, Time};
 use saoms_lang::assembly::{Assembly, ComponentSpec};
 use saoms_lang::schema::Schema;
@@ -204,6 +205,14 @@ impl Handle {
     pub fn raise(&self, site: &str, call: &EventCall, at: Option<Time>, text: String) -> Result<(), RaiseError> {
         let messages = self.takers().messages(site, call).map_err(RaiseError::Wrong)?;
         if inject::raise(&self.shared, messages, at, text) { Ok(()) } else { Err(RaiseError::Ending) }
+    }
+
+    /// Puts a fault into the run at its time: of components of a site, or of all. `text` describes it in the journal.
+    ///
+    /// # Errors
+    /// It names what the fleet does not have, or the run ends.
+    pub fn disturb(&self, site: &str, call: &FaultCall, at: Option<Time>, text: String) -> Result<(), RaiseError> {
+        inject::add_fault(&self.shared, (site, call), at, text)
     }
 
     /// Keeps the run from ending for want of work until the returned value is dropped: more messages may come from

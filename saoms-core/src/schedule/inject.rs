@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
+use saoms_api::event::fault::FaultCall;
 use saoms_api::host::SharedMessage;
 use saoms_api::{Cause, Header, Level, Time};
+use saoms_lang::assembly::{ComponentSpec, fault_subjects};
 use saoms_lang::schema::Schema;
 use serde_json::Value;
 
@@ -13,8 +15,9 @@ use super::engine::{Engine, RunPhase};
 use super::order::PendingOrder;
 use super::shared::Shared;
 use super::speakers::ForeignSpeaker;
-use super::takers::EventMessage;
+use super::takers::{EventMessage, RaiseError};
 use crate::bus::TopicId;
+use crate::fault::TimedFault;
 use crate::journal::JournalEntry;
 use crate::observe::{Notification, Occurrence, SentMessage};
 
@@ -115,6 +118,8 @@ impl std::error::Error for InjectError {}
 pub(super) struct Injections {
     waiting: BTreeMap<(u64, u64), Due>,
     count: u64,
+    /// Number of those that are faults: the run does not wait for them.
+    faults: usize,
     /// Number of holds that keep the run from ending for want of work.
     pub(super) holds: usize,
 }
@@ -133,6 +138,8 @@ enum Due {
         text: String,
     },
     Order(Box<PendingOrder>),
+    /// A fault, and its line for the journal.
+    Fault(Box<TimedFault>, String),
     /// A message that a fault holds up.
     Late {
         topic: TopicId,
@@ -143,6 +150,15 @@ enum Due {
 }
 
 impl Injections {
+    /// The faults of a run that begins.
+    pub(super) fn of(faults: &[TimedFault]) -> Injections {
+        let mut all = Injections::default();
+        for fault in faults {
+            all.add(fault.at.as_nanos(), Due::Fault(Box::new(fault.clone()), fault.call.to_string()));
+        }
+        all
+    }
+
     #[inline]
     pub(super) fn earliest(&self) -> Option<u64> {
         self.waiting.first_key_value().map(|((when, _), _)| *when)
@@ -150,11 +166,12 @@ impl Injections {
 
     /// True if the run may end because no work is left.
     pub(super) fn are_over(&self) -> bool {
-        self.holds == 0 && self.waiting.is_empty()
+        self.holds == 0 && self.waiting.len() == self.faults
     }
 
     pub(super) fn clear(&mut self) {
         self.waiting.clear();
+        self.faults = 0;
     }
 
     pub(super) fn hold_up(&mut self, when: u64, topic: TopicId, message: SharedMessage) {
@@ -163,6 +180,7 @@ impl Injections {
 
     fn add(&mut self, when: u64, due: Due) {
         self.count += 1;
+        self.faults += usize::from(matches!(due, Due::Fault(..)));
         self.waiting.insert((when, self.count), due);
     }
 }
@@ -214,6 +232,27 @@ pub(super) fn raise(shared: &Shared, messages: Vec<EventMessage>, at: Option<Tim
     !is_ending
 }
 
+/// Checks a fault and queues it. `text` is its line for the journal.
+pub(super) fn add_fault(
+    shared: &Shared,
+    (site, call): (&str, &FaultCall),
+    at: Option<Time>,
+    text: String,
+) -> Result<(), RaiseError> {
+    let members: Vec<Arc<ComponentSpec>> = {
+        let engine = shared.lock();
+        if matches!(engine.phase, RunPhase::Stopping | RunPhase::Ended) {
+            return Err(RaiseError::Ending);
+        }
+        engine.slots.iter().filter(|slot| slot.is_member()).map(|slot| Arc::clone(&slot.spec)).collect()
+    };
+    let of_site = members.iter().map(AsRef::as_ref).filter(|spec| site.is_empty() || spec.site == site);
+    fault_subjects(of_site).check(call).map_err(RaiseError::Wrong)?;
+    let fault = TimedFault { at: at.unwrap_or_default(), site: site.to_owned(), call: call.clone() };
+    add(shared, at, Due::Fault(Box::new(fault), text));
+    Ok(())
+}
+
 /// Queues an order, which was checked.
 pub(super) fn add_order(shared: &Shared, at: Option<Time>, order: PendingOrder) {
     add(shared, at, Due::Order(Box::new(order)));
@@ -256,7 +295,16 @@ impl Engine {
                         break;
                     }
                 }
-                Due::Late { topic, message } => self.publish(topic, message, now),
+                Due::Fault(fault, text) => {
+                    self.injections.faults -= 1;
+                    self.record_outside(when, OUTSIDE_NAME, text);
+                    self.begin_fault(&fault.call, &fault.site, when);
+                }
+                Due::Late { topic, message } => {
+                    self.arrive(topic, message, now);
+                    // It has to be read before the run ends.
+                    delivered |= self.injections.are_over();
+                }
                 Due::Settled => self.end_if_done(now),
             }
         }
@@ -314,7 +362,7 @@ impl Engine {
             let sent = SentMessage { topic: name, component, message: message.clone() };
             self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
         }
-        self.publish(topic, message, time);
+        self.send(topic, message, time);
     }
 
     /// Writes an event to the journal, as the root of what follows from it.

@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use crate::fault::Faults;
+use crate::fault::TimedFault;
 
 /// Settings of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub struct Settings {
     /// Records that are older are overwritten and counted.
     pub journal: usize,
     /// Faults that are put into the run on purpose.
-    pub faults: Faults,
+    pub faults: Vec<TimedFault>,
 }
 
 /// Clock of a fleet.
@@ -60,7 +60,7 @@ impl Default for Settings {
             virtual_watchdog: Duration::from_secs(10),
             quiet: Duration::from_secs(60),
             journal: 65_536,
-            faults: Faults::default(),
+            faults: Vec::new(),
         }
     }
 }

@@ -1,18 +1,13 @@
 //! Components that call others whose code is running.
 
-use std::time::Duration;
-
-use saoms_api::Time;
-use saoms_core::fault::{Faults, TaskFault, TaskFaultKind};
 use saoms_core::schedule::Settings;
 
+use crate::fault::faults;
 use crate::fleet::{check, of, outcome, run, simulated, unindent};
 
 /// Settings under which an execution of `component` at 10 ms takes this long.
 fn slow(component: &str, milliseconds: u64, limit: u64) -> Settings {
-    let kind = TaskFaultKind::Stalls(Duration::from_millis(milliseconds));
-    let task = TaskFault { component: component.to_owned(), at: Time::from_nanos(10_000_000), kind };
-    Settings { faults: Faults { tasks: vec![task], ..Faults::default() }, ..simulated(limit) }
+    Settings { faults: faults(&[&format!("10 for {milliseconds}ms stall {component}")]), ..simulated(limit) }
 }
 
 fn check_slow(fleet: &str, settings: Settings, expected: &str) {

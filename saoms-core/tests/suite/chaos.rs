@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use proptest::prelude::*;
-use saoms_api::Time;
-use saoms_core::fault::{Faults, MessageFault, MessageFaultKind, TaskFault, TaskFaultKind};
+use saoms_core::fault::TimedFault;
 use saoms_core::schedule::Settings;
 
+use crate::fault::faults;
 use crate::fleet::{run, simulated};
 
 fn command() -> impl Strategy<Value = String> {
@@ -78,53 +78,36 @@ fn fleet() -> impl Strategy<Value = String> {
     })
 }
 
-fn milliseconds(time: u64) -> Time {
-    Time::from_nanos(time * 1_000_000)
+fn fault() -> impl Strategy<Value = String> {
+    let topic = prop_oneof![Just(""), Just(" on TALK"), Just(" on TABLE"), Just(" on OWN to C*")];
+    let ends = (0..6_u32, 0..6_u32);
+    let kind = (topic, ends, 0..40_u64, 0..=100_u32).prop_flat_map(|(topic, (one, other), time, rate)| {
+        prop_oneof![
+            Just(format!("for {time}ms lose {rate} %{topic}")),
+            Just(format!("for {time}ms violate {rate} %{topic}")),
+            Just(format!("for 30ms delay 2ms to {}ms{topic}", time + 2)),
+            Just(format!("for 60ms jitter {time}ms{topic}")),
+            Just(format!("duplicate {rate} %{topic}")),
+            Just(format!("reorder {rate} % by {time}ms{topic}")),
+            Just(format!("for {time}ms cut C{one} from C{other}")),
+            Just(format!("for {time}ms part C{one} from C{other}, C0")),
+            Just(format!("for 2ms stall C{one}")),
+            Just(format!("fail C{one}")),
+            Just(format!("crash C{one}")),
+            Just(format!("crash C{one} restart {time}ms")),
+            Just(format!("drift C{one} {}.5 %", rate / 3)),
+        ]
+    });
+    (0..150_u64, kind).prop_map(|(at, kind)| format!("{at} {kind}"))
 }
 
-prop_compose! {
-    fn task_fault()(component in 0..6_u32, at in 0..150_u64, kind in 0..3) -> TaskFault {
-        let kind = match kind {
-            0 => TaskFaultKind::Fails,
-            1 => TaskFaultKind::Panics,
-            _ => TaskFaultKind::Stalls(Duration::from_millis(2)),
-        };
-        TaskFault { component: format!("C{component}"), at: milliseconds(at), kind }
-    }
-}
-
-prop_compose! {
-    fn message_fault()(
-        topic in prop_oneof![Just("TALK"), Just("TABLE"), Just("OWN")],
-        from in 0..100_u64,
-        length in 0..50_u64,
-        kind in prop_oneof![
-            Just(MessageFaultKind::Lost),
-            (0..40_u64).prop_map(|time| MessageFaultKind::Late(Duration::from_millis(time))),
-            Just(MessageFaultKind::Duplicated),
-        ],
-    ) -> MessageFault {
-        MessageFault {
-            topic: topic.to_owned(),
-            from: milliseconds(from),
-            until: milliseconds(from + length),
-            kind,
-        }
-    }
-}
-
-prop_compose! {
-    fn faults()(
-        messages in prop::collection::vec(message_fault(), 0..4),
-        tasks in prop::collection::vec(task_fault(), 0..4),
-    ) -> Faults {
-        Faults { messages, tasks }
-    }
+fn some_faults() -> impl Strategy<Value = Vec<TimedFault>> {
+    prop::collection::vec(fault(), 0..5).prop_map(|lines| faults(&lines.iter().map(String::as_str).collect::<Vec<_>>()))
 }
 
 /// The outcome of a run, without the places of panics in the source.
-fn run_once(fleet: &str, faults: &Faults) -> (String, String) {
-    let (report, diary) = run(fleet, Settings { faults: faults.clone(), ..simulated(150) });
+fn run_once(fleet: &str, faults: &[TimedFault]) -> (String, String) {
+    let (report, diary) = run(fleet, Settings { faults: faults.to_vec(), ..simulated(150) });
     (serde_json::to_string_pretty(&report).unwrap(), diary.all_lines())
 }
 
@@ -132,7 +115,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_fleet_runs_to_an_end_and_twice_the_same(fleet in fleet(), faults in faults()) {
+    fn any_fleet_runs_to_an_end_and_twice_the_same(fleet in fleet(), faults in some_faults()) {
         prop_assert_eq!(run_once(&fleet, &faults), run_once(&fleet, &faults));
     }
 }
@@ -141,7 +124,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 16, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_fleet_runs_to_an_end_in_real_time(fleet in fleet(), faults in faults()) {
+    fn any_fleet_runs_to_an_end_in_real_time(fleet in fleet(), faults in some_faults()) {
         let limit = Some(Duration::from_millis(60));
         let settings = Settings { limit, grace: Duration::from_secs(20), faults, ..Settings::default() };
         let (report, _) = run(&fleet, settings);
@@ -155,7 +138,7 @@ proptest! {
 #[test]
 fn the_last_event_is_told_however_often_a_fleet_ends() {
     for run in 0..300 {
-        let (_, told) = run_once("C0 actor period=15", &Faults::default());
+        let (_, told) = run_once("C0 actor period=15", &[]);
         assert!(told.contains("has shut down"), "run {run}: {told}");
     }
 }

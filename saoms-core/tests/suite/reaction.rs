@@ -1,11 +1,8 @@
 //! Components that messages trigger.
 
-use std::time::Duration;
-
-use saoms_api::Time;
-use saoms_core::fault::{Faults, TaskFault, TaskFaultKind};
 use saoms_core::schedule::Settings;
 
+use crate::fault::faults;
 use crate::fleet::{check, of, outcome, real, run, simulated};
 
 #[test]
@@ -120,12 +117,7 @@ fn what_came_before_a_component_starts_or_while_it_was_gone_triggers_it() {
 
 #[test]
 fn a_reaction_that_finds_its_provider_busy_comes_again_with_its_messages() {
-    let task = TaskFault {
-        component: "P".to_owned(),
-        at: Time::from_nanos(10_000_000),
-        kind: TaskFaultKind::Stalls(Duration::from_millis(3)),
-    };
-    let settings = Settings { faults: Faults { tasks: vec![task], ..Faults::default() }, ..simulated(20) };
+    let settings = Settings { faults: faults(&["10 for 3ms stall P"]), ..simulated(20) };
     let fleet = "P actor period=10
          A actor period=10 publishes=TALK each=[1: say a]
          B actor period=100 delay=50 trigger=TALK minimum=1 subscribes=TALK peer=P reacts=[must-ask one; hear]";

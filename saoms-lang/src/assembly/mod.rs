@@ -2,6 +2,7 @@
 //!
 //! The checker makes an [`Assembly`], and only from input without errors; the plan and the scheduler take it as given.
 
+mod fault_subjects;
 mod run_policy;
 mod task;
 pub(crate) mod topic_list;
@@ -14,6 +15,7 @@ use std::sync::Arc;
 use saoms_api::host::PropertyValue;
 use smol_str::SmolStr;
 
+pub use fault_subjects::fault_subjects;
 pub use run_policy::{AlertCommand, AlertUrl, RunPolicy};
 pub use task::{Loss, OF_RESTART, Overrun, Restart, TaskProperties};
 pub use topic_list::TopicList;

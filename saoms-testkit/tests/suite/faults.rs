@@ -52,7 +52,10 @@ fn a_fault_of_nothing_is_a_slip_of_the_test() {
         cause.downcast_ref::<String>().unwrap().clone()
     };
     let topic = told(hall().lose("ELMTOPIC", seconds(0)..seconds(2)));
-    assert!(topic.starts_with("a fault is of the topic `ELMTOPIC`, but the fleet has ") && topic.contains("ELMSTOPIC"));
+    assert_eq!(
+        topic,
+        "the fault `for 2s violate 100 % on ELMTOPIC`: the fleet has no topic `ELMTOPIC`; did you mean `ELMSTOPIC`?"
+    );
     let component = told(hall().slow("Wrold", seconds(1), seconds(1)));
-    assert_eq!(component, "a fault is of the component `Wrold`, but the fleet has World, Environment, Master, Robot7");
+    assert_eq!(component, "the fault `for 1s stall Wrold`: the fleet has no component `Wrold`; did you mean `World`?");
 }

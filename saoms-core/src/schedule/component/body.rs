@@ -10,7 +10,7 @@ use super::lasting::Lasting;
 use super::spent::Spent;
 use super::unheard::Unheard;
 use crate::bus::{TopicId, TopicReader};
-use crate::fault::TaskFaultKind;
+use crate::fault::TaskFault;
 use crate::journal::Recorder;
 use crate::schedule::engine::failing::Told;
 use crate::schedule::engine::votes::Ballot;
@@ -92,7 +92,9 @@ pub(crate) struct Part {
     /// What was told of the failure of the present code, before the instance was dropped.
     pub(crate) told: Option<Told>,
     /// The fault of the present execution.
-    pub(crate) fault: Option<TaskFaultKind>,
+    pub(crate) fault: Option<TaskFault>,
+    /// The crash of the present execution, with the time to its restart.
+    pub(crate) crash: Option<Option<Duration>>,
     /// Records for the journal.
     pub(crate) recorder: Recorder,
     /// Specification of the component; the targets of its wires are slot numbers.
@@ -186,6 +188,7 @@ impl Body {
             blamed: None,
             told: None,
             fault: None,
+            crash: None,
             recorder: Recorder::default(),
             spec,
             held: true,
@@ -206,6 +209,9 @@ impl Body {
             _ if before.is_err() => before,
             Job::Execute => {
                 let fault = self.part.fault.take();
+                if let Some(TaskFault::Crash { restart }) = fault {
+                    self.part.crash = Some(restart);
+                }
                 let execute = |instance: &mut dyn DynComponent, context: &mut Context<'_>| {
                     fault.map_or(Ok(()), inject_fault)?;
                     instance.execute(context)
@@ -389,12 +395,11 @@ pub(crate) fn subject(name: &str) -> String {
 
 /// Carries out the injected fault of an execution.
 #[cold]
-fn inject_fault(fault: TaskFaultKind) -> Result<(), Failure> {
+fn inject_fault(fault: TaskFault) -> Result<(), Failure> {
     match fault {
-        TaskFaultKind::Fails => Err(Failure::new("this execution fails by fault injection")),
-        #[expect(clippy::panic, reason = "a panic is asked for")]
-        TaskFaultKind::Panics => panic!("this execution fails by fault injection"),
-        TaskFaultKind::Stalls(time) => {
+        TaskFault::Fail => Err(Failure::new("this execution fails by fault injection")),
+        TaskFault::Crash { .. } => Err(Failure::new("it crashes by fault injection")),
+        TaskFault::Stall(time) => {
             std::thread::sleep(time);
             Ok(())
         }

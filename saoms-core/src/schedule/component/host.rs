@@ -2,6 +2,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use saoms_api::event::fault::FaultCall;
 use saoms_api::event::{EventCall, STOP};
 use saoms_api::host::contain::contained;
 use saoms_api::host::present::about;
@@ -176,10 +177,17 @@ impl Host for ComponentHost<'_> {
                 engine.bus.rewind(&mut kept);
                 kept
             }
-            None => fresh,
+            None => {
+                engine.bus.register(&fresh, self.part.index);
+                fresh
+            }
         };
         if triggers {
             engine.bus.set_trigger(&mut subscription, self.part.index);
+        }
+        if !engine.faults.is_quiet() {
+            let topic = engine.bus.topic_of(&subscription);
+            engine.link(topic);
         }
         drop(engine);
         self.part.subscriptions.push(subscription);
@@ -221,6 +229,15 @@ impl Host for ComponentHost<'_> {
             return Ok(());
         }
         let refused = |fault: &dyn fmt::Display| Failure::new(format!("event `{event}`: {fault}"));
+        if FaultCall::is_one(event) {
+            let call = FaultCall::read(event).map_err(|fault| refused(&fault))?;
+            let mut engine = self.shared.lock();
+            engine.record_outside(self.part.now, &self.part.name, event.to_owned());
+            engine.begin_fault(&call, &self.part.spec.site, self.part.now);
+            self.shared.release(engine);
+            self.part.recorder.acted();
+            return Ok(());
+        }
         let call = EventCall::read(event).map_err(|fault| refused(&fault))?;
         let takers = self.shared.takers();
         let messages = match takers.take(&self.spec().site, &call.name.text) {

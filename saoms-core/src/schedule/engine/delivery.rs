@@ -1,17 +1,15 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use saoms_api::Level;
 use saoms_api::host::{SharedMessage, TopicKind};
-use saoms_api::{Level, Time};
 use saoms_lang::assembly::Loss;
 
 use super::{Engine, RunPhase};
 use crate::bus::{MOST_KEYS, TopicId};
-use crate::fault::MessageFaultKind;
 use crate::observe::{Notification, Occurrence, SentMessage};
 use crate::schedule::component::body::Part;
 use crate::schedule::inject::OUTSIDE_NAME;
-use crate::schedule::settings::nanos;
 
 impl Engine {
     /// Takes over the journal records of a component.
@@ -60,11 +58,7 @@ impl Engine {
                 self.notifications.push(Notification::Sent(sent, Arc::clone(observers)));
             }
             if self.phase == RunPhase::Running {
-                if self.faults.is_empty() {
-                    self.publish(topic, message, now);
-                } else {
-                    self.publish_with_faults(topic, message, now);
-                }
+                self.send(topic, message, now);
             }
         }
     }
@@ -76,6 +70,16 @@ impl Engine {
         part.vote.is_some_and(|vote| vote.is_done())
             && self.slots[part.index as usize].sees_work != Some(false)
             && part.outbox.iter().any(|(topic, _)| self.bus.kind(*topic) == TopicKind::Event)
+    }
+
+    /// Sends a message to the readers of its topic.
+    #[inline]
+    pub(crate) fn send(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
+        if self.faults.is_quiet() {
+            self.publish(topic, message, now);
+        } else {
+            self.send_with_faults(topic, message, now);
+        }
     }
 
     /// Puts a message into its topic, and triggers the components that react to it.
@@ -111,25 +115,6 @@ impl Engine {
         if slot.statistics.unkept == 1 {
             self.reasons.push(format!("component `{}` {keys}", slot.name));
             self.emit(now, sender, Occurrence::Log { level: Level::Warning, text: keys });
-        }
-    }
-
-    /// Publishes a message, or applies its injected fault.
-    #[cold]
-    fn publish_with_faults(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
-        match self.faults.of_message(self.bus.name(topic), Time::from_nanos(now)) {
-            Some(MessageFaultKind::Lost) => {}
-            Some(MessageFaultKind::Late(time)) => {
-                let when = now.saturating_add(nanos(time));
-                self.injections.hold_up(when, topic, message);
-                self.look_at = self.look_at.min(when);
-                self.wake |= when < self.roles.asleep_until;
-            }
-            Some(MessageFaultKind::Duplicated) => {
-                self.publish(topic, message.clone(), now);
-                self.publish(topic, message, now);
-            }
-            None => self.publish(topic, message, now),
         }
     }
 

@@ -1,12 +1,12 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use saoms_api::{Chance, Failure, Time};
+use saoms_api::{Chance, Failure};
 
 use super::overrun::Decision;
 use super::slot::{PendingRequest, SlotState};
 use super::{Engine, RunPhase};
-use crate::fault::TaskFaultKind;
+use crate::fault::TaskFault;
 use crate::hash::fold;
 use crate::observe::Occurrence;
 use crate::schedule::component::body::{Body, Job};
@@ -105,9 +105,12 @@ impl Engine {
         }
         slot.last_due = Some(due);
         part.due = due;
-        if !self.faults.is_empty() {
-            part.fault = self.faults.take_of_execution(&slot.name, Time::from_nanos(now));
-            if let (Some(TaskFaultKind::Stalls(time)), false) = (part.fault, self.real) {
+        if !self.faults.is_quiet() {
+            part.fault = self.faults.take_of_execution(index);
+            let period = slot.policy.period;
+            // A clock that goes wrong comes to its next period earlier, or later.
+            slot.due = slot.due.saturating_sub(period).saturating_add(self.faults.on_run(index, period, now));
+            if let (Some(TaskFault::Stall(time)), false) = (part.fault, self.real) {
                 part.fault = None;
                 slot.busy_until = now.saturating_add(nanos(time));
             }

@@ -40,10 +40,12 @@ impl Engine {
         let slot = &mut self.slots[index as usize];
         let longer = 1_u32.checked_shl(slot.restarts).unwrap_or(u32::MAX);
         let restart = (slot.restarts < slot.policy.restarts).then(|| slot.policy.backoff.saturating_mul(longer));
-        let restart = restart.filter(|_| self.stays(index, job));
+        // One that was made to crash starts again as that says, and is no failure of the run.
+        let crash = part.crash.take();
+        let restart = crash.unwrap_or(restart).filter(|_| self.stays(index, job));
         let slot = &mut self.slots[index as usize];
         let reason = format!("component `{}` failed: {message}", slot.name);
-        if restart.is_none() {
+        if restart.is_none() && crash.is_none() {
             self.reasons.extend(slot.overrun_failure.take());
             self.reasons.push(reason.clone());
         }

@@ -5,6 +5,7 @@ mod delivery;
 pub(super) mod ending;
 mod execution;
 pub(super) mod failing;
+pub(super) mod faults;
 pub(super) mod lifecycle;
 mod overrun;
 pub(super) mod queue;
@@ -38,7 +39,7 @@ use super::speakers::Speakers;
 use super::stop::Stops;
 use super::takers::Takers;
 use crate::bus::Bus;
-use crate::fault::Faults;
+use crate::fault::FaultPlay;
 use crate::journal::{OutsideRing, RecordQueue};
 use crate::observe::{Notification, Occurrence, RunEvent};
 
@@ -86,7 +87,7 @@ pub(crate) struct Engine {
     pub(crate) with_hardware: Vec<u32>,
     /// Counter of the journal's records.
     pub(crate) record_ids: Arc<AtomicU64>,
-    pub(crate) faults: Faults,
+    pub(crate) faults: FaultPlay,
     /// The takers of events since the last change of the fleet, once somebody asked for them; the number of changes.
     pub(crate) takers: (Option<Arc<Takers>>, u64),
     /// The components that say who they are in messages, once somebody asked for them since that change.
@@ -180,14 +181,14 @@ impl Engine {
             has_returned: false,
             ending: VecDeque::new(),
             ending_later: Vec::new(),
-            injections: Injections::default(),
+            injections: Injections::of(&settings.faults),
             orders: PendingOrders::default(),
             begun: NEVER,
             outside: OutsideRing::default(),
             stops: Arc::default(),
             with_hardware: Vec::new(),
             record_ids: Arc::default(),
-            faults: settings.faults.clone(),
+            faults: FaultPlay::new(settings.seed),
             takers: (None, 0),
             speakers: None,
             numbers: HashMap::new(),

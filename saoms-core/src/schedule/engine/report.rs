@@ -11,6 +11,10 @@ const REASON_NAMES: usize = 3;
 impl Engine {
     /// The report of a run that has ended.
     pub(crate) fn report(&self, sections: &Sections) -> RunReport {
+        let mut sections = sections.clone();
+        for (kind, count) in self.faults.counts() {
+            sections.add(&format!("faults.applied.{kind}"), i64::try_from(count).unwrap_or(i64::MAX));
+        }
         RunReport {
             seed: self.seed,
             time_s: self.ended.0 as f64 / 1e9,

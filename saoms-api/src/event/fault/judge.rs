@@ -1,0 +1,130 @@
+//! What a fault needs in a fleet.
+
+use super::{FaultCall, FaultKind, is_named};
+use crate::event::Word;
+use crate::extension::LineFault;
+use crate::rule::nearest;
+
+/// The components and topics of a fleet, which faults name.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FaultSubjects {
+    /// The paths of the components, each with whether it is periodic.
+    pub components: Vec<(String, bool)>,
+    /// The topics.
+    pub topics: Vec<SubjectTopic>,
+    /// False where the fleet may have others: what is not found is not wrong then.
+    pub is_complete: bool,
+}
+
+/// A topic of a fleet.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SubjectTopic {
+    /// Its name, as it is after renaming.
+    pub name: String,
+    /// The paths of the components that publish it.
+    pub writers: Vec<String>,
+    /// The paths of those that read it.
+    pub readers: Vec<String>,
+}
+
+impl FaultSubjects {
+    /// Judges the names of a fault.
+    ///
+    /// # Errors
+    /// The first name that means nothing, or a link that no message takes.
+    pub fn check(&self, call: &FaultCall) -> Result<(), LineFault> {
+        if !self.is_complete {
+            return Ok(());
+        }
+        for name in call.from.iter().chain(&call.to) {
+            self.component(name, !call.kind.is_of_messages())?;
+        }
+        if let Some(topic) = &call.topic {
+            self.topic(topic)?;
+        }
+        if call.kind.is_of_messages() { self.link(call) } else { Ok(()) }
+    }
+
+    fn component(&self, name: &Word, has_executions: bool) -> Result<(), LineFault> {
+        let mut named = self.components.iter().filter(|(path, _)| is_named(&name.text, path)).peekable();
+        if named.peek().is_some() {
+            if !has_executions || named.any(|(_, is_periodic)| *is_periodic) {
+                return Ok(());
+            }
+            let message = format!("component `{}` is passive: it has no executions", name.text);
+            return Err(LineFault::new(name.bytes.clone(), message).help("name the component that calls it"));
+        }
+        let fault = LineFault::new(name.bytes.clone(), format!("the fleet has no component `{}`", name.text));
+        let paths = || self.components.iter().map(|(path, _)| path.as_str());
+        Err(near(fault, &name.text, paths().chain(paths().filter_map(|path| path.rsplit('/').next()))))
+    }
+
+    fn topic(&self, name: &Word) -> Result<(), LineFault> {
+        if self.topics.iter().any(|topic| is_named(&name.text, &topic.name)) {
+            return Ok(());
+        }
+        let fault = LineFault::new(name.bytes.clone(), format!("the fleet has no topic `{}`", name.text));
+        let names = || self.topics.iter().map(|topic| topic.name.as_str());
+        Err(near(fault, &name.text, names().chain(names().filter_map(|name| name.rsplit('/').next()))))
+    }
+
+    /// Finds a topic with a sender and a reader that the fault concerns.
+    fn link(&self, call: &FaultCall) -> Result<(), LineFault> {
+        let topics = || {
+            let on = |topic: &&SubjectTopic| call.topic.as_ref().is_none_or(|word| is_named(&word.text, &topic.name));
+            self.topics.iter().filter(on)
+        };
+        let is_any = |names: &[Word], path: &str| names.is_empty() || names.iter().any(|one| is_named(&one.text, path));
+        let carries = |topic: &SubjectTopic, from: &[Word], to: &[Word]| {
+            let senders = topic.writers.iter().filter(|path| is_any(from, path));
+            let mut links = senders.flat_map(|one| topic.readers.iter().map(move |other| (one, other)));
+            links.any(|(one, other)| one != other && is_any(to, other))
+        };
+        let is_both_ways = call.kind == FaultKind::Part;
+        if topics()
+            .any(|topic| carries(topic, &call.from, &call.to) || is_both_ways && carries(topic, &call.to, &call.from))
+        {
+            return Ok(());
+        }
+        let on = call.topic.as_ref().map(|topic| format!(" on `{}`", topic.text)).unwrap_or_default();
+        for name in &call.from {
+            if !is_both_ways && !topics().any(|topic| topic.writers.iter().any(|path| is_named(&name.text, path))) {
+                let message = format!("component `{}` publishes nothing{on}", name.text);
+                let fault = LineFault::new(name.bytes.clone(), message);
+                return Err(near_end(fault, topics().flat_map(|topic| &topic.writers), "its publishers are"));
+            }
+        }
+        for name in &call.to {
+            if !is_both_ways && !topics().any(|topic| topic.readers.iter().any(|path| is_named(&name.text, path))) {
+                let message = format!("component `{}` reads nothing{on}", name.text);
+                let fault = LineFault::new(name.bytes.clone(), message);
+                return Err(near_end(fault, topics().flat_map(|topic| &topic.readers), "its readers are"));
+            }
+        }
+        let place = call.from.iter().chain(&call.to).chain(&call.topic).next();
+        let place = place.map_or_else(|| call.bytes.clone(), |word| word.bytes.clone());
+        Err(LineFault::new(place, format!("no message{on} takes this way, so the fault has no effect"))
+            .help("`from` names components that publish a topic, `to` others that read it"))
+    }
+}
+
+fn near<'n>(fault: LineFault, name: &str, known: impl Iterator<Item = &'n str> + Clone) -> LineFault {
+    match nearest(name, known.clone()) {
+        Some(meant) => fault.instead(meant),
+        None => {
+            let listed: Vec<String> = known.take(8).map(|one| format!("`{one}`")).collect();
+            match listed.is_empty() {
+                true => fault,
+                false => fault.help(format!("it has {}", listed.join(", "))),
+            }
+        }
+    }
+}
+
+fn near_end<'n>(fault: LineFault, ends: impl Iterator<Item = &'n String>, what: &str) -> LineFault {
+    let mut ends: Vec<String> = ends.map(|path| format!("`{path}`")).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    ends.truncate(8);
+    if ends.is_empty() { fault } else { fault.help(format!("{what} {}", ends.join(", "))) }
+}

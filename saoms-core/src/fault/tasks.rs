@@ -1,0 +1,77 @@
+//! Faults of components: of their next execution, and of their clocks.
+
+use std::time::Duration;
+
+/// A fault of one execution of a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TaskFault {
+    /// It takes longer by this duration: on the machine's clock, or in virtual time on that of the run. Meanwhile it is
+    /// busy for callers, and its due executions are late.
+    Stall(Duration),
+    /// It returns an error.
+    Fail,
+    /// The component ends instead, and starts again after this time, or never.
+    Crash { restart: Option<Duration> },
+}
+
+/// A clock that goes wrong.
+#[derive(Clone, Copy, Debug)]
+struct Drift {
+    component: u32,
+    /// By so many millionths too fast.
+    by: i64,
+    until: u64,
+}
+
+/// The faults of components that are not over.
+#[derive(Debug, Default)]
+pub(super) struct TaskFaults {
+    waiting: Vec<(u32, TaskFault)>,
+    drifts: Vec<Drift>,
+}
+
+const MILLION: i64 = 1_000_000;
+
+impl TaskFaults {
+    pub(super) fn add(&mut self, component: u32, fault: TaskFault) {
+        self.waiting.push((component, fault));
+    }
+
+    pub(super) fn drift(&mut self, component: u32, by: i32, until: u64) {
+        self.drifts.push(Drift { component, by: i64::from(by), until });
+    }
+
+    /// The fault of an execution of a component that begins. Each comes once.
+    pub(super) fn take(&mut self, component: u32) -> Option<TaskFault> {
+        let place = self.waiting.iter().position(|(concerned, _)| *concerned == component)?;
+        Some(self.waiting.remove(place).1)
+    }
+
+    /// A time of a component's own clock, on that of the run.
+    pub(super) fn on_run(&mut self, component: u32, time: u64, now: u64) -> u64 {
+        self.drifts.retain(|drift| drift.until > now);
+        let by: i64 = self.drifts.iter().filter(|drift| drift.component == component).map(|drift| drift.by).sum();
+        let speed = u128::from((MILLION + by).max(1).unsigned_abs());
+        u64::try_from(u128::from(time) * MILLION.unsigned_abs() as u128 / speed).unwrap_or(u64::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_fault_comes_once_and_a_clock_goes_right_again() {
+        let mut faults = TaskFaults::default();
+        faults.add(1, TaskFault::Fail);
+        faults.add(1, TaskFault::Stall(Duration::from_secs(1)));
+        assert_eq!(faults.take(2), None);
+        assert_eq!(faults.take(1), Some(TaskFault::Fail));
+        assert_eq!(faults.take(1), Some(TaskFault::Stall(Duration::from_secs(1))));
+        assert_eq!(faults.take(1), None);
+        faults.drift(1, 250_000, 100);
+        assert_eq!((faults.on_run(1, 1000, 99), faults.on_run(2, 1000, 99)), (800, 1000));
+        faults.drift(2, -500_000, u64::MAX);
+        assert_eq!((faults.on_run(1, 1000, 100), faults.on_run(2, u64::MAX, 100)), (1000, u64::MAX));
+    }
+}

@@ -1,0 +1,98 @@
+//! Faults that are put into the run: how they begin, and how messages take their ways under them.
+
+use std::sync::Arc;
+
+use saoms_api::event::fault::FaultCall;
+use saoms_api::host::{SharedMessage, TopicKind};
+
+use super::Engine;
+use super::slot::Slot;
+use crate::bus::{Link, TopicId};
+use crate::fault::{Arrival, End, FaultPlay, OnLink};
+use crate::schedule::inject::OUTSIDE;
+
+fn end(number: u32, slot: &Slot) -> End<'_> {
+    End { number, path: &slot.name, site: &slot.spec.site }
+}
+
+impl Engine {
+    /// Begins a fault.
+    #[cold]
+    pub(crate) fn begin_fault(&mut self, call: &FaultCall, site: &str, now: u64) {
+        if call.kind.is_of_messages() {
+            self.faults.begin_messages(call, site, now);
+            let topics: Vec<TopicId> = self.bus.topics().collect();
+            topics.into_iter().for_each(|topic| self.link(topic));
+            return;
+        }
+        let is_named = |slot: &Slot| {
+            slot.is_member()
+                && slot.policy.periodic
+                && (site.is_empty() || slot.spec.site == site)
+                && call.to.iter().any(|word| saoms_api::event::fault::is_named(&word.text, &slot.name))
+        };
+        let named = (0..).zip(&self.slots).filter(|(_, slot)| is_named(slot)).map(|(number, _)| number);
+        self.faults.begin_tasks(call, named, now);
+    }
+
+    /// Gives the readers of a topic that faults concern links of their own.
+    pub(crate) fn link(&mut self, topic: TopicId) {
+        let name = Arc::clone(self.bus.name(topic));
+        let (faults, slots) = (&mut self.faults, &self.slots);
+        let mut concerned: Vec<u32> = Vec::new();
+        for reader in self.bus.readers(topic) {
+            let Some(slot) = slots.get(reader as usize) else { continue };
+            if faults.concerns_reader((topic, &name), end(reader, slot)) {
+                concerned.push(reader);
+            }
+        }
+        self.bus.link(topic, |reader| concerned.contains(&reader));
+    }
+
+    /// Sends a message to the readers of a topic, to each with a link on its own way.
+    #[cold]
+    pub(super) fn send_with_faults(&mut self, topic: TopicId, message: SharedMessage, now: u64) {
+        let links: Vec<Link> = self.bus.links(topic).to_vec();
+        if links.is_empty() {
+            return self.publish(topic, message, now);
+        }
+        let sender = message.header().sender;
+        self.publish(topic, message.clone(), now);
+        for link in links {
+            // What a component hears of itself takes no way, and what comes from outside has no sender.
+            if sender == link.component || sender == OUTSIDE {
+                self.publish(link.topic, message.clone(), now);
+                continue;
+            }
+            for Arrival { at, is_on_its_way } in self.arrivals(topic, &link, sender, now) {
+                if is_on_its_way {
+                    self.injections.hold_up(at, link.topic, message.clone());
+                    self.look_at = self.look_at.min(at);
+                    self.wake |= at < self.roles.asleep_until;
+                } else {
+                    self.publish(link.topic, message.clone(), now);
+                }
+            }
+        }
+    }
+
+    fn arrivals(&mut self, topic: TopicId, link: &Link, sender: u32, now: u64) -> Vec<Arrival> {
+        let Engine { faults, bus, slots, .. } = self;
+        let ends = slots.get(sender as usize).zip(slots.get(link.component as usize));
+        let Some((from, to)) = ends else { return Vec::new() };
+        let on_link = OnLink {
+            topic: (topic, bus.name(topic)),
+            link: link.topic,
+            is_event: bus.kind(topic) == TopicKind::Event,
+            from: end(sender, from),
+            to: end(link.component, to),
+        };
+        FaultPlay::arrivals(faults, &on_link, now)
+    }
+
+    /// Lets a message arrive that was on its way.
+    pub(crate) fn arrive(&mut self, link: TopicId, message: SharedMessage, now: u64) {
+        self.faults.arrive(link, message.header().sender);
+        self.publish(link, message, now);
+    }
+}
